@@ -5639,8 +5639,8 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
        Newton's method, with slope -C ((1 - l)/fA + l/fB), C = s.QA K^-1 QB s, kept in a bracket.
        Any f(l) > 1 shows that the two are apart. No inverse of Q appears: needles and discs are
        safe. Shrinking both by W until they part [RUB15] 3.2 ends at this point and normal exactly,
-       and its line V2 V3 has the direction QA K^-1 QB s. Checked by the sentence on "quartic and
-       eigenvectors". --- */
+       and its line V2 V3 has the direction QA K^-1 QB s. Checked by the test "quartic and
+       eigenvectors of [RUB15] converge to the same contact". --- */
 typedef struct demi_meet {
     double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
     double s[3], a[3], b[3];       /* s, QA s, QB s */
@@ -17653,7 +17653,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. What a law is asked about before it touches counts by itself. Damping goes
    by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of
-   s U'), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and
+   s U'), so that mu is the ratio of both sums. Checked by "a cluster landing on one, two or
    three spheres" and tests/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&
@@ -23274,8 +23274,7 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
        on a curved surface add up to one, some are negative). The bound is exact for close packings
        that shear and spin, and for one body between walls. A cheap bound per body comes first (the
        largest of each contact, summed); few bodies need the matrices. Spheres only. Checked by "a
-       step just inside the limit of pressed contacts keeps still, one outside by a twentieth shakes
-       it". --- */
+       step just inside the limit of pressed contacts is stable; one 5 % outside oscillates". --- */
 typedef struct demi_press {
     double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
     double contacts;               /* how many, by their weights */

@@ -242,8 +242,8 @@ int main(int argc, char **argv) {
         CHECK_REL(scene_state(world, ball).velocity.x, 0.5*5/7, 0.01);
         dem_world_destroy(world);
     }
-    TEST("recipe for a wall: in a shell a ball swings as a pendulum that also rolls, clusters come "
-         "to rest on both their spheres, ellipsoids are refused by name") {
+    TEST("recipe for a wall: in a shell a ball swings as a rolling pendulum, clusters rest on both spheres, "
+         "ellipsoids are rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_cluster_desc two = DEM_CLUSTER_DESC;
         static const dem_real places[6] = {DEM_R(-0.004), 0, 0, DEM_R(0.004), 0, 0};
@@ -304,9 +304,8 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("recipe for a shape: capsules bounce off a plane and each other without a change of energy, "
-         "weigh and turn as a row of balls does, rest among spheres and clusters; what they do not "
-         "know is refused by name") {
+    TEST("recipe for a shape: capsules bounce without energy error, weigh and rotate as a row of balls, and rest "
+         "among spheres") {
         rods_bounce();
         rods_weigh();
         rods_rest();

@@ -182,7 +182,7 @@ int main(int argc, char **argv) {
         advise_follow(ADVISE_MILL, 0.5, 1, 0.2, &power);
         CHECK(asked > 32*3*6);
     }
-    TEST("the world asked about goes on as one that was never asked, and holds no more memory") {
+    TEST("dem_trials_run changes no bit of the world's run and keeps no memory") {
         dem_world *asked = advise_world(ADVISE_MILL, 0, 1), *control = advise_world(ADVISE_MILL, 0, 1);
         dem_trials_desc desc = DEM_TRIALS_DESC;
         dem_trials trials;
@@ -203,7 +203,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(asked);
         dem_world_destroy(control);
     }
-    TEST("a world is advised before its first step, too, and when its walls are meshes") {
+    TEST("dem_trials_run works before the first step and with mesh walls") {
         dem_world *asked = advise_world(ADVISE_PILE, 0, 1), *control = advise_world(ADVISE_PILE, 0, 1);
         dem_world *worlds[2];
         dem_trials_desc desc = DEM_TRIALS_DESC;
@@ -224,7 +224,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(asked);
         dem_world_destroy(control);
     }
-    TEST("a step so large that impacts gain energy by it is found out, and something else advised") {
+    TEST("trials detect a step so large that impacts gain energy, and advise another") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_trials_desc how = DEM_TRIALS_DESC;
         dem_trials trials;
@@ -252,8 +252,8 @@ int main(int argc, char **argv) {
         CHECK(trials.trial[trials.best].promise < how.tolerance);
         dem_world_destroy(world);
     }
-    TEST("where the library chooses the step, trials choose a share of it as the run goes on: a scene that grows "
-         "faster by the thousand is advised on as it would run") {
+    TEST("with dt = 0 trials use a fraction of the step chosen as the run goes on, even when the scene speeds up a "
+         "thousandfold") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_trials_desc how = DEM_TRIALS_DESC;
         dem_trials trials;
@@ -279,8 +279,8 @@ int main(int argc, char **argv) {
         CHECK(trials.trial[2].dt < 0.6*trials.trial[0].dt);
         dem_world_destroy(world);
     }
-    TEST("what cannot be advised on is refused in one sentence: durations, seeds, observables, an empty "
-         "world, too small a budget") {
+    TEST("dem_trials_run fails for bad durations, seeds, observables, an empty world or too small a budget, each with "
+         "an error") {
         dem_world *world = advise_world(ADVISE_PILE, 0, 1), *empty;
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_trials_desc good = DEM_TRIALS_DESC, bad;
@@ -335,7 +335,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_trials_run(world, &good, &trials), DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("advice that gets no memory, at any request, says so; nothing leaks and the world is as it was") {
+    TEST("trials that run out of memory, at any allocation, report it, leak nothing and leave the world unchanged") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_trials_desc how = DEM_TRIALS_DESC;
         scene_memory memory;

@@ -280,8 +280,7 @@ int main(int argc, char **argv) {
             CHECK_REL(r.last_speed, 5*v0/7, 1e-3);
         }
     }
-    TEST("incline: a sphere rolls from mu = 2/7 tan(angle) on with 5/7 g sin, below it slides with "
-         "g(sin - mu cos)") {
+    TEST("incline: a sphere rolls at 5/7 g sin from mu = 2/7 tan(angle) on; below it slides at g(sin - mu cos)") {
         static const double rows[][2] = {{15, 0.07656}, {30, 0.16496}, {45, 0.28571}};
         int i;
         for (i = 0; i < 3; i++) {
@@ -300,11 +299,10 @@ int main(int argc, char **argv) {
             CHECK_REL(d.spin_rise, 2.5*0.5*least*g*cos(a), 1e-3);
         }
     }
-    TEST("MercuryDPM inclined plane: 15 degrees, mu .5: 1.81173 m/s after one second") {
+    TEST("MercuryDPM inclined plane: 15 degrees, mu 0.5: 1.81173 m/s after one second") {
         CHECK_REL(run_down(15, 9.8, 0.5, 1).speed, 1.81173, 1e-3);
     }
-    TEST("Newton's cradle of touching balls: the exact velocities of 3 and 5, Hertz and linear, "
-         "for any size") {
+    TEST("Newton's cradle of touching balls: exact velocities for 3 and 5 balls, Hertz and linear, at any size") {
         static const double hertz_3[] = {-0.07095, 0.07640, 0.99455};
         static const double hertz_5[] = {-0.07109, -0.03027, -0.01446, 0.12704, 0.98878};
         static const double linear_3[] = {-0.13026, 0.15023, 0.98003};
@@ -325,8 +323,7 @@ int main(int argc, char **argv) {
 
     /* Two glass balls of .0383 g and .09 g, k = 7.36 N/m, c = 8.96e-4 N s/m. The thesis rounds in
        between: its numbers are met to their last digit, the exact ones to 1e-6. */
-    TEST("screening machine thesis, eq 2.25 to 2.31: contact time .006 s, time step 3e-4 s, "
-         "restitution .905") {
+    TEST("screening machine thesis, eq 2.25 to 2.31: contact time 0.006 s, time step 3e-4 s, restitution 0.905") {
         const double ri = 1.5e-3, rj = 2e-3, mi = 3.83e-5, mj = 9e-5, m = mi*mj/(mi + mj);
         const double k = 7.36, c = 8.96e-4;
         const double eta = c/(2*m), w0 = sqrt(k/m), w = sqrt(w0*w0 - eta*eta), e = exp(-pi*eta/w);
@@ -461,8 +458,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("tumbling mill thesis, Fig 6.1, standard mode: every bounce has the restitution set, "
-         ".66") {
+    TEST("tumbling mill thesis, Fig 6.1, standard mode: every bounce has the restitution set, 0.66") {
         static const double heights[] = {0.003, 0.005, 0.0075};
         int i, k;
         for (i = 0; i < 3; i++) {            /* dt about tc/90 */
@@ -478,7 +474,7 @@ int main(int argc, char **argv) {
        the whole mass the damping ratio is smaller by sqrt(2), which gives .6577 with small steps and without gravity. The
        thesis's text says forward Euler, but its kernels move the positions with the velocities just updated: symplectic
        Euler. */
-    TEST("tumbling mill thesis, Fig 6.1 to 6.3: on its flat sheet a bead rebounds with .656 to .659") {
+    TEST("tumbling mill thesis, Fig 6.1 to 6.3: on its flat sheet a bead rebounds with 0.656 to 0.659") {
         double sum = 0, least = 1, most = 0;
         int i, k, count = 0;
         for (i = 0; i < 12; i++) {
@@ -499,7 +495,7 @@ int main(int argc, char **argv) {
         printf("    mill thesis, its flat sheet: restitution %.4f to %.4f, mean %.4f of %d bounces\n", least, most,
                sum/count, count);
     }
-    TEST("tumbling mill thesis, Fig 6.1: forward Euler, as its text has it, rebounds with .70 to .72") {
+    TEST("tumbling mill thesis, Fig 6.1: with forward Euler, as in its text, a bead rebounds with 0.70 to 0.72") {
         int i, k;
         for (i = 0; i < 3; i++) {
             const drop d = drop_bead(DEM_CONVENTION_MILL, DEM_INTEGRATOR_FORWARD_EULER, mill_dt, 0.003 + 1e-3*i);

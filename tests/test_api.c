@@ -30,7 +30,7 @@ int main(int argc, char **argv) {
     TEST("slabs created, stepped and collected between any calls have the same bits on 1 and 2 threads") {
         seeds(4001, GRAINS | FUZZ_SLABS);
     }
-    TEST("bad arguments in any order are refused with a sentence and change nothing") {
+    TEST("bad arguments in any order are rejected with an error message and change nothing") {
         seeds(5001, GRAINS | FUZZ_BAD);
     }
     TEST("all kinds of calls in any order have the same bits on 1 and 2 threads") {

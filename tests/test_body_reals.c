@@ -194,8 +194,8 @@ static void electric(const dem_body_state *body, dem_body id, double time, dem_v
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("numbers of one's own are named in the desc: at most eight words of letters, digits and _; what is wrong is "
-         "refused, and what is asked where there are none") {
+    TEST("body_reals takes at most eight names of letters, digits and _; bad names and calls without numbers are "
+         "rejected") {
         static const char *const bad[] = {"a b c d e f g h i", "temp,charge", "a2345678901234567890bcde", "x=1"};
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w;
@@ -237,7 +237,8 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_body_reals_get(w, body, reals), DEM_ERROR_ARGUMENT);
         dem_world_destroy(w);
     }
-    TEST("numbers stay with their grains when bodies are sorted, removed, added, put in bulk, and turned into orientations") {
+    TEST("numbers stay with their grains through sorting, removal, insertion, bulk setting and the start of "
+         "orientations") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w;
         dem_material m;
@@ -274,8 +275,7 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(w);
     }
-    TEST("what laws exchange is the same to the bit for any number of threads, the same for every search and skin, and "
-         "what one gains the other loses: spheres, clusters, ellipsoids, walls, a periodic border") {
+    TEST("exchange laws give the same bits for any threads, search and skin, and what one body gains the other loses") {
         int shaped, kind;
         for (shaped = 0; shaped < 2; shaped++) {
             dem_world *one = mixture(shaped, 1, DEM_SEARCH_GRID, 0);
@@ -297,8 +297,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(one);
         }
     }
-    TEST("a checkpoint holds numbers, rates and what walls have gained: the run goes on to the bit; a scene with other "
-         "names refuses it") {
+    TEST("a checkpoint holds numbers, rates and wall gains and resumes to the bit; other names are rejected") {
         dem_world *one = mixture(1, 1, DEM_SEARCH_GRID, 0), *other = mixture(1, 1, DEM_SEARCH_GRID, 0), *third;
         dem_world_desc desc = desc_of(exchange, &hot, "warmth", 1e-5);
         CHECK_EQ(scene_step(one, 5000), DEM_OK);
@@ -316,7 +315,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(other);
         dem_world_destroy(third);
     }
-    TEST("slabs exchange across their borders what one world does, and hand it back when collected") {
+    TEST("slabs exchange numbers across borders as one world does, and return them when collected") {
         int count;
         for (count = 1; count <= 4; count++) {
             dem_world *one = mixture(count%2, 1, DEM_SEARCH_GRID, 0), *other = mixture(count%2, 1, DEM_SEARCH_GRID, 0);
@@ -337,7 +336,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(other);
         }
     }
-    TEST("files name the numbers: VTP, VTK and extended XYZ, a row for each part of a cluster") {
+    TEST("VTP, VTK and extended XYZ files name the numbers, with one row per part of a cluster") {
         dem_world *w = mixture(1, 1, DEM_SEARCH_GRID, 0);
         CHECK_EQ(dem_vtp_write(w, "build/tmp/reals.vtp"), DEM_OK);
         CHECK_EQ(dem_vtk_write(w, "build/tmp/reals.vtk"), DEM_OK);
@@ -348,8 +347,7 @@ int main(int argc, char **argv) {
         CHECK(file_has("build/tmp/reals.xyz", ":temperature:R:1:money:R:1:age:R:1:id:I:1"));
         dem_world_destroy(w);
     }
-    TEST("heat through a chain of pressed spheres: between two baths the profile is straight and carries 2 k a (400 - 300)/n, "
-         "as closely as the relaxation has run") {
+    TEST("heat flow in a chain of pressed spheres between two baths is 2 k a (400 - 300)/n with a linear profile") {
         enum { N = 12 };
         dem_body ids[N], ends[2];
         dem_world *w;
@@ -371,8 +369,8 @@ int main(int argc, char **argv) {
                 CHECK_REL((double)all.rates[i]*mass*235, 2*k*a*100/(N - 1), wide ? 1e-9 : 2e-3);
         dem_world_destroy(w);
     }
-    TEST("a chain of two that is left to itself: the difference falls as exp(-2 t/tau), tau = m c/(2 k a); Euler's step "
-         "to first order; heat is kept to rounding") {
+    TEST("an isolated pair equilibrates as exp(-2 t/tau), tau = m c/(2 k a), to first order in dt, and conserves "
+         "heat") {
         const double a = sqrt(0.5e-3*1e-5), mass = 2500*4/3.0*pi*1e-9, tau = mass*235/(2*400*a);
         double error[2];
         int fine;
@@ -389,7 +387,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(error[1], -0.01, wide ? 1e-3 : 2e-3);           /* (1 - 2 h)^(1/h) = exp(-2 - 2 h) */
         if (wide) CHECK_NEAR(error[0]/error[1], 2, 0.05);
     }
-    TEST("a step that heat does not bear runs away, is refused where the law tells its rates, and not chosen") {
+    TEST("a heat step beyond stability diverges; with law_rate it is rejected with an error, and dt = 0 avoids it") {
         int count;
         dem_world *w = hot_row(2.5, 0, 1);
         CHECK_EQ(scene_step(w, 100), DEM_OK);
@@ -421,8 +419,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
-    TEST("a grain of 1 mm that bounces on a metal plate is charged by s A in each impact, less what it has: "
-         "4 pi R^2 s (1 - exp(-n A/(4 pi R^2))), and the plate loses that") {
+    TEST("a bouncing 1 mm grain charges on a metal plate as 4 pi R^2 s (1 - exp(-n A/(4 pi R^2))), and the plate "
+         "loses that charge") {
         static const dem_real work[] = {DEM_R(4.2), DEM_R(4.7)};
         charge tribo = {work, DEM_R(2e-7), 0};
         dem_world_desc desc = desc_of(charge_law, &tribo, "charge", 0);
@@ -455,8 +453,8 @@ int main(int argc, char **argv) {
         CHECK_REL(loads.gained[0], -(double)q, wide ? 1e-9 : 1e-4);
         dem_world_destroy(w);
     }
-    TEST("two grains of one charge each and unlike work functions end with the field that the gap asks for; what one has "
-         "got the other has lost") {
+    TEST("repeated contacts of two metals charge them to the field of their work functions over the gap, and conserve "
+         "charge") {
         static const dem_real work[] = {DEM_R(4.2), DEM_R(4.7)};
         charge tribo = {work, DEM_R(2e-7), 0};
         dem_world_desc desc = desc_of(charge_law, &tribo, "charge", 0);
@@ -484,8 +482,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR((double)(q[0] + q[1]), 2e-13, wide ? 1e-24 : 1e-16);
         dem_world_destroy(w);
     }
-    TEST("a force field sees the numbers of a grain: charge in a field, v = q E t/m; they are named without a law, and the "
-         "report says that none answers rates") {
+    TEST("a force field reads the numbers of a grain, v = q E t/m; the report says when no law gives rates") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w;
         dem_body body;

@@ -67,7 +67,7 @@ static double note(int bonds) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a beam of bonds bends under a load at its end as Euler's beam of as many joints does") {
+    TEST("a bonded beam bends under an end load as Euler's beam of as many joints does") {
         static const int counts[] = {1, 3, 10, 100};
         int k;
         for (k = 0; k < (getenv("TEST_LONG") ? 4 : 3); k++) {
@@ -84,7 +84,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
-    TEST("a beam that is pulled gives by F n l/(E A)") {
+    TEST("a bonded beam under tension extends by F n l/(E A)") {
         const int n = 5;
         const double l = 2*R, A = pi*R*R, force = 0.01*E*A, slow = 0.5*sqrt(E*A/l/grain_mass)/n;
         bond cement = strong();
@@ -95,8 +95,8 @@ int main(int argc, char **argv) {
         CHECK_REL((double)scene_state(w, last).position.x - 2*R*n, force*n*l/(E*A), 1e-3);
         dem_world_destroy(w);
     }
-    TEST("the first note of a beam of 10 grains, and in the long form of 100, is that of one of length (n + 1/2) l, within "
-         "2 %") {
+    TEST("the first frequency of a beam of 10 grains (100 in the long form) is that of length (n + 1/2) l, within 2 "
+         "%") {
         int many;
         for (many = 0; many < (getenv("TEST_LONG") ? 2 : 1); many++) {
             const int n = many ? 100 : 10, most = many ? 2 : 9;
@@ -126,7 +126,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
-    TEST("a bond breaks at its strength, pulled, bent and sheared, and not below") {
+    TEST("a bond breaks at its strength in tension, bending and shear, and not below") {
         /* single: sums of 8e5 small steps */
         static const double part[] = {DEMI_SINGLE ? 0.85 : 0.97, DEMI_SINGLE ? 1.15 : 1.03};
         const double A = pi*R*R, strength = 2e4;
@@ -156,7 +156,7 @@ int main(int argc, char **argv) {
                 dem_world_destroy(w);
             }
     }
-    TEST("the energy of a beam that swings, and of one that breaks, closes in the ledger") {
+    TEST("the energy of a vibrating beam, and of a breaking one, closes in the ledger") {
         int k;
         for (k = 0; k < 2; k++) {
             bond cement = strong();

@@ -745,7 +745,7 @@ int main(int argc, char **argv) {
         remove(saved);
         remove(page);
     }
-    TEST("a law, field, motion, region or other function of the user's that changes the world is refused by name and changes no bit") {
+    TEST("a user function (law, field, motion, region) that changes the world gets an error and changes no bit") {
         int from, response;
         for (response = 0; response < 2; response++)
             for (from = 0; from < FROM_COUNT; from++) {
@@ -753,44 +753,35 @@ int main(int argc, char **argv) {
                 CHECK(intruded(from, 0, response) == intruded(from, 1, response));
             }
     }
-    TEST("friction, rolling friction, stiffness and damping that dem_pair_set brings into a run, "
-         "or takes out of it, act from the next step on as in a world that had them from the "
-         "start; friction taken away and given back begins without memory; threads and a "
-         "checkpoint change no bit") {
+    TEST("friction, rolling friction, stiffness and damping set by dem_pair_set in mid-run act from the next step on") {
         int what;
         for (what = FRICTION_ON; what <= DAMPED; what++) changed((change)what);
     }
-    TEST("the first grain of another radius, material, friction or shape among 2197 alike is "
-         "pushed and pushes as in a world that has had it from the start, and the report tells of "
-         "it") {
+    TEST("the first grain of another radius, material, friction or shape among 2197 acts as if present from the "
+         "start") {
         int what;
         for (what = RADIUS; what <= CLUSTER; what++) changed((change)what);
     }
-    TEST("when the last grain that is not like the others is taken out, the rest is alike again "
-         "and goes on as in a world that never had it") {
+    TEST("when the last unlike grain is removed, the rest counts as alike again and runs as if it had never been "
+         "there") {
         changed(RADIUS_GONE);
         changed(SHAPE_GONE);
     }
-    TEST("a feed that brings the first grain of another radius, a force that begins at a time, and "
-         "gravity that turns act as in a world that had them from the start, and give the momentum "
-         "they should") {
+    TEST("a feed's first unlike grain, a force that begins, and rotating gravity act as if present from the start") {
         changed(FEED);
         changed(FORCE);
         changed(GRAVITY_TURNS);
     }
-    TEST("a floor that starts to slide, stops, or changes the axis it turns about pushes and drags "
-         "as one that was put there and moved so from the start") {
+    TEST("a floor that starts to slide, stops or changes its axis acts as one that moved so from the start") {
         changed(WALL_GOES);
         changed(WALL_STOPS);
         changed(WALL_TURNS);
     }
-    TEST("a grain that is held fast in mid-run, or let go, is met as one that was so from the "
-         "start") {
+    TEST("a grain fixed or released in mid-run collides as one that was so from the start") {
         changed(FIXED);
         changed(FREED);
     }
-    TEST("friction and rolling friction of every law, under every normal law and integrator, come "
-         "in in mid-run as they would be from the start") {
+    TEST("friction and rolling friction of every law, normal law and integrator act in mid-run as from the start") {
         int n, t, r, i;
         const int last = DEM_INTEGRATOR_LEAPFROG;
         for (n = DEM_NORMAL_HERTZ; n <= DEM_NORMAL_LINEAR; n++) {
@@ -804,8 +795,7 @@ int main(int argc, char **argv) {
                               (dem_integrator)i);
         }
     }
-    TEST("adhesion that comes, grows and goes while a sticky contact lasts keeps its depth: the "
-         "force is that of the law at the depth it was loaded to") {
+    TEST("adhesion that starts, grows and ends during a sticky contact keeps the loaded depth and the law's force") {
         const double kn = 2e3, kun = 8e3, kads[4] = {0, 1e3, 4e3, 0};   /* N/m */
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc d = scene_stuff(1e7, 0.5, 0, 0);
@@ -850,8 +840,7 @@ int main(int argc, char **argv) {
         CHECK(last > 0);
         dem_world_destroy(world);
     }
-    TEST("a free grain under gravity that turns at a steady rate moves on the circle it should, to "
-         "the square of the step") {
+    TEST("a free grain under uniformly rotating gravity moves on the analytic circle, to second order in dt") {
         /* x'' = g sin wt, z'' = -g cos wt from v = (-g/w, 0): x = -g sin wt/w^2, z = g (cos wt - 1)
            /w^2 after any time; 50 g and a turn in 200 us, as push has it */
         double off[2];
@@ -887,8 +876,8 @@ int main(int argc, char **argv) {
             CHECK_NEAR(off[0]/off[1], 4, DEMI_SINGLE ? 0.1 : 0.02);
         }
     }
-    TEST("gravity that is set anew between steps throws a grain as two parabolas, keeps the energy of a bouncing heap "
-         "in the ledger, is held by checkpoints, told by the desc and taken along by slabs; NaN is refused") {
+    TEST("gravity set between steps bends a path into two parabolas, and ledger, checkpoint, desc and slabs follow "
+         "it") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w, *other = 0;
         dem_material m;
@@ -959,8 +948,7 @@ int main(int argc, char **argv) {
         }
         remove("build/tmp/gravity.dem");
     }
-    TEST("a ledger and orientations that are kept from the start change no bit of places, speeds "
-         "and forces, whatever changes on the way") {
+    TEST("a ledger and orientations kept from the start change no bit of positions, speeds and forces") {
         int what, k;
         side = 5;
         for (what = 0; what < CHANGES; what++) {
@@ -983,8 +971,7 @@ int main(int argc, char **argv) {
         side = 13;
     }
     remove(saved);
-    TEST("a time step and a modulus that change in mid-run: grains held on a slope by friction stay held, their springs "
-         "remembered, and sink in less") {
+    TEST("when time step and modulus change in mid-run, friction holds grains on a slope and overlaps shrink") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc d = scene_stuff(1e6, 0.3, 0.8, 0.8);
         dem_world *world;
@@ -1036,7 +1023,7 @@ int main(int argc, char **argv) {
         CHECK_REL(d.restitution, 0.3, 1e-6);
         dem_world_destroy(world);
     }
-    TEST("a time step that was set goes into a checkpoint, and a world of the same desc goes on with it, bit for bit") {
+    TEST("a time step set in mid-run is in the checkpoint, and a world of the same desc resumes with it bit for bit") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world[2];
         int k;

@@ -152,7 +152,7 @@ static int body_findings(dem_world *world, const char *says, dem_severity severi
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("a scene without a mistake has no finding, and looking changes no bit of its run") {
+    TEST("a scene without mistakes has no finding, and checking changes no bit of its run") {
         dem_world *a = tray_make(&TRAY), *b = tray_make(&TRAY);
         dem_finding f;
         CHECK_EQ(tray_check(&TRAY, DEM_SEVERITY_NOTE, 0), 0);
@@ -166,7 +166,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(b);
         CHECK_EQ(dem_world_check(0, &f, 1), 0);
     }
-    TEST("each of 24 mistakes that were planted in it is named, with its value") {
+    TEST("dem_world_check finds each of 24 planted mistakes and gives its value") {
 #define PLANT(change, severity, says) do { tray t = TRAY; change; CHECK(tray_check(&t, severity, says) > 0); } while (0)
         PLANT(t.grains = 0, DEM_SEVERITY_ERROR, "no grain can move, and there is no feed");
         PLANT(t.gravity = 0, DEM_SEVERITY_WARNING, "neither gravity nor a force");
@@ -195,8 +195,8 @@ int main(int argc, char **argv) {
         if (demi_threads_available() < 64) PLANT(t.threads = 64, DEM_SEVERITY_NOTE, "threads is 64");
 #undef PLANT
     }
-    TEST("a grain so far from the origin that its place has too few digits is named, as a note from 2e-4 of its "
-         "radius on and as a warning from 2e-3 on") {
+    TEST("a grain too far from the origin for its digits is a note from 2e-4 of its radius on and a warning from 2e-3 "
+         "on") {
         static const struct { double part; dem_severity severity; } row[3] =
             {{1e-4, (dem_severity)0}, {4e-4, DEM_SEVERITY_NOTE}, {4e-3, DEM_SEVERITY_WARNING}};
         const double digit = sizeof(dem_real) == sizeof(float) ? 1.1920929e-7 : 2.220446e-16;
@@ -222,7 +222,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("the most severe findings are kept where there is room for few, and counted all") {
+    TEST("with little room the most severe findings stay, and all are counted") {
         tray t = TRAY;
         dem_world *world;
         dem_finding f[2];
@@ -234,7 +234,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(f[1].severity, DEM_SEVERITY_WARNING);
         dem_world_destroy(world);
     }
-    TEST("grains inside a closed surface are named where others are outside: nowhere else, whatever it is made of") {
+    TEST("dem_world_check reports grains inside a closed surface only where others are outside, for any kind of wall") {
         /* with grains on both sides; all inside; all outside; on both sides of an open one; brought by a feed;
            across a face of a periodic world; where the surface has moved to */
         int kind, way;

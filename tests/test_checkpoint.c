@@ -625,7 +625,7 @@ static int walk_again(dem_world *world, char *why) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("whatever number a desc accepts, its checkpoint is read, before the first step and after steps") {
+    TEST("a checkpoint of any world that a desc allows can be read, before the first step and after steps") {
         static const double numbers[] = {1e16, -1e16, 1e30, -1e30, 1e155, 1e300, -1e300, 1e-30, 1e-300, 0};
         const walk_fields *all = walk_all();
         int k, way, n, accepted = 0, refusals = 0;
@@ -650,8 +650,8 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("each field of each desc that differs from the checkpoint's is refused with both values, or the run goes on "
-         "to the same bits") {
+    TEST("each desc field that differs from the checkpoint's is rejected with both values, or the run resumes with "
+         "the same bits") {
         const walk_fields *all = walk_all();
         int k, kind, way, refusals = 0, alike = 0;
         for (k = 0; k < all->count; k++) {
@@ -684,8 +684,7 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("every byte that bodies keep is found again after a checkpoint, a sort, a removal, and in "
-         "a message to another slab") {
+    TEST("every byte of a body survives a checkpoint, a sort, a removal and a message to another slab") {
         dem_world *a = kept_world(40), *b = kept_world(40), *c = kept_world(40);
         demi_message message = {0, 0};
         const char *from;
@@ -769,8 +768,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         play_both(&p);
     }
-    TEST("a checkpoint between an insertion and the next step keeps the memory of the other "
-         "contacts") {
+    TEST("a checkpoint between an insertion and the next step keeps the history of the other contacts") {
         int removal;
         for (removal = 0; removal < 2; removal++) {
             play p = play_make(DEM_INTEGRATOR_VELOCITY_VERLET, LAW_SPRING);
@@ -794,8 +792,7 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a checkpoint holds no addresses and nothing that the memory of a desc happened to hold: the same "
-         "state is the same bytes") {
+    TEST("a checkpoint holds no addresses and no padding: equal states give equal bytes") {
         char *file[2];
         size_t size[2];
         int i, user[2] = {0, 0};
@@ -827,7 +824,7 @@ int main(int argc, char **argv) {
         free(file[1]);
         remove(path);
     }
-    TEST("a motion given while the world runs goes on from a checkpoint as without") {
+    TEST("a motion set in mid-run resumes from a checkpoint with the same bits") {
         int kind;
         for (kind = DEM_MOTION_TRANSLATING; kind <= DEM_MOTION_OSCILLATING; kind++) {
             dem_world *w[2];
@@ -861,7 +858,7 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a checkpoint of a world without grains, or before its first step, is read back") {
+    TEST("a checkpoint of a world without grains, or before its first step, can be read back") {
         play p = play_make(DEM_INTEGRATOR_LEAPFROG, LAW_SPRING);
         dem_world *a = play_world(&p), *b = play_world(&p), *c;
         CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
@@ -888,7 +885,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(c);
         remove(path);
     }
-    TEST("a checkpoint cut at any byte is refused by name, the world as it was") {
+    TEST("a checkpoint cut at any byte is rejected with a named error and leaves the world unchanged") {
         dem_world *world = tiny_world(2500);
         size_t size, n;
         char *data;
@@ -910,7 +907,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         remove(path);
     }
-    TEST("a checkpoint with any byte changed is refused by name, the world as it was") {
+    TEST("a checkpoint with any byte changed is rejected with a named error and leaves the world unchanged") {
         dem_world *world = tiny_world(2500);
         size_t size, n;
         char *data;
@@ -928,8 +925,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         remove(path);
     }
-    TEST("a checkpoint of another version, precision or byte order, or none at all, is refused by "
-         "name") {
+    TEST("a checkpoint of another version, precision or byte order, or another file, is rejected with a named error") {
         dem_world *world = tiny_world(2500);
         size_t size;
         char *data, versions[64];
@@ -955,7 +951,7 @@ int main(int argc, char **argv) {
         free(data);
         dem_world_destroy(world);
     }
-    TEST("a checkpoint of another scene is refused by name, whatever of it differs") {
+    TEST("a checkpoint of another scene is rejected with the difference named, whichever it is") {
         dem_world *world = other_world(SAME);
         int what;
         CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
@@ -970,8 +966,7 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a checkpoint between dem_pair_set or dem_material_add, which bring friction in or take it "
-         "away, and the next step goes on as without it") {
+    TEST("a checkpoint between dem_pair_set or dem_material_add and the next step resumes with the same bits") {
         int how;
         for (how = 0; how < 3; how++) {
             dem_contact_info ca[8], cb[8];
@@ -1006,8 +1001,8 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a checkpoint after dem_body_remove, before the next step, is read into a fresh world and "
-         "into a used one, and goes on as without it") {
+    TEST("a checkpoint between dem_body_remove and the next step resumes with the same bits in a fresh and in a used "
+         "world") {
         int fresh;
         for (fresh = 0; fresh < 2; fresh++) {
             dem_material stuff;
@@ -1033,8 +1028,8 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a wall that was removed before the checkpoint is removed by reading it; one that stands "
-         "there and was removed here is named") {
+    TEST("reading a checkpoint removes a wall that was removed before it; a wall removed here but present there is "
+         "rejected") {
         dem_world *a = other_world(SAME), *b = other_world(SAME);
         dem_wall wall;
         dem_pose pose;
@@ -1052,7 +1047,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(b);
         remove(path);
     }
-    TEST("the refusal of another scene names the field that differs, its part and both values") {
+    TEST("the error for another scene names the field that differs, its part and both values") {
         static const char *parts[] = {"", "density 2500 of material 1, this world has 2501",
             "tangent_damping 1 (dem_pair_set) of materials 1 and 1, this world has 0.5",
             "gravity.z -9.81, this world has -9.8", "integrator velocity_verlet, this world has leapfrog",
@@ -1074,8 +1069,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(other);
         remove(path);
     }
-    TEST("each of 79 lies in a checkpoint with a right check sum is refused by name, the world as it "
-         "was") {
+    TEST("each of 79 false values with a correct checksum is rejected with its name and leaves the world unchanged") {
         int lie, told = 0;
         for (lie = 0; lie < 110; lie++) {
             const int before = test_now.wrong;
@@ -1093,7 +1087,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(told, 79);
         remove(path);
     }
-    TEST("a checkpoint that cannot be written leaves the older file whole, and says why") {
+    TEST("a checkpoint that cannot be written leaves the older file intact and reports why") {
         char longest[300] = "build/tmp/";
         dem_world *world = tiny_world(2500);
         const uint64_t hash = dem_world_hash_get(world);
@@ -1121,7 +1115,7 @@ int main(int argc, char **argv) {
         free(present);
         dem_world_destroy(world);
     }
-    TEST("a run that has blown up is not written over its last checkpoint, and the sentence says so") {
+    TEST("a run that has blown up does not overwrite its last checkpoint, and the error message says so") {
         dem_world *world = tiny_world(2500);
         size_t before, after;
         char *old, *present;

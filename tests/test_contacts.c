@@ -132,8 +132,7 @@ static void join(const dem_contact_info *c, dem_real *memory, void *user) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("more than 10,000 links are made and broken in a gas, over new lists, a checkpoint, slabs and a periodic border: "
-         "those made less those broken are those that hold, at any time; spheres and ellipsoids") {
+    TEST("over 10,000 links form and break in a gas: formed less broken is the number in force at any time") {
         int shaped, part;
         for (shaped = 0; shaped < 2; shaped++) {
             dem_world *w = gas(shaped, 1), *other;
@@ -165,8 +164,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(other);
         }
     }
-    TEST("sixteen reals of every contact, two vectors among them, are found as they were left: through sorting, new lists, "
-         "walls, ellipsoids, threads, a checkpoint and slabs") {
+    TEST("sixteen reals per contact, two vectors among them, survive sorting, rebuilt lists, threads, checkpoints and "
+         "slabs") {
         dem_world *w = heap(1), *other = heap(3);
         dem_slabs_desc cut = DEM_SLABS_DESC;
         dem_slabs *slabs;
@@ -191,8 +190,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
         dem_world_destroy(other);
     }
-    TEST("every contact is shown, grains and walls; a spring of friction that is set from outside pushes by kt times its "
-         "length; looking changes no bit") {
+    TEST("dem_contacts_each visits every contact; a friction spring set by it acts with kt times its length; visiting "
+         "changes no bit") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w[2];
         int k, n[2] = {0, 0};
@@ -236,8 +235,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(w[0]);
         }
     }
-    TEST("bonds are made between all grains nearer than the gap, refused beyond the range, and drawn as lines under their "
-         "names; across a periodic border as short ones") {
+    TEST("dem_bonds_make bonds all grains nearer than the gap, fails beyond the range, and files draw bonds as named "
+         "lines") {
         dem_world *w = gas(0, 1);
         const dem_bodies all = dem_bodies_get(w);
         int i, j, k, near = 0;

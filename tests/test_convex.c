@@ -48,7 +48,7 @@ int main(int argc, char **argv) {
     const int numbers = getenv("CONVEX_NUMBERS") != 0;
     test_begin(argc, argv);
 
-    TEST("shapes have the corners, faces and edges of their kind, and planes that hold all corners") {
+    TEST("convex shapes have the corners, faces and edges of their kind, and planes that bound all corners") {
         convex_solid s;
         uint64_t random = 3;
         int i, sides;
@@ -76,7 +76,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two boxes along the axes are as far apart as Pythagoras says, or as deep as the least of three overlaps") {
+    TEST("two axis-aligned boxes have Pythagoras' distance, or the least of three overlaps as depth") {
         uint64_t random = 5;
         int i, k, deep = 0;
         for (i = 0; i < 300; i++) {
@@ -108,7 +108,7 @@ int main(int argc, char **argv) {
         CHECK(deep > 30 && deep < 270);
     }
 
-    TEST("a cube on its corner over a face is as far from it as the corner is high, and as deep as it is low") {
+    TEST("a cube on its corner has the corner's height as its distance from a face, and its depth below it") {
         int i;
         for (i = -9; i <= 9; i++) {
             const double high = step_of(i);
@@ -131,7 +131,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two bars with crossed edges are apart, or deep, by the distance of the edges") {
+    TEST("two bars with crossed edges have the distance of the edges as gap or depth") {
         int i;
         for (i = -9; i <= 9; i++) {
             const double high = step_of(i), angle = 0.3 + 0.06*(i + 9);
@@ -173,8 +173,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("concentric cubes part by half the sum of their edges, an octahedron and a cube by way of faces, edges or "
-         "corners, whichever is least") {
+    TEST("concentric cubes have half the sum of their edges as depth, an octahedron and a cube the least of face, "
+         "edge and corner") {
         int i;
         for (i = 1; i <= 40; i++) {
             const double c = 0.05*i, r = 0.5;                   /* the cube's edge; the octahedron's corner */
@@ -199,8 +199,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("portals are not lost where rays run along edges and through corners: equal shapes on one centre, tip on tip, "
-         "and in planes that hold the ray, a support point and an edge") {
+    TEST("MPR survives rays along edges and through corners: concentric, tip-to-tip and coplanar configurations") {
         /* with rules that look at two signs only these tetrahedra, 1/sqrt 5 and 2/sqrt 11 apart, touch */
         static const double at_a[2][12] = {{0, 6, 4, 2, 2, 6, 4, 4, 4, 6, 0, 2}, {0, 2, 6, 2, 4, 6, 6, 2, 4, 6, 0, 2}};
         static const double at_b[2][12] = {{9, 3, 6, 5, 3, 2, 8, 7, 4, 5, 3, 4}, {0, 2, 8, 3, 0, 10, 2, 2, 6, 5, 4, 8}};
@@ -233,8 +232,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("every gap is proved: distances by a point of each body and a slab between them of that width, depths by a move "
-         "that leaves them touching and by directions, none of which parts them sooner") {
+    TEST("every gap has a proof: witness points and a separating slab, or a separating move and directions that do no "
+         "better") {
         const int count = pairs_drawn(4);
         uint64_t random = UINT64_C(88172645463325252);
         double worst[4] = {0, 0, 0, 0};
@@ -274,7 +273,7 @@ int main(int argc, char **argv) {
                    worst[1], worst[2], worst[3]);
     }
 
-    TEST("scaled by a power of two answers are the same bits; exchanged and rotated bodies have the same gap") {
+    TEST("gaps scale exactly with powers of two, and exchanged or rotated bodies have the same gap") {
         const int count = pairs_drawn(8);
         uint64_t random = 4711;
         int i, f;
@@ -309,8 +308,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("portals say touching where brute force does, for all that is not within 1e-14 of the size, and their depth is no "
-         "less than the true one, nor their width between bodies apart more than the distance") {
+    TEST("MPR agrees with brute force on contact within 1e-14 of the size; its depth is never below the true one, its "
+         "gap never above") {
         const int count = pairs_drawn(1);
         uint64_t random = 20260101;
         int kinds[CONVEX_KINDS] = {0}, i, touching = 0, close = 0, wrong = 0, unsure = 0, again = 0, steps = 0, near_by = 0;

@@ -210,7 +210,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("the field's constants and its strengths on rotor and electrode are those worked out by hand") {
+    TEST("the field's constants and its strengths on rotor and electrode equal the hand calculation") {
         const corona_field f = machine_field(), li = corona_field_make(0.114, 0.019, 0.21, 0, 25e3);
         double E[2];
         /* tolerances: the digits to which the figures are given */
@@ -230,7 +230,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(hypot(E[0], E[1]), 0, 0);             /* nothing within the rotor */
     }
 
-    TEST("the field on the rotor stands upright on it and points away from an electrode of positive voltage") {
+    TEST("the field on the rotor is normal to it and points away from an electrode of positive voltage") {
         const corona_field f = machine_field();
         int i;
         for (i = 0; i < 72; i++) {
@@ -242,14 +242,14 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a wire glows from Peek's field on: 9.6 MV/m on 0.1 mm, at a voltage that its surface field gives") {
+    TEST("a wire starts its corona at Peek's field, 9.6 MV/m on 0.1 mm, at the voltage of its surface field") {
         /* 3 MV/m times 0.8 times 1 + 0.03/0.01 */
         CHECK_REL(corona_peek(1e-4, 1, 0.8), 9.6e6, 1e-12);
         /* far from a thin wire E = U/(r ln(2 gap/r)) to the ratio of wire and gap */
         CHECK_REL(corona_onset(10, 1e-4, 10.05, 1, 0.8), 9.6e6*1e-4*log(2*0.05/1e-4), 5e-3);
     }
 
-    TEST("charges and forces at 280 kV/m on grains of 0.5 mm have the sizes that their formulas give by hand") {
+    TEST("charges and forces at 280 kV/m on 0.5 mm grains equal the hand calculation of their formulas") {
         const double r = 0.5e-3, E = 2.8e5, Qs = corona_saturation(r, E, 2.5), volume = 4*CORONA_PI/3*r*r*r;
         /* tolerances: half of the last digit of the figures */
         CHECK_REL(corona_induced(1, 1), 1.83e-10, 3e-3);
@@ -269,7 +269,7 @@ int main(int argc, char **argv) {
                   0.44*CORONA_PI*r*r*1.204*100*100/2, 1e-12);
     }
 
-    TEST("ions charge by Qs t/(t + tau), whatever the steps, and bring nothing beyond Qs") {
+    TEST("ions charge a grain by Qs t/(t + tau), for any step, and never beyond Qs") {
         const double Qs = -2e-11, tau = 0.1;
         double q = 0, t = 0;
         int i;
@@ -284,7 +284,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(corona_charged(-Qs, Qs, tau, 1e9), Qs, 1e-6*fabs(Qs));       /* of the other sign: is turned round */
     }
 
-    TEST("on the rotor a conductor's charge relaxes to Felici's and lifts it, an insulator's leaks and holds it") {
+    TEST("on the rotor a conductor relaxes to Felici's charge and lifts off; an insulator's charge leaks and holds "
+         "it") {
         corona c = corona_make();
         const double r = 0.5e-3, R = 0.160, a = CORONA_PI/6, x = (R + r)*cos(a), y = (R + r)*sin(a);
         dem_body_state b = grain_at(x, y, r, 1);
@@ -328,7 +329,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR((double)reals[CORONA_INDUCED], 0, 0);
     }
 
-    TEST("ions rain in their window alone, turn with the voltage's sign, and not below the onset") {
+    TEST("ions arrive only in their window, follow the sign of the voltage, and need the onset voltage") {
         corona c = corona_make();
         const double r = 0.5e-3, R = 0.160;
         dem_body id = {1, 0};
@@ -355,7 +356,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two charged grains far from the rotor push each other by Coulomb's law, near it less, and last as dipoles") {
+    TEST("two charged grains repel by Coulomb's law far from the rotor, less near it, and as dipoles close to it") {
         static const double height[3] = {0.5, 4e-3, 0.5e-3};
         int i;
         for (i = 0; i < 3; i++) {
@@ -392,12 +393,12 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two opposite charges circle each other: after a turn they are back, and the miss falls with dt squared") {
+    TEST("two opposite charges in orbit return after one period, with an error that falls as dt^2") {
         const double coarse = orbit_miss(200), fine = orbit_miss(400);
         CHECK(coarse < 0.01);
         CHECK_NEAR(coarse/fine, 4, 0.3);        /* second order; the next term is of the fourth */
     }
-    TEST("single grains leave the drum and land where a separate integration of a point's equations has them") {
+    TEST("single grains leave the drum and land where a separate integration of the point equations puts them") {
         /* radius mm, V, V/m; metal, Q E on ions; slip and leave (degrees after the top), x at y = -0.5 m. This project
            integrated them before it wrote the machine, for points without drag on the drum and with drag in flight */
         static const ride rides[8] = {
@@ -417,7 +418,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("plastic charged in a field of 1 MV/m stays on the drum as far as the brush, and the air brakes metal on it") {
+    TEST("plastic charged at 1 MV/m stays on the drum as far as the brush; air drag shortens the flight of metal") {
         static const ride pinned[2] = {{0.30e-3, 30e3, 1e6, 0, 1, 1}, {1.0e-3, 30e3, 1e6, 0, 1, 1}};
         static const ride braked = {0.15e-3, 30e3, 0, 1, 1, 0};
         int i;
@@ -431,7 +432,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(ride_run(&braked, 1e-4).x, 0.3431, 1e-3);
     }
 
-    TEST("a separator has every grain fed in its bins or in the machine at every step, by class and material") {
+    TEST("every grain fed to the separator is in its bins or in the machine at every step, by class and material") {
         small_run(1, 900);
         CHECK(small.landed_count > 100 && small.class_count == 5);
         CHECK_EQ(small.unbalanced, 0);
@@ -460,7 +461,7 @@ int main(int argc, char **argv) {
         separator_end(&small);
     }
 
-    TEST("a machine that cannot be is refused with dem.h's sentence") {
+    TEST("an impossible machine is rejected with dem.h's error message") {
         separator_desc d = small_machine(1);
         d.dt = 0;
         CHECK(separator_create(&small, &d) == DEM_ERROR_ARGUMENT);

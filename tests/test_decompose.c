@@ -118,8 +118,7 @@ int main(int argc, char **argv) {
     const int fine = sizeof(dem_real) == 8;
     test_begin(argc, argv);
 
-    TEST("more spheres stand for a mesh better: fewer points wrong, volume, moments and surface nearer; the mesh's own volume, "
-         "centre and moments are exact") {
+    TEST("more spheres fit a mesh better in points, volume, moments and surface; the mesh's own moments are exact") {
         static dem_real x[3*128], r[128];
         const dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w = dem_world_create(&desc);
@@ -147,8 +146,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("a cluster of the spheres, with the mesh's moments given, weighs and turns as the mesh; inside out is the same mesh; "
-         "what is open, thin or not there is refused") {
+    TEST("a cluster of fitted spheres with given moments weighs and rotates as the mesh; open, thin or missing meshes "
+         "are rejected") {
         static dem_real x[3*8], r[8];
         const dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w = dem_world_create(&desc);
@@ -194,7 +193,8 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(w), "thinner");
         dem_world_destroy(w);
     }
-    TEST("a closed mesh has the same volume and hull whatever way its triangles were written, and health counts those turned") {
+    TEST("a closed mesh has the same volume and hull for any winding of its triangles, and its health counts reversed "
+         "ones") {
         const dem_world_desc desc = DEM_WORLD_DESC;
         const double exact = sizeof(dem_real) == 8 ? 1e-12 : 1e-6;       /* sums of 12 products */
         dem_world *w = dem_world_create(&desc);
@@ -216,7 +216,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("shells apart add up, a shell inside that faces the other way is a cavity, equal triangles count once") {
+    TEST("separate shells add up, an inner shell of opposite winding is a cavity, and duplicate triangles count once") {
         const dem_world_desc desc = DEM_WORLD_DESC;
         const double exact = sizeof(dem_real) == 8 ? 1e-12 : 1e-6;
         dem_world *w = dem_world_create(&desc);
@@ -251,7 +251,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("every allocation may fail while a body is made of a mesh: the error names memory, and nothing is kept") {
+    TEST("every failing allocation in mesh decomposition gives a memory error and leaves nothing behind") {
         dem_world_desc desc = DEM_WORLD_DESC;
         scene_memory memory;
         dem_world *w;
@@ -282,7 +282,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(memory.bytes, 0);
     }
 
-    TEST("a mesh that does not decide what is inside is refused as a body: open, branched, one-sided, crossing or nested shells") {
+    TEST("open, branched, one-sided, crossing and nested meshes have no inside and are rejected as bodies") {
         static const int32_t strip[15] = {0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 0, 4, 4, 0, 1};      /* a Moebius strip of five */
         const dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w = dem_world_create(&desc);

@@ -50,7 +50,7 @@ static dem_vec3 effects_wind(dem_vec3 position, dem_vec3 velocity, dem_real radi
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("what no one asked for is off, with the reason: friction, rolling friction, adhesion, fields, ledger, shapes") {
+    TEST("unused effects are off, with the reason: friction, rolling friction, adhesion, fields, ledger, shapes") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);
         dem_effect all[DEM_EFFECTS];
@@ -67,7 +67,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(effects_of(world, "contacts").state, DEM_EFFECT_IDLE);
         dem_world_destroy(world);
     }
-    TEST("cohesion under impulses counts as adhesion, and the pair table prints what impulses have beside springs") {
+    TEST("cohesion under impulses counts as adhesion, and the pair table prints the impulse-only columns") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_pair pair;
@@ -98,8 +98,7 @@ int main(int argc, char **argv) {
         fclose(out);
         dem_world_destroy(world);
     }
-    TEST("rolling friction that no contact used and a wall that nothing touched are idle, and the report says so; once "
-         "steel has met glass, they are not") {
+    TEST("rolling friction without a contact and an untouched wall are idle, until steel has touched glass") {
         dem_world_desc desc = DEM_WORLD_DESC;
         effects_scene s = effects_world(desc);
         CHECK_EQ(scene_step(s.world, 2000), DEM_OK);
@@ -122,7 +121,7 @@ int main(int argc, char **argv) {
         CHECK(strstr(effects_of(s.world, "friction").text, "material 2 has not touched itself so far") != 0);
         dem_world_destroy(s.world);
     }
-    TEST("what has touched is remembered when contacts are over, by a checkpoint too, and when loads are reset") {
+    TEST("contacts of the past count as touched, after a checkpoint and a reset of loads too") {
         dem_world_desc desc = DEM_WORLD_DESC;
         effects_scene s = effects_world(desc), t = effects_world(desc);
         dem_wall_loads loads;
@@ -150,8 +149,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(t.world);
         remove("effects.dem");
     }
-    TEST("a field that pushes nothing, feeds and outlets that nothing came through, and a periodic box that nothing is "
-         "near the faces of are idle; so is a wall that moves where no grain is") {
+    TEST("a field without force, unused feeds and outlets, uncrossed periodic faces and a moving wall far away are "
+         "idle") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_motion motion = DEM_MOTION;
         dem_feed_desc feed;
@@ -190,8 +189,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(effects_of(s.world, "periodic faces").state, DEM_EFFECT_ACTIVE);
         dem_world_destroy(s.world);
     }
-    TEST("shares are measured of all that is asked for and can be left out, a law and a field of one's own among them, "
-         "on copies: the world goes on as one that was never asked, and holds no more memory") {
+    TEST("effect costs are measured on copies, also of user-defined laws and fields, and change no bit of the world") {
         int own, k;
         for (own = 0; own < 3; own++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -231,7 +229,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(plain.world);
         }
     }
-    TEST("slabs remember what has touched, and the world that is collected of them knows it") {
+    TEST("slabs record which materials have touched, and the collected world has the record") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_slabs_desc deal = DEM_SLABS_DESC;
         effects_scene s = effects_world(desc);
@@ -247,7 +245,7 @@ int main(int argc, char **argv) {
         dem_slabs_destroy(slabs);
         dem_world_destroy(s.world);
     }
-    TEST("effects are refused in one sentence: no world, no room, a budget below nothing, a scene that would not run") {
+    TEST("dem_effects_get fails without a world, room, a valid budget or a scene that runs") {
         dem_world_desc desc = DEM_WORLD_DESC;
         effects_scene s = effects_world(desc);
         dem_effect all[DEM_EFFECTS];
@@ -264,7 +262,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_effects_get(s.world, 0, all), DEM_EFFECTS);
         dem_world_destroy(s.world);
     }
-    TEST("effects that get no memory, at any request, say so; nothing leaks and the world is as it was") {
+    TEST("dem_effects_get reports any failing allocation, leaks nothing and leaves the world unchanged") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_effect all[DEM_EFFECTS];
         scene_memory memory;
@@ -298,7 +296,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(memory.blocks, 0);
         CHECK_EQ(memory.wrong, 0);
     }
-    TEST("a share of time that cannot be right is printed as too noisy, with a remedy, and columns stay apart") {
+    TEST("an impossible cost is printed as too noisy, with a remedy, and columns stay separate") {
         static const double shares[] = {0.12, -34.3, 2.5, 0.2, (double)NAN}, errors[] = {0.01, 1e3, 0.01, 0.5, 0.01};
         static char text[16000];
         dem_effect effects[DEM_EFFECTS];

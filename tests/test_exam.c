@@ -163,19 +163,19 @@ static void wrong(dem_law_fn law, int line, const char *says, double stiffness, 
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("built-in laws and one with a dent pass every line of the exam") {
+    TEST("the built-in laws and one with a dent pass every line of the exam") {
         right("rescaled Mindlin, EPSD", hertz_rescaled_epsd, 7, 2, 0, DEM_NORMAL_HERTZ);
         right("linear, spring", linear_spring, 3, 1, 0, DEM_NORMAL_LINEAR);
         right("Hertz, viscous", hertz_viscous, 0, 0, 0, DEM_NORMAL_HERTZ);
         right("dent", dented, 1, 0, 4000, DEM_NORMAL_LINEAR);
         right("dent, ten times as hard", dented_hard, 1, 0, 40000, DEM_NORMAL_LINEAR);     /* no shear: round-off is no gain */
     }
-    TEST("a spring that keeps its length under Hertz makes energy where it is pressed while sheared, and that line says so") {
+    TEST("a Hertzian spring of constant length creates energy when pressed while sheared, and the exam says so") {
         exam_sheet sheet;
         CHECK_EQ(take(hertz_spring, 3, 1, 0, DEM_NORMAL_HERTZ, 0.7, &sheet), EXAM_MIXED + 1);
         CHECK_STR(sheet.line[EXAM_MIXED].found, "rescale the tangential force");
     }
-    TEST("for each line of the exam there is a law that is wrong in that way alone: it is caught there, and told where to look") {
+    TEST("each line of the exam catches a law with only that defect, and says where to look") {
         wrong(divides, EXAM_FINITE, "no number at an overlap of", 0, 1);
         wrong(remembers, EXAM_PURE, "the law remembers beside its memory", 0, 1);
         wrong(writes, EXAM_ASKED, "real 3 of the memory goes from", 0, 1);
@@ -192,8 +192,7 @@ int main(int argc, char **argv) {
         wrong(depends_on_dt, EXAM_ORDER, "does a force contain dt", 0, 1);
         wrong(dawdles, EXAM_COST, "times Hertz with a spring", 0, 1);
     }
-    TEST("a law of bonds is examined bonded: all lines; one that pushes along the shear, or does not tell of its second vector, "
-         "is caught") {
+    TEST("a bond law passes the exam bonded; a force along the shear or an undeclared vector fails it") {
         static bond cement = {DEM_R(1e8), DEM_R(2.5), DEM_R(5e-4), DEM_R(1e9), DEM_R(1e9), DEM_R(0.1)};
         static const dem_law_fn law[4] = {bond_law, bond_pushes, bond_hides, bond_law};
         static const char *const says[4] = {"", "friction must act against slip", "a and b exchanged in mid-contact", ""};
@@ -215,7 +214,7 @@ int main(int argc, char **argv) {
             if (first) CHECK_STR(sheet.line[first - 1].found, says[k]);
         }
     }
-    TEST("a law that parts grains before they touch passes the exam; one that makes energy there is caught") {
+    TEST("a law that repels before contact passes the exam; one that creates energy there fails") {
         static const dem_law_fn law[4] = {film, cushion, film_drives, cushion_kicks_when_fast};
         static const int line[4] = {0, 0, EXAM_IMPACT + 1, EXAM_IMPACT + 1};
         static const char *const says[4] = {"", "", "of the energy it began with", "of the energy it began with"};
@@ -234,7 +233,7 @@ int main(int argc, char **argv) {
             if (first != line[k] && first) printf("%d: %s: %s\n", k, sheet.line[first - 1].asks, sheet.line[first - 1].found);
         }
     }
-    TEST("no law, too much memory or more vectors than it holds is refused by a sentence") {
+    TEST("the exam rejects a missing law, too much memory and too many vectors with a message") {
         exam e = exam_of("law", 0, 0, 3, 1, 0);
         exam_sheet sheet;
         CHECK_EQ(exam_take(&e, &sheet), DEM_ERROR_ARGUMENT);

@@ -657,8 +657,8 @@ int main(int argc, char **argv) {
     const dem_vec3 up = at(0, 0, 1), y = at(0, 1, 0);
     test_begin(argc, argv);
 
-    TEST("in a drum of facets and outside a rod of them a ball feels the cylinder's force as the facets become "
-         "small: the spring at its true distance, and no more than what a valley between two facets adds") {
+    TEST("a ball in a drum or outside a rod of facets feels the cylinder's force as facets shrink, up to the valley "
+         "correction") {
         static const int cut[5][2] = {{48, 3}, {88, 5}, {154, 10}, {280, 18}, {5000, 1}};
         int in, i, o, k;
         for (in = 1; in >= 0; in--)
@@ -695,7 +695,7 @@ int main(int argc, char **argv) {
                 soup_free(&s);
             }
     }
-    TEST("a plane cut at random into slivers, with corners on the sides of others, gives the force of two triangles") {
+    TEST("a plane cut at random into slivers with hanging corners gives the force of two triangles") {
         static const double size[4] = {0.002, 0.02, 0.3, 3};
         int i, o;
         for (i = 0; i < 4; i++) {               /* facets from .01 r: around the place */
@@ -712,7 +712,7 @@ int main(int argc, char **argv) {
             soup_free(&c);
         }
     }
-    TEST("valleys and ridges of any angle, cut at random, give the force of their two planes; so does a profile") {
+    TEST("valleys and ridges of any angle, cut at random, give the force of their two planes; so do profiles") {
         static const double angle[12] = {1e-6, 1e-4, 0.01, 0.1, 0.5, 1.2, 2.1, -1e-6, -0.01, -0.3, -1, -2.1};
         int i, o, k;
         for (i = 0; i < 12; i++) {
@@ -740,8 +740,8 @@ int main(int argc, char **argv) {
             soup_free(&p);
         }
     }
-    TEST("over the bottom of a valley the force is the plane's while the fold is less than the overlap, and two "
-         "contacts' when it is more") {
+    TEST("at the bottom of a valley the force is the plane's for a fold below the overlap, and that of two contacts "
+         "above") {
         static const double angle[6] = {1e-6, 4.5e-5, 1e-3, 0.05, 0.3, 1.5};
         int i, o;
         for (i = 0; i < 6; i++) {
@@ -758,7 +758,7 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("in a corner of three planes and on a tip, cut at random, a ball feels what three triangles give") {
+    TEST("in a corner of three planes and on a tip, cut at random, a ball feels three triangles") {
         static const double slope[6] = {1e-5, 0.05, 0.6, -0.05, -0.6, -1.2};
         int i, o, k;
         for (i = 0; i < 6; i++)
@@ -776,8 +776,8 @@ int main(int argc, char **argv) {
                 soup_free(&c);
             }
     }
-    TEST("the force has no jump on any way over bumps, rims, valleys, corners and in a drum, and its work is what "
-         "the contacts store") {
+    TEST("the force is continuous along any path over bumps, rims, valleys, corners and in a drum, and its work is "
+         "stored energy") {
         const dem_vec3 none = at(0, 0, 0);
         int i;
         (void)none;
@@ -797,8 +797,8 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("an ellipsoid that turns on its way over bumps, rims and profiles: force and torque have no jump where "
-         "no ring opens, their work is what the contacts store") {
+    TEST("an ellipsoid's force and torque over bumps, rims and profiles are continuous, and their work is stored "
+         "energy") {
         int i;
         for (i = 0; i < 6; i++) {
             static const char *const name[6] = {"ellipsoid: bumps of .15 r", "ellipsoid: small bumps", "ellipsoid: rim",
@@ -851,7 +851,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("slivers lower than what is welded, and triangles without area, on a sheet change nothing") {
+    TEST("slivers below the weld tolerance and triangles without area leave the force on a sheet unchanged") {
         int i;
         for (i = 0; i < 5; i++) {
             soup s = valley_of(0, 100, 3), c = bumps_of(10, 0.3, 0, 0, 1);
@@ -891,8 +891,8 @@ int main(int argc, char **argv) {
             soup_free(&c);
         }
     }
-    TEST("a ball on a round hole, in a cone and in a hopper's outlet is held by the ring in which it touches, however "
-         "many facets that has: at least as by one contact") {
+    TEST("the contact ring holds a ball on a round hole, in a cone and in an outlet at least as one contact, for any "
+         "facets") {
         int kind, n, o;
         for (kind = 0; kind < 3; kind++)
             for (n = 6; n <= 400; n *= 4)
@@ -912,7 +912,7 @@ int main(int argc, char **argv) {
                     soup_free(&s);
                 }
     }
-    TEST("a sheet with holes small against the overlap's patch pushes as much as a plane, and never pulls") {
+    TEST("a sheet with holes small against the contact patch repels as much as a plane, and never attracts") {
         int i, j, o;
         double pitch;
         for (pitch = 0.4; pitch > 0.04; pitch /= 2) {
@@ -952,7 +952,7 @@ int main(int argc, char **argv) {
                          ? "plane, ellipsoid, Hertz" : "plane, cluster, Hertz, each",
                          impacts_shared(k%3, k/3, 12, DEM_CLUSTER_CONTACTS_SEPARATE), 0, 0, 0, limit_plane());
     }
-    TEST("elastic impacts on rims, bumps, drums, boxes and profiles keep the energy as those on a plane do") {
+    TEST("elastic impacts on rims, bumps, drums, boxes and profiles conserve energy as on a plane") {
         int i, k;
         for (i = 0; i < surface_count; i++) {
             soup s = surface_of(i);
@@ -966,7 +966,7 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("elastic impacts of ellipsoids on planes, cylinders, walls of grains, meshes and profiles keep the energy") {
+    TEST("elastic impacts of ellipsoids on planes, cylinders, walls of grains, meshes and profiles conserve energy") {
         int i;
         for (i = 1; i < 4; i++)
             impacts_fall(i == 1 ? "inside of a cylinder, ellipsoid" : i == 2 ? "outside of a cylinder, ellipsoid"
@@ -980,7 +980,7 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("elastic impacts of clusters whose contacts are shared keep the energy on planes, bumps and rims") {
+    TEST("elastic impacts of clusters with merged contacts conserve energy on planes, bumps and rims") {
         int i, hertz;
         for (i = -1; i < surface_count; i++) {
             soup s = surface_of(DEMI_MAX(i, 0));
@@ -1010,8 +1010,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("over the seam of two boxes, or of two profiles, a ball feels the plane's force, each wall bears its part, and "
-         "the parts add up to it; not so when one of the walls moves against the other") {
+    TEST("across the seam of two walls a ball feels the plane's force, split between them; not if one wall moves") {
         int kind, o, i;
         for (kind = 0; kind < 7; kind++) {      /* same size, other diagonals, other sizes, cut; profiles */
             soup a = kind == 5 || kind == 6 ? soup_of(2) : box_of_facets(-3, -3, -2, 0, 3, 0, 0), b = soup_of(3);
@@ -1067,8 +1066,7 @@ int main(int argc, char **argv) {
             soup_free(&b);
         }
     }
-    TEST("friction goes on over the seam of two walls: a ball held on a slope that straddles it stays, and one that "
-         "slides or rolls over it does so as over a plane") {
+    TEST("friction carries over the seam of two walls: a ball sticks, slides or rolls across it as on a plane") {
         int kind, way;
         for (way = 0; way < 3; way++) {         /* held; slides; rolls */
             dem_vec3 x[3], v[3], spin[3];
@@ -1138,7 +1136,7 @@ int main(int argc, char **argv) {
             }
         }
     }
-    TEST("a ball rolls in a drum of facets as in a smooth one, from rest a quarter turn down: speed, spin and energy") {
+    TEST("a ball rolls a quarter turn down in a drum of facets as in a smooth one: speed, spin and energy") {
         static const int facets[5] = {0, 100, 300, 700, 2000};
         double speed[5], turn[5], energy[5];
         int k;
@@ -1204,7 +1202,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(a.world);
         soup_free(&s);
     }
-    TEST("a sheet given twice or three times, either way round, pushes once") {
+    TEST("a sheet given two or three times, in either winding, repels once") {
         int i, k;
         for (i = 0; i < 4; i++) {
             soup s = bumps_of(10, 0.3, 0.05, 0, 2), c = bumps_of(10, 0.3, 0.05, 0, 2);
@@ -1229,8 +1227,7 @@ int main(int argc, char **argv) {
             soup_free(&c);
         }
     }
-    TEST("a far vertex or a place far from the origin leaves a mesh as it was, or is refused: never a floor that is "
-         "not there") {
+    TEST("a mesh with a far vertex or far from the origin keeps its contacts, or is rejected with an error") {
         static const double far_off[4] = {1e3, 1e5, 1e6, 1e30};
         int i, k;
         for (i = 0; i < 8; i++) {
@@ -1272,7 +1269,7 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("corners near an edge are found as by looking at all, and few others are looked at however long the edge") {
+    TEST("the search for corners near an edge finds all of them and tests few others, for any length of edge") {
         enum { POINTS = 4000 };
         static double x[3*POINTS];
         dem_world_desc desc = DEM_WORLD_DESC;
@@ -1327,7 +1324,7 @@ int main(int argc, char **argv) {
         CHECK(looked < 133*40);                 /* 133 searches; each ends in a leaf or two a rim */
         dem_world_destroy(w);
     }
-    TEST("a coordinate that is no number is refused by name") {
+    TEST("a mesh coordinate that is NaN is rejected with an error that names it") {
         dem_real x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
         int32_t t[3] = {0, 1, 2};
         dem_mesh mesh;
@@ -1343,8 +1340,7 @@ int main(int argc, char **argv) {
         CHECK(dem_wall_mesh_add(q.world, q.material, &mesh).id == 0);
         dem_world_destroy(q.world);
     }
-    TEST("a ball that starts exactly above a vertex, an edge, a rim or a corner, above or below, in any frame, feels "
-         "one plane; as a disc in a plane world does over a profile") {
+    TEST("a ball released exactly above a vertex, edge, rim or corner feels one plane, in any frame and in 2D") {
         static const double spot[6][2] = {{0, 0}, {0.4, 0}, {0.4, 0.4}, {1.6, 0.4}, {1.6, 1.6}, {0.2, 0.3}};
         int i, k, side;
         for (k = 0; k < 6; k++) {
@@ -1399,7 +1395,7 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("two meshes that turn together are one surface on their way") {
+    TEST("two meshes that rotate together act as one surface") {
         soup a = box_of_facets(-3, -3, -2, 0, 3, 0, 0), b = box_of_facets(0, -2, -1, 3, 4, 0, 1);
         rail q = rail_begin(1);
         dem_motion m = DEM_MOTION;
@@ -1432,8 +1428,8 @@ int main(int argc, char **argv) {
         soup_free(&a);
         soup_free(&b);
     }
-    TEST("balls and ellipsoids on two meshes: the same bits from 1 and 2 threads, from every search, and after "
-         "a checkpoint in the middle") {
+    TEST("balls and ellipsoids on two meshes have the same bits for 1 and 2 threads, any search, and after a "
+         "checkpoint") {
         static const dem_search search[4] = {DEM_SEARCH_GRID, DEM_SEARCH_HIERARCHICAL, DEM_SEARCH_ALL_PAIRS,
                                              DEM_SEARCH_LINKED_LIST};
         uint64_t hash[6];

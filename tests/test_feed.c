@@ -150,7 +150,7 @@ int main(int argc, char **argv) {
     const dem_feed first = {1};
     test_begin(argc, argv);
 
-    TEST("a feed of 100 grains/s has fed each when it is due, in random sizes by number") {
+    TEST("a feed of 100 grains/s inserts each grain when it is due, with random sizes by number") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);
         const dem_feed_desc d = feed_of(stuff, 100);
@@ -206,7 +206,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a limited feed gives exactly what there is, all at once or at a rate, and then is done") {
+    TEST("a limited feed inserts exactly its amount, at once or at a rate, and is then done") {
         int way;
         for (way = 0; way < 2; way++) {
             dem_world *world = world_of(9.81, 2e-5);
@@ -236,7 +236,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("grains come to rest only when every feed has brought its grains: dem_world_settle waits for them") {
+    TEST("dem_world_settle waits until every feed has inserted its grains") {
         /* all at once, at a rate, from 0.2 s on, by mass, until 0.15 s; each under springs and impulses */
         int way;
         for (way = 0; way < 10; way++) {
@@ -272,7 +272,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a feed that never ends, or is not done in time, is named by dem_world_settle") {
+    TEST("dem_world_settle names a feed that never ends or is not done in time") {
         dem_world *world = world_of(9.81, 1e-4);
         dem_material stuff = soft(world, 100);
         dem_feed_desc d = feed_of(stuff, 1000);
@@ -297,7 +297,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("an id that was never given is told from that of a wall which was removed, and a feed without classes says what to do") {
+    TEST("errors distinguish an id never given from a removed wall, and a feed without classes gets advice") {
         dem_world *world = world_of(9.81, 1e-4);
         dem_material stuff = soft(world, 100);
         const dem_wall wall = dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
@@ -324,7 +324,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a feed without room keeps its grains until there is some") {
+    TEST("a feed without room holds its grains back until there is room") {
         dem_world *world = world_of(0, 1e-4);
         dem_material stuff = soft(world, 1);
         dem_feed_desc d = feed_of(stuff, 1000);
@@ -344,7 +344,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("an outlet keeps its wall, and the digest tells feeds apart by their random state") {
+    TEST("the wall of an outlet cannot be removed, and the digest distinguishes feeds by their random state") {
         uint64_t hash[2];
         int i;
         for (i = 0; i < 2; i++) {
@@ -369,7 +369,7 @@ int main(int argc, char **argv) {
         CHECK(hash[0] != hash[1]);
     }
 
-    TEST("a feed is done when its last grain has come: not while some wait, nor a step later") {
+    TEST("a feed is done when its last grain is inserted: not while some wait, nor a step later") {
         dem_world *world = world_of(0, 1e-5);
         dem_material stuff = soft(world, 1000);
         dem_feed_desc d = feed_of(stuff, 1e5);
@@ -401,7 +401,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a feed from beyond a periodic domain finds those it fed there") {
+    TEST("a feed beyond a periodic domain finds the grains that it inserted there") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_feed_desc d;
@@ -422,7 +422,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("outlets count by class and by what is wanted, standing still and on a turning wall") {
+    TEST("outlets count by class and by wanted size, at rest and on a rotating wall") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);
         dem_wall wall = dem_wall_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
@@ -480,7 +480,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("fed = present + left, by class, at every step of a tumbling machine") {
+    TEST("fed = present + left, by class, at every step of a rotating drum machine") {
         machine m;
         sorting sorted;
         int i, bad = 0;
@@ -498,8 +498,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(m.world);
     }
 
-    TEST("grains that are fed join the list of neighbours: they meet the others as if it had been made anew for "
-         "each of them, whatever the search") {
+    TEST("inserted grains join the neighbour list and collide as with a list rebuilt for each, for every search") {
         static const dem_search searches[] = {DEM_SEARCH_GRID, DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_LINKED_LIST};
         uint64_t hash[3], rebuilds[2] = {0, 0};
         double apart = 0;
@@ -557,8 +556,7 @@ int main(int argc, char **argv) {
         CHECK(hash[0] == hash[2]);
     }
 
-    TEST("an outlet takes a grain within half a skin or 64 steps of its coming in, and hardly a list more is made for "
-         "those that leave one by one") {
+    TEST("an outlet removes a grain within half a skin or 64 steps, with hardly any extra list rebuild") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material stuff;
@@ -600,7 +598,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a fed machine goes on from a checkpoint bit for bit, with any number of threads") {
+    TEST("a machine with feeds resumes from a checkpoint bit for bit, with any number of threads") {
         static const char path[] = "build/tmp/feed.ckpt";
         machine a, b;
         dem_feed_state fa, fb;
@@ -628,8 +626,8 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("a mixture: classes of their own material and shape, sizes drawn from distributions, come by their shares, in all "
-         "orientations, with the mass of their volume") {
+    TEST("a mixture feeds classes of different material, shape and size distribution in their fractions and "
+         "orientations") {
         dem_world *world = world_of(0, 1e-4);
         const dem_material plastic = soft(world, 1), metal = soft(world, 1);
         dem_sizes fine_sizes = DEM_SIZES, wide = DEM_SIZES;
@@ -695,8 +693,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a mixture goes on from a checkpoint, and in slabs, with the bits of the run that did not stop; walls that do not know "
-         "what it will bring are refused") {
+    TEST("a mixture resumes from a checkpoint and in slabs with the same bits; walls that cannot touch its shapes are "
+         "rejected") {
         const char *path = "build/tmp/mixture.dem";
         uint64_t hash[3];
         int k;
@@ -748,7 +746,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("feeds and outlets with bad values are refused by name") {
+    TEST("feeds and outlets with bad values are rejected with the value named") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);
         dem_feed_desc d = feed_of(stuff, 0);
@@ -784,8 +782,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("an outlet that keeps counts who comes through a plane and who goes back, by class and material; who is beyond it is "
-         "told at any time; who began there has not come; a restart counts on") {
+    TEST("an outlet with keep counts crossings of a plane in both directions by class, and its present grains") {
         dem_world *world[2];
         dem_outlet_desc d;
         dem_outlet below, only;

@@ -29,8 +29,8 @@ static dem_field field_of(dem_world *world, dem_box box, int x, int y, int z, do
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("two spheres pressed together: stress times volume is force times branch, in cells, coarse-grained, across a "
-         "periodic face, in a plane") {
+    TEST("two spheres in contact: stress times volume is force times branch vector, in cells, coarse-grained, "
+         "periodic, planar") {
         int periodic, planar, width;
         for (periodic = 0; periodic < 2; periodic++)
             for (planar = 0; planar < 2; planar++)
@@ -65,8 +65,7 @@ int main(int argc, char **argv) {
                 }
     }
 
-    TEST("in a bed at rest the vertical stress is the weight above over the area, at every height, and the grains "
-         "carry each contact twice") {
+    TEST("in a bed at rest the vertical stress is the weight above per area, and the grains carry each contact twice") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material m;
@@ -124,7 +123,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a dilute gas presses by its motion: density times temperature, whatever its mean velocity") {
+    TEST("the kinetic pressure of a dilute gas is density times temperature, for any mean velocity") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material m;
@@ -178,7 +177,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a field asks for what it can be: bad widths and classes are refused with what they are") {
+    TEST("fields with bad widths and classes are rejected with the value named") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);
         dem_field_desc d;

@@ -127,7 +127,7 @@ static void meshes(void) {
     static char text[20000];
     static unsigned char bytes[2000];
 
-    TEST("the box of [MIL] Fig 5.12 is read, closed and healthy") {
+    TEST("the box of [MIL] Fig 5.12 reads as closed and healthy") {
         CHECK_EQ(parse(world, box_text, &mesh, &health), DEM_OK);
         CHECK_EQ(mesh.vertex_count, 8);
         CHECK_EQ(mesh.triangle_count, 12);
@@ -154,7 +154,7 @@ static void meshes(void) {
             dem_mesh_free(world, &mesh);
         }
     }
-    TEST("STL as text and as binary give the mesh they were made of, with places merged to corners") {
+    TEST("text and binary STL give the mesh they were made of, with coincident corners merged") {
         dem_mesh box;
         parse(world, box_text, &box, 0);
         for (int form = 0; form < 3; form++) { /* text; binary; binary that claims to be text */
@@ -172,7 +172,7 @@ static void meshes(void) {
         }
         dem_mesh_free(world, &box);
     }
-    TEST("convex OBJ faces are cut into fans, may carry textures and may count backwards") {
+    TEST("convex OBJ faces become fans, with texture indices and negative indices allowed") {
         CHECK_EQ(parse(world, box_obj, &mesh, &health), DEM_OK);
         CHECK_EQ(mesh.vertex_count, 8);
         CHECK_EQ(mesh.triangle_count, 12);
@@ -181,7 +181,7 @@ static void meshes(void) {
         for (int i = 0; i < 6 && mesh.triangles; i++) CHECK_EQ(mesh.triangles[6 + i], expected[i]);
         dem_mesh_free(world, &mesh);
     }
-    TEST("faces that are not convex are cut into triangles that cover them once and face the same way") {
+    TEST("non-convex faces become triangles that cover them once with the same winding") {
         static const struct { const char *face; double area; int split, bent, crossed; } faces[] = {
             {"v 0 0 0\nv 4 0 0\nv 4 2 0\nv 2 .5 0\nv 0 2 0\nf 2 3 4 5 1\n", 5, 1, 0, 0},            /* a notch */
             {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf 3 4 5 6 1 2\n", 5, 1, 0, 0},   /* an L */
@@ -218,14 +218,14 @@ static void meshes(void) {
             dem_mesh_free(world, &mesh);
         }
     }
-    TEST("a face that a backslash carries on hides the line that follows, whatever that is") {
+    TEST("a backslash that continues a face hides the next line, whatever it is") {
         CHECK_EQ(parse(world, "v 0 0 0\nv 1 0 0 \\\nv 0 1 0\nf 1 2 3 \\\nv 9 9 9\n", &mesh, &health), DEM_ERROR_FORMAT);
         CHECK_EQ(parse(world, "v 0 0 0\nv 1 0 \\\nv 0 1 0\nf 1 2 3\n", &mesh, &health), DEM_ERROR_FORMAT);
         CHECK_EQ(parse(world, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n", &mesh, &health), DEM_OK);
         CHECK_EQ(mesh.triangle_count, 1);
         dem_mesh_free(world, &mesh);
     }
-    TEST("random faces that lean are cut into triangles of the same area, all facing the same way") {
+    TEST("random inclined faces become triangles of the same area and winding") {
         uint64_t random = 7;
         int trial, i;
         for (trial = 0; trial < 300; trial++) {
@@ -262,7 +262,7 @@ static void meshes(void) {
             dem_mesh_free(world, &mesh);
         }
     }
-    TEST("a comb of 2000 teeth in one face keeps its area, a larger one is refused with the limit") {
+    TEST("a face of 2000 comb teeth keeps its area; a larger one is rejected with the limit named") {
         enum { TEETH = 2000, MORE = 5000 };
         static char comb[40*2*MORE + 8*2*MORE + 200];
         int teeth, i;
@@ -302,7 +302,7 @@ static void meshes(void) {
         CHECK_EQ(health.slivers, 3);
         dem_mesh_free(world, &mesh);
     }
-    TEST("a mesh that looks like millimetres is told so, and one that was scaled twice") {
+    TEST("mesh health hints at millimetres and at a mesh scaled twice") {
         CHECK_EQ(parse(world, "3 1\n0 0 0\n300 0 0\n0 120 0\n1 2 3\n", &mesh, &health), DEM_OK);
         CHECK_STR(health.hint, "largest extent is 300 m: the file may be in millimetres; multiply its vertices by 0.001");
         dem_mesh_free(world, &mesh);
@@ -310,7 +310,8 @@ static void meshes(void) {
         CHECK_STR(health.hint, "multiply its vertices by 1000");
         dem_mesh_free(world, &mesh);
     }
-    TEST("a mesh in millimetres is scaled, turned and placed in one call; what is not finite or no scale is refused, and it stays") {
+    TEST("dem_mesh_place scales, rotates and moves a mesh; values that are not finite are rejected and leave it "
+         "unchanged") {
         const dem_quat quarter = dem_quat_make((dem_real)sqrt(0.5), 0, 0, (dem_real)sqrt(0.5)), none = dem_quat_make(0, 0, 0, 0);
         CHECK_EQ(parse(world, "3 1\n0 0 0\n300 0 0\n0 120 0\n1 2 3\n", &mesh, &health), DEM_OK);
         CHECK_EQ(dem_mesh_place(world, &mesh, DEM_R(1e-3), quarter, at(1, 2, 3)), DEM_OK);       /* x to y, y to -x */
@@ -329,7 +330,7 @@ static void meshes(void) {
         CHECK_NEAR(mesh.vertices[4], 2.3, 1e-6);
         dem_mesh_free(world, &mesh);
     }
-    TEST("progress written into a file is a line for every tenth of each run, without line feeds of a terminal") {
+    TEST("progress written to a file is one line per tenth of each run, without terminal control characters") {
         char line[200];
         int lines = 0, returns = 0;
         FILE *file = fopen("build/tmp/progress.txt", "w+");
@@ -354,7 +355,7 @@ static void meshes(void) {
         setlocale(LC_NUMERIC, "C");
         CHECK_STR(demi_format_real(number, -1.25e-10, 9), "-1.25e-10");
     }
-    TEST("a number is read to the last bit") {
+    TEST("number parsing is exact to the last bit") {
         CHECK_EQ(parse(world, "3 1\n0.1 0.3333333333333333148 2.2250738585072014e-308\n1 0 0\n0 1 0\n1 2 3\n", &mesh, 0), DEM_OK);
         if (mesh.vertices) CHECK(mesh.vertices[0] == DEM_R(0.1) && mesh.vertices[1] == DEM_R(1.0/3));
         dem_mesh_free(world, &mesh);
@@ -369,7 +370,7 @@ static void bad_meshes(void) {
     dem_mesh mesh;
     dem_mesh_health health;
 
-    TEST("what is wrong with a mesh is told with call, file, line, finding, limit and remedy") {
+    TEST("a mesh error names call, file, line, finding, limit and remedy") {
         const char *const bad[][2] = {
             {"", "end of the file"},
             {"   \n# nothing\n\n", "end of the file"},
@@ -414,7 +415,7 @@ static void bad_meshes(void) {
             CHECK_EQ(p.bytes, held);
         }
     }
-    TEST("a count that promises more than the file holds is refused before memory is asked for") {
+    TEST("a count beyond the size of the file is rejected before any memory is allocated") {
         const char *const lies[] = {"700000000 700000000\n0 0 0\n", "3 500000000\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n"};
         unsigned char binary[84] = {0};
         for (int i = 0; i < 2; i++) {
@@ -430,7 +431,7 @@ static void bad_meshes(void) {
         CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
         CHECK_EQ(p.bytes, held);
     }
-    TEST("a binary STL with a coordinate that is not a number is refused with its byte") {
+    TEST("a binary STL with a coordinate that is NaN is rejected with its byte named") {
         unsigned char bytes[134] = {0};
         bytes[80] = 1;
         bytes[84 + 12 + 4*4 + 2] = 0xC0; bytes[84 + 12 + 4*4 + 3] = 0x7F; /* nan */
@@ -440,7 +441,7 @@ static void bad_meshes(void) {
         CHECK_EQ(dem_mesh_parse(world, "x.stl", bytes, sizeof bytes, &mesh, 0), DEM_ERROR_FORMAT);
         CHECK_EQ(p.bytes, held);
     }
-    TEST("no beginning of a valid file crashes or leaks") {
+    TEST("every truncation of a valid file neither crashes nor leaks") {
         static char text[20000];
         dem_mesh box;
         int readable = 0;
@@ -463,7 +464,7 @@ static void bad_meshes(void) {
         CHECK(readable >= 4);
         CHECK_EQ(p.bytes, held);
     }
-    TEST("every allocation of a reader may fail: DEM_ERROR_MEMORY, an empty mesh, nothing leaked") {
+    TEST("every failing allocation of a reader gives DEM_ERROR_MEMORY, an empty mesh and no leak") {
         static char text[20000];
         dem_mesh box;
         dem_profile profile;
@@ -496,7 +497,7 @@ static void bad_meshes(void) {
         dem_mesh_free(world, &box);
         remove("build/tmp/box.txt");
     }
-    TEST("a file that is not there, a folder and a null name are refused by name") {
+    TEST("reading a missing file, a folder or a null name fails with the name") {
         CHECK_EQ(dem_mesh_read(world, "build/tmp/none.stl", &mesh, &health), DEM_ERROR_FILE);
         CHECK_STR(dem_world_error_get(world), "dem_mesh_read: cannot read build/tmp/none.stl: ");
         CHECK_EQ(dem_mesh_read(world, "build/tmp", &mesh, 0), DEM_ERROR_FILE);
@@ -507,7 +508,7 @@ static void bad_meshes(void) {
         dem_mesh_free(world, 0);
         CHECK_EQ(p.bytes, held);
     }
-    TEST("a large file is read whole, and errors in it name the line") {
+    TEST("a large file is read completely, and its errors name the line") {
         const int n = 20000;
         char *text = (char *)malloc((size_t)n*48);
         size_t size;
@@ -529,7 +530,7 @@ static void bad_meshes(void) {
         CHECK_EQ(p.bytes, held);
     }
     dem_world_destroy(world);
-    TEST("a world that read meshes gives back all its memory") CHECK_EQ(p.bytes, 0);
+    TEST("a world that read meshes frees all its memory") CHECK_EQ(p.bytes, 0);
 }
 
 static void profiles(void) {
@@ -537,7 +538,7 @@ static void profiles(void) {
     dem_world *world = world_make(&p);
     const size_t held = p.bytes;
     dem_profile profile;
-    TEST("a profile is read from memory and from a file") {
+    TEST("a profile reads equally from memory and from a file") {
         for (int from_file = 0; from_file < 2; from_file++) {
             file_put("build/tmp/profile.txt", profile_text, strlen(profile_text));
             if (from_file) CHECK_EQ(dem_profile_read(world, "build/tmp/profile.txt", &profile), DEM_OK);
@@ -552,7 +553,7 @@ static void profiles(void) {
         }
         remove("build/tmp/profile.txt");
     }
-    TEST("a bad profile is refused with its line") {
+    TEST("a bad profile is rejected with its line named") {
         const char *const bad[][2] = {{"", "end of the file"}, {"2 1\n0 0\n1 1\n1 3\n", "line 4: found '3'"},
             {"2 1\n0 0\n1 1\n2 2\n", "same corner twice"}, {"2 1\n0 0 0\n1 1 0\n1 2\n", "line 2: found '0'"},
             {"2 1\n0 0\n1 1\n1 2\n1", "line 5"}, {"solid x\n", "found 'solid'"}};
@@ -574,7 +575,7 @@ static void pictures(void) {
     dem_world *world = three_make(0);
     size_t size;
 
-    TEST("a VTP file announces its arrays and carries radii where it says") {
+    TEST("a VTP file declares its arrays and holds radii at the declared offset") {
         CHECK_EQ(dem_vtp_write(world, "build/tmp/three.vtp"), DEM_OK);
         char *text = file_get("build/tmp/three.vtp", &size);
         CHECK(text != 0);
@@ -609,7 +610,7 @@ static void pictures(void) {
         for (int i = 0; i < 3; i++) CHECK_EQ(end[4*i + 3], b.materials[i]);
         free(text);
     }
-    TEST("an extended XYZ file tells positions, radii, velocities and ids, and the domain as lattice") {
+    TEST("an extended XYZ file has positions, radii, velocities and ids, and the domain as lattice") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material grain;
         dem_world *box;
@@ -639,7 +640,7 @@ static void pictures(void) {
         remove("build/tmp/box.xyz");
         dem_world_destroy(box);
     }
-    TEST("a world without grains or walls is written as files without points") {
+    TEST("a world without grains or walls gives files without points") {
         dem_world *empty = world_make(0);
         for (int i = 0; i < 4; i++) CHECK_EQ(writers[i](empty, "build/tmp/empty.out"), DEM_OK);
         remove("build/tmp/empty.out");
@@ -669,7 +670,7 @@ static void walls(void) {
     plane = dem_wall_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     moved = dem_wall_mesh_add(world, steel, &mesh);
 
-    TEST("walls are drawn where they are now, profiles between z0 and z1, endless walls not at all") {
+    TEST("walls are drawn at their present pose, profiles between z0 and z1, infinite walls not at all") {
         dem_motion motion = DEM_MOTION;
         motion.kind = DEM_MOTION_USER;
         motion.function = quarter;
@@ -698,8 +699,7 @@ static void walls(void) {
         }
         free(text);
     }
-    TEST("bodies are drawn as surfaces: a cube by its six faces, a ball and each sphere of a cluster by facets on it, with "
-         "what they carry at every corner") {
+    TEST("bodies are drawn as surfaces, cubes by six faces and balls by facets, with their data at every corner") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_real cube[24], pair[6] = {0, 0, 0, 1, 0, 0}, *numbers;
         dem_cluster_desc cluster = DEM_CLUSTER_DESC;
@@ -741,12 +741,12 @@ static void walls(void) {
         free(data);
         dem_world_destroy(w);
     }
-    TEST("profiles cannot be drawn between z1 and z0") {
+    TEST("profiles cannot be drawn with z1 below z0") {
         dem_wall_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
         CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", 1, 1), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error_get(world), "z0 is 1 and z1 is 1");
     }
-    TEST("loads are appended line by line under one heading") {
+    TEST("wall loads are appended line by line under one heading") {
         const char *const path = "build/tmp/loads.csv";
         remove(path);
         CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
@@ -771,7 +771,7 @@ static void walls(void) {
         free(text);
         remove(path);
     }
-    TEST("loads of a wall that is not there, or into a folder that is not there, are refused") {
+    TEST("writing loads of a missing wall, or into a missing folder, fails") {
         dem_wall none;
         none.id = 77;
         CHECK_EQ(dem_wall_loads_csv_write(world, none, "build/tmp/none.csv"), DEM_ERROR_ARGUMENT);
@@ -812,7 +812,7 @@ static void whole_or_absent(void) {
             CHECK(nothing_beside("build/tmp"));
         }
     }
-    TEST("a file is replaced as a whole, and nothing temporary is left") {
+    TEST("a file is replaced as a whole, and no temporary file stays") {
         for (int i = 0; i < 4; i++) {
             file_put("build/tmp/old.out", "old", 3);
             CHECK_EQ(writers[i](world, "build/tmp/old.out"), DEM_OK);
@@ -823,7 +823,7 @@ static void whole_or_absent(void) {
         }
         remove("build/tmp/old.out");
     }
-    TEST("writing a file leaves alone what has its name and .tmp: a file, a link and where it leads") {
+    TEST("writing a file never touches a file or link of its name plus .tmp") {
         remove("build/tmp/victim"); remove("build/tmp/new.out.tmp");
         for (int i = 0; i < 4; i++) {
             file_put("build/tmp/victim", "mine", 4);
@@ -842,7 +842,7 @@ static void whole_or_absent(void) {
         }
         remove("build/tmp/victim");
     }
-    TEST("two writers of one name have a temporary file each, and the last to end gives the file") {
+    TEST("two writers of one name use separate temporary files, and the last one to finish wins") {
         demi_out one, two;
         CHECK_EQ(demi_out_open(&one, world, "one", "build/tmp/same.out"), DEM_OK);
         CHECK_EQ(demi_out_open(&two, world, "two", "build/tmp/same.out"), DEM_OK);
@@ -857,7 +857,7 @@ static void whole_or_absent(void) {
         CHECK(nothing_beside("build/tmp/same.out"));
         remove("build/tmp/same.out");
     }
-    TEST("an empty file stays empty until the one that replaces it is whole") {
+    TEST("an empty file stays empty until its complete replacement") {
         demi_out out;
         file_put("build/tmp/empty.out", "", 0);
         CHECK_EQ(demi_out_open(&out, world, "empty", "build/tmp/empty.out"), DEM_OK);
@@ -870,7 +870,7 @@ static void whole_or_absent(void) {
         CHECK(file_is_there("build/tmp/empty.out") && nothing_beside("build/tmp/empty.out"));
         remove("build/tmp/empty.out");
     }
-    TEST("meshes, profiles, grains and checkpoints are not read from a pipe, a device or a folder") {
+    TEST("readers of meshes, profiles, grains and checkpoints reject a pipe, a device and a folder") {
         static const char *const names[] = {"build/tmp/pipe.in", "/dev/zero", "build/tmp"};
         dem_mesh read;
         dem_profile profile;
@@ -888,7 +888,7 @@ static void whole_or_absent(void) {
         CHECK_EQ(dem_wall_loads_csv_write(world, wall, names[0]), DEM_ERROR_FILE);
         remove("build/tmp/pipe.in");
     }
-    TEST("when the disk is full the older file stays whole") {
+    TEST("on a full disk the older file stays complete") {
         FILE *full = fopen("/dev/full", "wb");
         demi_out out;
         CHECK(1);
@@ -906,7 +906,7 @@ static void whole_or_absent(void) {
         free(text);
         remove("build/tmp/old.out");
     }
-    TEST("every allocation of a writer may fail: DEM_ERROR_MEMORY, no file, nothing leaked") {
+    TEST("every failing allocation of a writer gives DEM_ERROR_MEMORY, no file and no leak") {
         for (int i = 0; i < 4; i++) {
             const size_t held = p.bytes;
             dem_result result = DEM_ERROR_MEMORY;
@@ -941,8 +941,8 @@ int main(int argc, char **argv) {
     pictures();
     walls();
     whole_or_absent();
-    TEST("named parts of a mesh are read one by one, STL and OBJ, each with its own vertices alone; a name that is not there "
-         "is refused with those that are") {
+    TEST("named parts of STL and OBJ meshes are read one by one with only their own vertices; an unknown name is "
+         "rejected with the list") {
         static const char stl[] =
             "solid shell of drum\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"
             "solid lid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 5\nvertex 2 0 5\nvertex 0 2 5\nendloop\nendfacet\n"
@@ -1029,8 +1029,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a machine is named parts of one file, each a wall with its material and motion; where one is refused none is added, "
-         "and the sentence says why") {
+    TEST("dem_wall_parts_add turns named parts of a file into walls with materials and motions, or adds none and says "
+         "why") {
         static const char obj[] = "g shell\nv 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nf 4 5 6\n";
         static const char name[] = "build/tmp/machine.obj";
         const dem_world_desc desc = DEM_WORLD_DESC;

@@ -130,7 +130,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("every law of friction slides on at mu N once it slides") {
+    TEST("every friction law keeps a sliding body sliding at mu N") {
         static const dem_slider sliders[] = {DEM_SLIDER_PARALLEL, DEM_SLIDER_REMAINDER, DEM_SLIDER_SPRING};
         for (k = DEM_TANGENT_VISCOUS; k <= DEM_TANGENT_MINDLIN_RESCALED; k++)
             for (carrier = 0; carrier < CARRIERS; carrier++) {
@@ -144,7 +144,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("a user-defined law that calls a law of friction slides on at mu N") {
+    TEST("a user-defined law that calls a friction law slides at mu N") {
         for (carrier = 0; carrier < CARRIERS; carrier++) {
             slide s = slide_of(carrier, 1.2e-5);
             s.desc.law = slide_law;
@@ -154,7 +154,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("by impulses, too, a steady slide takes mu N") {
+    TEST("steady sliding under impulses takes mu N, too") {
         for (carrier = 0; carrier < CARRIERS; carrier++)
             for (fine = 0; fine < 2; fine++) {
                 slide s = slide_of(carrier, fine ? 5e-5 : 2e-4);
@@ -198,7 +198,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("what slides slides on after a checkpoint, with the same bits") {
+    TEST("a sliding contact resumes from a checkpoint with the same bits") {
         for (k = 0; k < 3*CARRIERS; k++) {
             slide s = slide_of(k%CARRIERS, k/CARRIERS == 2 ? 1e-4 : 1.2e-5), t = s;
             if (k/CARRIERS == 1) { s.desc.law = slide_law; s.desc.law_memory = 3; s.desc.law_vectors = 1; }
@@ -221,7 +221,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("static friction that comes and goes leaves springs and the user's memory as they are") {
+    TEST("static friction set and removed in mid-run keeps springs and the user's memory") {
         for (k = 0; k < 2*CARRIERS; k++) {
             slide s = slide_of(k%CARRIERS, 1.2e-5), t = s;
             dem_material stuff = {1};

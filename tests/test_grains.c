@@ -117,8 +117,7 @@ static size_t pair_vtp(char *out, int form, int wide, int big, int head) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a snapshot that was written as VTP is read back to the last bit, as XYZ to nine digits, materials included, and a "
-         "world of those grains goes on like the first") {
+    TEST("a snapshot reads back to the last bit from VTP and to nine digits from XYZ, and its world continues alike") {
         dem_world *world = heap(), *again = heap(), *text = heap();
         dem_material a, b, own;
         dem_grains g, x;
@@ -174,7 +173,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(text);
     }
 
-    TEST("text and CSV: with names in any order, diameters and comments, or by position; other codes' XYZ by its "
+    TEST("text and CSV read by column names in any order, with diameters and comments, or by position; XYZ by "
          "Properties") {
         dem_world *world = heap();
         dem_grains g;
@@ -215,7 +214,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("cells of a table are read as spreadsheets and programs write them") {
+    TEST("table cells read as spreadsheets and programs write them") {
         static const char *const tables[] = {
             "12,5;3,25;8,75;2\n",                                      /* see below */
             "x;y;z;r\n0,1;0,2;0,3;0,01\n-0,1;0,25;0,35;0,02\n", "0,1;0,2;0,3;0,01\n-0,1;0,25;0,35;0,02\n",
@@ -251,7 +250,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a cell that is empty or does not fit is an error with its line; columns that are not used are named") {
+    TEST("an empty or bad cell is an error with its line, and the reader lists unused columns") {
         dem_world *world = heap();
         dem_grains g;
         refused(world, "x,y,z,r\n1,2,3,.5\n1,,3,.5\n", "line 3: cell 2 (y) is empty");
@@ -278,7 +277,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("dumps of LAMMPS and LIGGGHTS are read as they are: the first frame, with velocities, spins and types") {
+    TEST("dumps of LAMMPS and LIGGGHTS read unchanged: the first frame, with velocities, spins and types") {
         static const char dump[] = "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n-1 1\n-1 1\n0 2\n"
             "ITEM: ATOMS id type type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius \n"
             "1 1 1 0.1 0.2 0.3 0 0 0 1 0 -1 0 0 0 0 5 0 0.01 \n2 2 2 -0.1 0.25 0.35 0 0 0 3 0 2 0 0 0 0 7 0 0.02 \n";
@@ -297,7 +296,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("VTP is read as ascii, base64 and raw bytes, of either order, precision and size of header; compressed it is refused") {
+    TEST("VTP reads as ascii, base64 and raw, in either byte order, precision and header size; compressed VTP is "
+         "rejected") {
         dem_world *world = heap();
         dem_grains g;
         static char text[6000];
@@ -324,7 +324,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("legacy VTK is read, in words as ParaView and LIGGGHTS write it, and in bytes as dem.h does") {
+    TEST("legacy VTK reads as ParaView's and LIGGGHTS' text and as dem.h's binary") {
         static const char words[] = "# vtk DataFile Version 5.1\nvtk # output\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n0 \n"
             "METADATA\nINFORMATION 0\n\nPOINTS 2 double\n0.1 0.2 0.3 -0.1\n0.25 0.35 \n\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION "
             "vtkDataArray\nDATA 2 0.374166 1 \n\nVERTICES 3 2\nOFFSETS vtktypeint64\n0 1 2 \nCONNECTIVITY vtktypeint64\n0 1 \nPOINT_DATA 2\n"
@@ -371,7 +371,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(again);
     }
 
-    TEST("every allocation may fail while grains are read: the error names memory, and nothing is kept") {
+    TEST("every failing allocation of the grain reader gives a memory error and leaves nothing behind") {
         static const char *const texts[] = {"x;y;z;r;vx;vy;vz;omegax;omegay;omegaz;type\n0,1;2;3;,5;1;2;3;4;5;6;1\n",
             "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOINT_DATA 1\nSCALARS radius float\n"
             "LOOKUP_TABLE default\n.5\nVECTORS v float\n1 2 3\n", 0};
@@ -405,7 +405,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("what is wrong with a file of grains is told with its line, and nothing is left behind") {
+    TEST("an error in a grain file names its line and leaves nothing behind") {
         dem_world *world = heap();
         dem_grains g;
         refused(world, "", "line 0: found the end of the file where grains are expected");

@@ -97,8 +97,8 @@ static double impact(const dem_material_desc *m, double speed, int steps, double
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a hysteretic contact loads along k_l, unloads along k_un and is without force at "
-         "(1 - k_l/k_un) of its deepest") {
+    TEST("a hysteretic contact loads along k_l, unloads along k_un and is free of force at (1 - k_l/k_un) of its "
+         "maximum") {
         dem_real memory[DEMI_MEMORY] = {0};
         CHECK_REL(force_at(0.001, memory, 0), KL*0.001, 1e-12);
         CHECK_REL(force_at(0.002, memory, 0), KL*0.002, 1e-12);
@@ -108,8 +108,7 @@ int main(int argc, char **argv) {
         CHECK_REL(force_at(0.003, memory, 0), KL*0.003, 1e-12);
     }
 
-    TEST("a hysteretic contact pulls most at d_ad = (1 - e2) k_l D/(k_l + k_ad e2), and less and "
-         "less down to zero overlap") {
+    TEST("a hysteretic contact attracts most at d_ad = (1 - e2) k_l D/(k_l + k_ad e2), and less down to zero overlap") {
         dem_real memory[DEMI_MEMORY] = {0};
         const double D = 0.003, e2 = KL/(double)KUN, d_ad = (1 - e2)*KL*D/(KL + KAD*e2);
         CHECK_REL(d_ad, D/q, 1e-12);             /* eq 2.49, adhesion as a size, is (kun - kl)/(kun + kad) */
@@ -121,8 +120,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR((double)memory[0], 0, 1e-11);
     }
 
-    TEST("a hysteretic contact reloads with slope k_un from every branch and joins the loading "
-         "line where that slope meets it") {
+    TEST("a hysteretic contact reloads with slope k_un from every branch and joins the loading line where the two "
+         "cross") {
         static const double turn[4] = {0.0029, 0.0021, 0.0015, 0.0004};  /* pushing to pulling */
         int i;
         for (i = 0; i < 4; i++) {
@@ -139,7 +138,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a hysteretic contact dissipates the area of its loop, whatever way it goes") {
+    TEST("a hysteretic contact dissipates the area of its loop on any path") {
         static const double path[] = {0, 0.003, 0.0024, 0.0028, 0.0011, 0.0025, 0.0035, 0.0002,
                                       0.0009, 0};
         dem_real memory[DEMI_MEMORY] = {0};
@@ -172,8 +171,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("a contact without adhesion lasts pi/2 (sqrt(m/k_l) + sqrt(m/k_un)), and restitution may "
-         "be given instead of k_un") {
+    TEST("a contact without adhesion lasts pi/2 (sqrt(m/k_l) + sqrt(m/k_un)); restitution may replace k_un") {
         dem_world *world = world_of(0, 0);
         dem_material_desc m = sticky(0, 0);
         dem_material a, b;
@@ -195,8 +193,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a sticky grain leaves when it is fast enough, with the energy the loop leaves it, and "
-         "stays when it is not") {
+    TEST("a fast sticky grain leaves with the energy that its loop leaves it, and a slow one stays") {
         /* The loop loses k_l D2/2 (1 - e2)(1 + kad/(kl q)); all scale with v2: so whether it leaves
            hangs on the stiffnesses alone, and a wall of gravity is needed to tell speeds apart. */
         const dem_material_desc weak = sticky(KUN, 100), strong = sticky(KUN, 1800);
@@ -211,8 +208,7 @@ int main(int argc, char **argv) {
         CHECK(residual < 2e-3);
     }
 
-    TEST("a sticky grain under a ceiling holds any load below its pull-off force and falls beyond "
-         "it") {
+    TEST("a sticky grain hangs from a ceiling under loads below the maximum adhesive force, and falls above it") {
         /* pressed to D by a push, it can hold kad d_ad; its weight is chosen around that */
         static const double load[2] = {0.97, 1.03};
         int i;
@@ -238,8 +234,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a sticky pair torn apart slowly or at once ends without force, and its next contact "
-         "begins anew") {
+    TEST("a sticky pair separated slowly or at once ends free of force, and its next contact starts fresh") {
         static const double away[2] = {0.002, 3};
         int i;
         for (i = 0; i < 2; i++) {
@@ -276,8 +271,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("depths stay when a list is made anew and when a pair turns round, with friction and "
-         "rolling of every kind") {
+    TEST("maximum overlaps survive rebuilt lists and exchanged pairs, with friction and rolling of every kind") {
         static const dem_tangent_law tangents[3] = {DEM_TANGENT_NONE, DEM_TANGENT_SPRING,
                                                     DEM_TANGENT_MINDLIN_RESCALED};
         int i, k;
@@ -321,8 +315,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a grain that rests on a slope by static friction neither trembles nor creeps, sticky or "
-         "not") {
+    TEST("a grain on a slope held by static friction neither trembles nor creeps, sticky or not") {
         int i;
         for (i = 0; i < 2; i++) {
             dem_material_desc m = sticky(1.2*KL, i ? KAD : 0);
@@ -357,8 +350,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a contact keeps the depth it was loaded to when friction comes into the scene, or goes: ball on ball, ball and "
-         "cluster on a plane") {
+    TEST("a contact keeps its maximum overlap when friction is set or removed: ball on ball, ball and cluster on a "
+         "plane") {
         static const dem_real places[6] = {DEM_R(-0.004), 0, 0, DEM_R(0.004), 0, 0};
         static const dem_real radii[2] = {DEM_R(0.006), DEM_R(0.006)};
         double height[6][3];
@@ -401,7 +394,7 @@ int main(int argc, char **argv) {
         for (run = 0; run < 6; run++)
             for (i = 0; i < 3; i++) CHECK_NEAR(height[run][i], height[run/3*3][i], DEMI_SINGLE ? 1e-7 : 1e-15);
     }
-    TEST("values of the hysteretic law outside their limits are refused, by name") {
+    TEST("values of the hysteretic law outside their limits are rejected with the value named") {
         dem_world *world = world_of(0, 0);
         dem_material_desc m = sticky(KL/2, 0);
         CHECK_EQ(dem_material_add(world, &m).id, 0);

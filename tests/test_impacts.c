@@ -383,8 +383,8 @@ int main(int argc, char **argv) {
             CHECK_NEAR(e_t, rows[i][2], rows[i][3] < 0.001 ? 6e-4 : rows[i][3]);
         }
     }
-    TEST("Chung & Ooi test 5: beyond x = 7 a steel sphere slides through: spin 5, slip x - 7 in "
-         "units of mu v_n") {
+    TEST("Chung & Ooi test 5: beyond x = 7 a steel sphere slides throughout, with spin 5 and slip x - 7 in units of "
+         "mu v_n") {
         static const double x[] = {7, 8, 10, 15, 20};
         size_t i;
         for (i = 0; i < 5; i++) {
@@ -417,8 +417,7 @@ int main(int argc, char **argv) {
        published band up to s = 4.5; at s = 7.8, 11.9 and 24 (-.208 -.258 -.342) such a law gives
        -.076 -.080 -.083, with half that dashpot -.152 -.193 -.220, with none at 24 -.327. No share
        of it meets every point. The next test is the exact one. */
-    TEST("Chung & Ooi test 6: a spinning sphere that sticks meets the digitised beta(s) at s = "
-         "1.19 to 4.5") {
+    TEST("Chung & Ooi test 6: a sticking, spinning sphere reproduces the digitised beta(s) at s = 1.19 to 4.5") {
         static const double rows[][2] = {{1.19, 0.097}, {1.45, 0.119}, {1.74, 0.0996},
                                          {2.09, 0.058}, {3.0, -0.050}, {4.5, -0.140}};
         size_t i;
@@ -429,8 +428,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(spin_beta(nylon, 24, DEM_TANGENT_SPRING, 1, DEM_TENSION_CLIPPED, &e),
                    -0.1155, 0.08);
     }
-    TEST("Chung & Ooi test 6: a spinning sphere that sticks leaves as the contact's own equations "
-         "say, for every law") {
+    TEST("Chung & Ooi test 6: a sticking, spinning sphere leaves as the contact's own equations say, for every law") {
         static const double s[] = {1.19, 1.45, 1.74, 2.09, 3.0, 4.5, 7.8, 11.9, 24};
         size_t i;
         int law, half;
@@ -445,8 +443,7 @@ int main(int argc, char **argv) {
                     CHECK_NEAR(beta, integrate_beta(of, s[i], law, 0.5*half), 2e-3);
                 }
     }
-    TEST("Chung & Ooi test 8: landing on a sphere of 5 times the radius and 1000 times the density "
-         "is landing on a plane") {
+    TEST("Chung & Ooi test 8: landing on a sphere 5 times as large and 1000 times as dense equals landing on a plane") {
         static const double s[] = {0.2, 0.3, 0.5, 0.7};
         size_t i;
         for (i = 0; i < 4; i++) {
@@ -466,7 +463,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("Schwager & Poeschel: tension kept gives the restitution set, tension clipped their "
+    TEST("Schwager & Poeschel: with tension allowed restitution is as set, with tension clipped it follows their "
          "closed form") {
         static const double rows[][2] = {{0.98, 0.980081}, {0.9, 0.902026}, {0.8, 0.808099},
                                          {0.7, 0.718201}, {0.5, 0.550283}, {0.3, 0.397141},
@@ -483,7 +480,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("the ledger closes to 1 in 1000 of what was lost at 25 steps a contact, and at the third power of the step") {
+    TEST("the ledger closes to 1/1000 of the loss at 25 steps per contact, and its error falls as dt^3") {
         /* dashpots and springs at predicted velocities: 6 in 1000, and the square. Phases differ, so that meetings in
            mid-step average out; single precision: round-off of 100 steps of 2e-4 of a radius. */
         static const dem_integrator schemes[] = {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_INTEGRATOR_LEAPFROG, DEM_INTEGRATOR_POSITION_VERLET};

@@ -220,8 +220,8 @@ static double order_of(int scene, double dt, double error[2], double part[2]) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("impulses: a sphere leaves a wall and another sphere with -e times the speed it came with, to round-off, for "
-         "restitutions from 0 to 1") {
+    TEST("impulses: a sphere leaves a wall and another sphere with -e times its approach speed, to round-off, for e "
+         "from 0 to 1") {
         int k, both;
         for (k = 0; k <= 10; k++)
             for (both = 0; both < 2; both++) {
@@ -242,8 +242,8 @@ int main(int argc, char **argv) {
                 dem_world_destroy(world);
             }
     }
-    TEST("impulses: a sphere that slides comes to roll at 5/7 of its speed; meanwhile Coulomb's law keeps it on the floor "
-         "to 1e-9 m, the convex one lifts it by mu v dt") {
+    TEST("impulses: a sliding sphere rolls at 5/7 of its speed; Coulomb's law keeps it on the floor, the convex one "
+         "lifts it mu v dt") {
         int cone;
         for (cone = 0; cone < 2; cone++) {
             dem_material m;
@@ -267,8 +267,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("impulses: a block stays on a slope up to atan mu, 26.565 degrees at 0.5, and slides with g (sin - mu cos) from "
-         "there on; one twice as high as wide tips over at b/h") {
+    TEST("impulses: a block sticks on a slope up to atan mu, slides at g (sin - mu cos) above, and tips at b/h if "
+         "twice as high") {
         const double pi = 3.14159265358979, limit = atan(0.5), part = 0.05*pi/180;
         double spin;
         CHECK_NEAR(slides(limit - part, 0.5, 0.1, 0.05, 0.2, 0), 0, 1e-7);
@@ -280,8 +280,7 @@ int main(int argc, char **argv) {
         slides(atan(0.4) + 0.2*pi/180, 2, 0.1, 0.2, 0.2, &spin);
         CHECK(spin > 1e-3);
     }
-    TEST("impulses: a ball that goes farther than its radius in a step is refused, unless law_range is twice its way: then "
-         "it stops at the floor all the same") {
+    TEST("impulses: motion by more than a radius per step is rejected, unless law_range is twice that distance") {
         int k;
         for (k = 0; k < 2; k++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -324,7 +323,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(scene_state(world, body).velocity.x, 0, 1e-9);
         dem_world_destroy(world);
     }
-    TEST("impulses: eight balls in a bin weigh what they weigh, and stand still") {
+    TEST("impulses: eight balls in a bin load it with their weight and rest") {
         dem_material m;
         dem_world *world = rigid(g, 5e-3, 0, 0.4, DEM_CONE_COULOMB, 1, &m);
         dem_wall_loads loads;
@@ -340,8 +339,8 @@ int main(int argc, char **argv) {
         CHECK(dem_totals_get(world).kinetic < 1e-12);
         dem_world_destroy(world);
     }
-    TEST("impulses: stacks of 5, 10 and 50 spheres of 1 m stand for 10 s: no energy, no way aside, no spin; the contacts "
-         "carry the weight above them") {
+    TEST("impulses: stacks of 5, 10 and 50 spheres of 1 m are stable for 10 s without drift or spin, and contacts "
+         "carry the weight") {
         static const int counts[3] = {5, 10, 50};
         int l, k;
         for (l = 0; l < 3; l++) {
@@ -363,8 +362,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("impulses: a pyramid of three discs stands where the friction between them is 2 - sqrt 3 and on the floor 0.0893, "
-         "and falls where either is 2 % less") {
+    TEST("impulses: a pyramid of three discs is stable with friction 2 - sqrt 3 in it and 0.0893 below, and falls "
+         "with 2 % less") {
         const double between = 2 - sqrt(3.0), floor = 0.0893164;
         CHECK_NEAR(pyramid(1.02*between, 1.02*floor), 0, 1e-4);
         CHECK(pyramid(0.98*between, 1.02*floor) > 1e-2);
@@ -386,8 +385,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("impulses: in 20,000 random impacts of two spheres energy never rises, momentum and angular momentum stay to "
-         "round-off, and the ledger closes") {
+    TEST("impulses: in 20,000 random impacts of two spheres energy never rises, momenta hold to round-off, the ledger "
+         "closes") {
         uint64_t random = 7;
         double most = -1, off = 0, left = 0;
         int k, i;
@@ -416,8 +415,8 @@ int main(int argc, char **argv) {
         CHECK(left < 1e-12);
         CHECK_NEAR(off, 0, 1e-13);
     }
-    TEST("impulses: grains of all kinds in a drum give the same bits for 1, 2, 3, 4 and 8 threads, in a second world, and "
-         "after a restart; power in is heat") {
+    TEST("impulses: grains of all kinds in a drum have the same bits for 1 to 8 threads and after a restart; power "
+         "becomes heat") {
         static const int threads[5] = {1, 2, 3, 4, 8};
         dem_world *world = drum(1, 200), *other;
         dem_ledger l;
@@ -449,8 +448,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(other);
         remove("build/tmp/impulses.ckpt");
     }
-    TEST("impulses: in a drum walls bear what changes momentum, to round-off, and angular momentum; their power is spin "
-         "times torque") {
+    TEST("impulses: loads on drum walls equal the change of momenta to round-off, and power is spin times torque") {
         dem_world *world = drum(1, 200);
         const dem_vec3 down = at(0, 0, -g);
         double force = 0, torque = 0, power = 0, weight, size = 0;
@@ -487,7 +485,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(power/(5*size), 0, 1e-9);
         dem_world_destroy(world);
     }
-    TEST("impulses: a world without dt, with a law of its own, another integrator or an unknown choice is refused") {
+    TEST("impulses: a world without dt, with a user-defined law, an integrator or an unknown choice is rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         desc.response = DEM_RESPONSE_IMPULSES;
         CHECK_STR(dem_world_create_error_get(&desc), "dt is 0 s");
@@ -502,7 +500,7 @@ int main(int argc, char **argv) {
         desc.sweeps = -1;
         CHECK_STR(dem_world_create_error_get(&desc), "sweeps");
     }
-    TEST("impulses: a living world's step may change, and not be left to the library; the world goes on as it was") {
+    TEST("impulses: the step may change in mid-run but not be left to the library, which fails without effect") {
         dem_material m;
         dem_world *world = rigid(g, 1e-3, 0, 0.5, DEM_CONE_COULOMB, 1, &m);
         dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
@@ -517,7 +515,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(dem_world_time_get(world), 0.025, 1e-12);
         dem_world_destroy(world);
     }
-    TEST("impulses: over a periodic face two grains meet, and a pile rests, as they do in the middle of the box") {
+    TEST("impulses: across a periodic face two grains collide and a pile rests as in the middle of the box") {
         double speed[2], high[2];
         int over, k;
         for (over = 0; over < 2; over++) {
@@ -547,8 +545,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(speed[0], speed[1], 1e-12);
         CHECK_NEAR(high[0], high[1], 1e-9);
     }
-    TEST("impulses: contacts keep what they remember when friction comes into the scene: it stands in the digest, and "
-         "the next step needs no more sweeps than one without") {
+    TEST("impulses: contacts keep their history when friction is set, and the next step needs no more sweeps") {
         int later, sweeps[2];
         for (later = 0; later < 2; later++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -582,7 +579,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(sweeps[1], sweeps[0]);
         CHECK(sweeps[0] <= 3);
     }
-    TEST("impulses: the report tells that friction between two materials was used once they have touched") {
+    TEST("impulses: the report counts friction between two materials as used once they have touched") {
         int touch, k;
         for (touch = 0; touch < 2; touch++) {
             dem_effect all[DEM_EFFECTS];
@@ -633,7 +630,7 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(world);
     }
-    TEST("impulses: a Coriolis force on a floor brings no energy in 20 turns, to .2 %") {
+    TEST("impulses: a Coriolis force on a floor adds no energy in 20 revolutions, to 0.2 %") {
         double start, energy;
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc stuff = scene_stuff(0, 0.5, 0, 0);
@@ -656,7 +653,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(energy/start, 1, 2e-3);
         dem_world_destroy(world);
     }
-    TEST("impulses: whatever lies in a plane rests on rolling and spinning friction, fixed neighbours or none") {
+    TEST("impulses: rolling and spinning friction bring bodies in a plane to rest, with fixed neighbours or none") {
         int kind, law;
         for (kind = 0; kind < 4; kind++) for (law = 1; law < 4; law++) {
             dem_world_desc desc = DEM_WORLD_DESC;

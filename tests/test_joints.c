@@ -669,41 +669,41 @@ static void refuses(void) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("joints: a sphere on a ball joint swings with the period of a compound pendulum, within 2e-4, and in "
-         "20 swings neither drifts nor gains")
+    TEST("joints: a sphere on a ball joint swings with the period of a compound pendulum, within 2e-4, for 20 swings")
         swings();
     TEST("joints: a fast top precesses by m g l over its angular momentum (Goldstein 5.7)")
         precesses();
-    TEST("joints: each joint of a chain bears the weights below it, and a motor at rest holds a beam by its "
-         "weight times its arm")
+    TEST("joints: each joint of a chain carries the weights below it, and a motor at rest holds a beam by its weight "
+         "times its arm")
         hangs();
-    TEST("joints: a motor turns by its torque, or up to its speed by at most its torque; the ledger has its work")
+    TEST("joints: a motor drives at its torque, or up to its speed with at most its torque, and the ledger has its "
+         "work")
         turns();
-    TEST("joints: between free bodies they keep momentum and angular momentum to round-off, and energy within .5 %")
+    TEST("joints: between free bodies they conserve momenta to round-off, and energy within 0.5 %")
         keeps();
-    TEST("joints: a drum that a motor turns takes the torque and the power of the same one that moves as a wall")
+    TEST("joints: a motor-driven drum takes the torque and power of the same drum moved as a wall")
         drums();
     TEST("joints: the same bits for threads 1, 2, 3 and 8, after a restart and in a second world")
         repeats();
-    TEST("joints: what cannot be is refused by a sentence; a joint goes with its bodies")
+    TEST("joints: impossible joints are rejected with an error message, and a joint is removed with its bodies")
         refuses();
     TEST("joints: a chain of five hinged boxes that folds up gains no energy, with 1 sweep or 200")
         folds();
     TEST("joints: a chain of 1,000 links holds every gap within 1e-6 of a link, thrown or hung up")
         long_chains();
-    TEST("joints: a closed loop of parallel hinges, which hold more than is needed, moves and stays closed")
+    TEST("joints: an overconstrained closed loop of parallel hinges moves and stays closed")
         loops();
-    TEST("joints: a motor between bodies that are made fixed has no torque, power or work until one is freed")
+    TEST("joints: a motor between fixed bodies has no torque, power or work until one is freed")
         fixed_bodies();
-    TEST("joints: a wall that moves does the work on what is joined to it, and the ledger has it")
+    TEST("joints: a moving wall does work on the bodies joined to it, and the ledger has it")
         driven();
-    TEST("joints: 4,000 joints and bodies that come and go leave memory and a step as they were")
+    TEST("joints: 4,000 joints and bodies added and removed leave memory and cost of a step unchanged")
         ids();
-    TEST("joints: a joint ends with its body or wall: its id is refused at once")
+    TEST("joints: a joint ends with its body or wall, and its id is invalid at once")
         gone();
-    TEST("joints: ids that are not used may be anything; torques beyond 1e12 N m are refused; checkpoints are read")
+    TEST("joints: unused ids may have any value, torques beyond 1e12 N m are rejected, and checkpoints can be read")
         unused_values();
-    TEST("impulses: steps that end above tolerance are counted, printed with progress, and end a run on request")
+    TEST("impulses: steps above tolerance are counted, printed with progress, and end a run on request")
         short_of_sweeps();
     return test_end();
 }

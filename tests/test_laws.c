@@ -512,8 +512,7 @@ int main(int argc, char **argv) {
 
     /* Two digits of the order, from errors at 400 and 800 steps against 12800: 1.8 leaves room for
        what is left of higher orders. Single precision sees its own round-off instead. */
-    TEST("a law of one's own that calls built-in ones gives their bits and their ledger, between grains "
-         "and on walls") {
+    TEST("a user-defined law that calls built-in ones gives their bits and their ledger, between grains and on walls") {
         int mixed;
         for (mixed = 0; mixed < 2; mixed++) {
             CHECK_EQ(slope_of(hertz_spring_epsd, DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, mixed),
@@ -523,8 +522,7 @@ int main(int argc, char **argv) {
                      slope_of(0, DEM_NORMAL_LINEAR, DEM_TANGENT_MINDLIN_RESCALED, 0, mixed));
         }
     }
-    TEST("a contact has the bits that it has alone, however many others are answered with it: by every law, with a "
-         "ledger and without, of a cluster that falls onto a plane") {
+    TEST("a contact has the same bits alone and among many, for every law, with a ledger and without") {
         int normal, tangent, rolling, ledger;
         for (normal = DEM_NORMAL_HERTZ; normal <= DEM_NORMAL_HYSTERETIC; normal++)
             for (tangent = DEM_TANGENT_NONE; tangent <= DEM_TANGENT_MINDLIN_RESCALED; tangent++)
@@ -538,7 +536,7 @@ int main(int argc, char **argv) {
                         CHECK_EQ(lonely_fall(n, t, r, ledger, 40), alone);
                     }
     }
-    TEST("every law's line stands at the place that its constant names, and its memory fits") {
+    TEST("each law's table row matches its constant, and its memory fits") {
         static const demi_law_row *const tables[] = {demi_normal_laws, demi_tangent_laws,
                                                      demi_rolling_laws};
         int k, i, most = 0;
@@ -555,7 +553,7 @@ int main(int argc, char **argv) {
         }
         CHECK(most <= DEMI_MEMORY);
     }
-    TEST("tangential and rolling memory is of second order in the time step, for every law") {
+    TEST("tangential and rolling springs are integrated to second order in the time step, for every law") {
         static const dem_normal_law normal[] = {DEM_NORMAL_HERTZ, DEM_NORMAL_LINEAR,
                                                 DEM_NORMAL_HYSTERETIC};
         int i, law;
@@ -571,8 +569,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(creep(DEM_ROLLING_CONSTANT, 1e-5), 0, 1e-9 + 1e-4*small);
         CHECK_NEAR(creep(DEM_ROLLING_EPSD, 1e-5), 0, 1e-6 + 1e-4*small);  /* its swing dies out */
     }
-    TEST("friction's impulse is mu times that of the normal force when a body slides all through "
-         "an impact, where its load is the elastic force") {
+    TEST("in an impact that slides throughout, friction's impulse is mu times the normal impulse under elastic load") {
         static const double e[] = {0.1, 0.25, 0.5, 0.75, 0.9, 1};
         int i;
         for (i = 0; i < 6; i++) {    /* ends of a contact fall within a step: 1 in about 1000 */
@@ -580,7 +577,7 @@ int main(int argc, char **argv) {
             CHECK_NEAR(friction_share(e[i], DEM_NORMAL_LINEAR), 1, 4e-3);
         }
     }
-    TEST("a time step that is accepted is stable where twelve contacts a grain are pressed") {
+    TEST("an accepted time step is stable for grains pressed by twelve contacts") {
         static const double depth[] = {1e-4, 1e-3, 0.01, 0.05};
         int i;
         for (i = 0; i < 4; i++) {
@@ -590,7 +587,7 @@ int main(int argc, char **argv) {
             CHECK(pressed(depth[i], 0) < 3);
         }
     }
-    TEST("a step just inside the limit of pressed contacts keeps still, one outside by a twentieth shakes it") {
+    TEST("a step just inside the limit of pressed contacts is stable; one 5 % outside oscillates") {
         static const int planes[] = {HELD_CRYSTAL, 2, 3, 4, 5, 6};
         int i;
         for (i = 0; i < 6; i++) {
@@ -606,14 +603,14 @@ int main(int argc, char **argv) {
             if (!DEMI_SINGLE) CHECK(held_growth(planes[i], 1.05*limit, 200) > 20);
         }
     }
-    TEST("the report says what holds a chosen step below t_c/50, and by how much") {
+    TEST("the report says what keeps a chosen step below t_c/50, and by how much") {
         dem_world *world = held_world(6, 0, 0);
         CHECK_EQ(dem_world_step(world, 1), DEM_OK);
         scene_report_has(world, "times shorter than t_c/50 = ");
         scene_report_has(world, "body 1, pressed by 6 contacts, is stable to");
         dem_world_destroy(world);
     }
-    TEST("fine facets of a tube press a ball as one contact: t_c/50 is accepted, the limit is that of a cylinder") {
+    TEST("fine facets of a tube press a ball as one contact: t_c/50 passes, and the limit is a cylinder's") {
         dem_result smooth, fine;
         const double one = tube_limit(0, &smooth), many = tube_limit(1, &fine);
         CHECK_EQ(smooth, DEM_OK);
@@ -652,7 +649,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a time step is chosen for the speed that walls will have, also before they begin to move") {
+    TEST("a chosen time step accounts for the speed that walls will reach, also before they move") {
         int kind;
         for (kind = DEM_MOTION_TRANSLATING; kind <= DEM_MOTION_OSCILLATING; kind++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -675,7 +672,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a grain that would pass a wall or another grain within one step is refused by name") {
+    TEST("a grain that would pass through a wall or grain within one step stops the run with its name") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc m = scene_stuff(1e8, 0.5, 0.3, 0);
         dem_material stuff;
@@ -702,7 +699,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("the time step sees the spring and the dashpot of rolling resistance") {
+    TEST("the time step accounts for the spring and the dashpot of rolling resistance") {
         static const double mu[] = {0.1, 1, 10, 100, 1e4};
         int i, k;
         for (i = 0; i < 5; i++) {
@@ -727,8 +724,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("[THO13]: oblique impacts without tension, damped to the restitution set, leave with the "
-         "published slip and spin when the spring alone holds the limit") {
+    TEST("[THO13]: damped oblique impacts without tension leave with the published slip and spin when the spring "
+         "takes the limit") {
         int which;
         /* the width of the digitised points; the shared slider misses slip by 11 to 12 % */
         CHECK(slip_missed(DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, DEM_SLIDER_SPRING,
@@ -740,8 +737,8 @@ int main(int argc, char **argv) {
         for (which = 0; which < 4; which++)
             CHECK(spin_missed(DEM_SLIDER_SPRING, which) < 1.5);
     }
-    TEST("without tension restitution comes out as set, from .05 to 1, and friction's impulse is mu "
-         "times that of the normal force") {
+    TEST("without tension the restitution is as set, 0.05 to 1, and friction's impulse is mu times the normal "
+         "impulse") {
         static const double e[] = {0.05, 0.1, 0.135335, 0.25, 0.5, 0.75, 0.9, 1};
         int i, normal;
         for (i = 0; i < 8; i++)
@@ -753,8 +750,7 @@ int main(int argc, char **argv) {
                 CHECK_NEAR(r.slip, 20 - 7*(1 + r.e)/(1 + e[i]), 0.02);
             }
     }
-    TEST("friction's impulse keeps the bound that its load promises: elastic 1, push 1.089, size "
-         "1.177 at e = .25") {
+    TEST("friction's impulse keeps the bound of its load: elastic 1, repulsive 1.089, magnitude 1.177 at e = 0.25") {
         static const double bound[] = {1.0886, 1, 1.1772};       /* push, elastic, size */
         int load, normal;
         for (load = 0; load < 3; load++)
@@ -765,8 +761,8 @@ int main(int argc, char **argv) {
                 CHECK_NEAR((20 - r.slip)/7*1.25/(1 + r.e), bound[load], 2e-3);
             }
     }
-    TEST("a field that sees orientations turns bodies: a compass needle swings with 2 pi sqrt(I/(mu B)), "
-         "and the ledger knows") {
+    TEST("a field that reads orientations rotates bodies: a compass needle swings with 2 pi sqrt(I/(mu B)), and the "
+         "ledger closes") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_body needle;
@@ -825,8 +821,7 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(world);
     }
-    TEST("an effect that is asked for and has no cause in the scene runs the code of a scene without it: the "
-         "same stages, no memory, the same bits") {
+    TEST("an effect set but absent in the scene costs nothing: the same stages, no memory, the same bits") {
         static const struct { dem_tangent_law tangent; dem_rolling_law rolling; double mu; int also; } sets[][2] = {
             {{DEM_TANGENT_NONE, DEM_ROLLING_NONE, 0, 0}, {DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0, 0}},
             {{DEM_TANGENT_NONE, DEM_ROLLING_NONE, 0, 0}, {DEM_TANGENT_MINDLIN_RESCALED, DEM_ROLLING_EPSD, 0, 0}},

@@ -284,7 +284,7 @@ static int search_refused(long refuse) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a warm step of a packing at rest takes no memory, with one thread and with two") {
+    TEST("a step of a packing at rest allocates nothing, with one thread and with two") {
         int threads;
         for (threads = 1; threads <= 2; threads++) {
             scene_memory c;
@@ -298,7 +298,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(c.blocks, 0);
         }
     }
-    TEST("a warm step takes no memory when the list is rebuilt every step, whatever the search") {
+    TEST("a step that rebuilds its list allocates nothing, for any search") {
         int search;
         for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_HIERARCHICAL; search++) {
             scene_memory c;
@@ -314,14 +314,13 @@ int main(int argc, char **argv) {
             CHECK_EQ(c.blocks, 0);
         }
     }
-    TEST("all memory is of the allocator of the world, and all of it goes back, in the sizes it "
-         "came") {
+    TEST("all memory comes from the world's allocator and returns to it in the same sizes") {
         scene_memory c;
         uint64_t hash;
         scenario(&c, DEM_SEARCH_AUTO, 0, &hash);
         CHECK(c.most > 100000);
     }
-    TEST("looking costs no memory: contacts, candidates, ledger, totals, report, hash") {
+    TEST("read-only calls allocate nothing: contacts, candidates, ledger, totals, report, hash") {
         scene_memory c;
         dem_world *world = packing(&c, 1, 0, DEM_SEARCH_AUTO);
         static dem_contact_info infos[2000];
@@ -342,25 +341,22 @@ int main(int argc, char **argv) {
         CHECK_EQ(c.calls, before);
         dem_world_destroy(world);
     }
-    TEST("whichever request for memory fails, the call says so and the world goes on (grid)") {
+    TEST("each failing allocation is reported and the world continues (grid)") {
         refuse_each(DEM_SEARCH_GRID);
     }
-    TEST("whichever request for memory fails, the call says so and the world goes on (linked "
-         "list)") {
+    TEST("each failing allocation is reported and the world continues (linked list)") {
         refuse_each(DEM_SEARCH_LINKED_LIST);
     }
-    TEST("whichever request for memory fails, the call says so and the world goes on (bins)") {
+    TEST("each failing allocation is reported and the world continues (bins)") {
         refuse_each(DEM_SEARCH_BINS);
     }
-    TEST("whichever request for memory fails, the call says so and the world goes on (levels)") {
+    TEST("each failing allocation is reported and the world continues (hierarchical)") {
         refuse_each(DEM_SEARCH_HIERARCHICAL);
     }
-    TEST("whichever request for memory fails in a step, repeating the step gives the run without "
-         "failure") {
+    TEST("repeating a step in which an allocation failed gives the run without failure") {
         swarm_each(0);
     }
-    TEST("whichever request for memory fails in a step, repeating the step gives the run without "
-         "failure, clusters and ellipsoids among the spheres") {
+    TEST("repeating a step in which an allocation failed gives the run without failure, with clusters and ellipsoids") {
         swarm_each(1);
     }
     TEST("a large checkpoint that runs out of memory while being read leaves the small world as "
@@ -411,14 +407,12 @@ int main(int argc, char **argv) {
         remove("build/tmp/memory.ckpt");
         remove("build/tmp/memory.vtp");
     }
-    TEST("a new list changes no hash where grains have crossed a periodic face, made or refused for "
-         "memory at any request") {
+    TEST("a rebuilt list changes no hash after crossings of a periodic face, even if an allocation fails") {
         long k = 1;
         while (search_refused(k)) k++;
         CHECK(k > 5);
     }
-    TEST("contacts of domains that a refused search would have given up are told by the hash, stand "
-         "in a checkpoint and go on") {
+    TEST("after a failed search contacts of all domains stay in the hash, in checkpoints and in the run") {
         const char *path = "build/tmp/domains.ckpt";
         const int count = DEM_DOMAIN_BODIES + 10;      /* two domains; without 20 of them one */
         scene_memory c, none;

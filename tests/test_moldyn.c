@@ -88,7 +88,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(m.grain_count, 0);
     }
 
-    TEST("a scene given by three files runs, is written, read back, and goes on the same") {
+    TEST("a scene of three files runs, is written, read back, and continues alike") {
         static const char small[] =
             "times.t0 2\ntimes.tend 2.4\ntimes.dt 2e-5\ncontrol.grav -9.81\ncontrol.rho 2500\ncontrol.mue_s .3\n"
             "control.mue_d .2\nsd.stiff_lo 2000\nsd.stiff_k_un 3000\nsd.stiff_adh -100\n"
@@ -145,8 +145,7 @@ int main(int argc, char **argv) {
         for (i = 0; i < 6; i++) remove(path[i]);
     }
 
-    TEST("damping and restitution of .cin come out in the bounce: sd.e between grains, damp_wall at "
-         "walls") {
+    TEST("damping and restitution of .cin are those of the bounce: sd.e between grains, damp_wall at walls") {
         dem_world *w;
         moldyn m = MOLDYN;
         dem_coefficients c;
@@ -167,7 +166,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("files in a plane have 8 and 4 columns, gravity along y, and make a planar world") {
+    TEST("planar files have 8 and 4 columns and gravity along y, and make a planar world") {
         dem_world *w;
         moldyn m = MOLDYN;
         dem_body_state s;
@@ -190,7 +189,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST(".xb and .str files look as the appendix shows them") {
+    TEST(".xb and .str files have the format of the appendix") {
         static const char xb[] = "build/tmp/a.xb", str[] = "build/tmp/a.str";
         const dem_box box = dem_box_make(0, 0, 0, DEM_R(0.171), DEM_R(0.171), 0);
         dem_world *w;
@@ -223,7 +222,7 @@ int main(int argc, char **argv) {
         remove(str);
     }
 
-    TEST("malformed files are refused with line and reason, and what was read before stays") {
+    TEST("malformed files are rejected with line and reason, and leave earlier data unchanged") {
         static const struct { moldyn_file file; const char *text, *says; } rows[] = {
             {MOLDYN_CONTROL, "", "a line with times.tend is expected"},
             {MOLDYN_CONTROL, "times.tend 1\ntimes.ende 2\n", "line 2: found 'times.ende'"},
@@ -287,7 +286,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST(".str refuses another number of bodies than its head says, and what was read outlives its world") {
+    TEST(".str is rejected for a body count unlike its head's, and its data outlives the world") {
         static const char path[] = "build/tmp/count.str";
         dem_world *w;
         moldyn m = MOLDYN;
@@ -310,8 +309,8 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("null pointers, walls that are gone and folders that are missing are refused with a sentence, "
-         "and a file that cannot be replaced stays whole") {
+    TEST("null pointers, removed walls and missing folders are rejected, and a file that cannot be replaced stays "
+         "intact") {
         static const char path[] = "build/tmp/whole.pin", taken[] = "build/tmp/whole.pin.tmp";
         dem_world *w = any_world();
         const dem_box box = dem_box_make(0, 0, 0, 1, 1, 1);
@@ -369,8 +368,7 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("polygons: grains, parts and chains are read, run, taken, written and read back to the same numbers; "
-         "factors and what has not turned stay to the last bit") {
+    TEST("polygons: grains, parts and chains survive reading, running, writing and reading with the same numbers") {
         static const char *path[] = {"build/tmp/p.cin", "build/tmp/p.pin", "build/tmp/p.win",
                                      "build/tmp/q.cin", "build/tmp/q.pin", "build/tmp/q.win"};
         char first[3000], again[3000];
@@ -448,8 +446,8 @@ int main(int argc, char **argv) {
         for (i = 0; i < 6; i++) remove(path[i]);
     }
 
-    TEST("polygons: mass, centre and moment are those of dem_shape_polygon_add, scaled; place is that of the "
-         "centre of mass, and the angle turns") {
+    TEST("polygons: mass, centre and moment are those of dem_shape_polygon_add, scaled; position and angle are the "
+         "centre's") {
         const double area = 2.04e-4, X = (1.2e-4*.01 + .84e-4*.003)/area, Y = (1.2e-4*.003 + .84e-4*.013)/area;
         const double fine = sizeof(dem_real) == 8 ? 1e-12 : 1e-5;
         dem_world *w;
@@ -492,8 +490,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("an L rests on the edge of a polygonal wall with its centre of mass 1 mm within, and topples from it "
-         "with 1 mm beyond") {
+    TEST("an L rests on a polygonal wall's edge with its centre of mass 1 mm inside, and topples 1 mm outside") {
         int beyond;
         for (beyond = 0; beyond < 2; beyond++) {
             moldyn m = MOLDYN;
@@ -522,8 +519,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("an L that hits a polygonal wall's face or tip elastically has the energy it had, the nearer the smaller "
-         "the step") {
+    TEST("an L that hits a polygonal wall's face or tip elastically keeps its energy, better at smaller steps") {
         static const char *const walls[] = {"1 0\n0 1 0 0\n", "polygons 1\n4\n-.1 -.1\n.1 -.1\n.1 0\n-.1 0\n0 0\n",
                                             "polygons 1\n3\n-.1 -.1\n.1 -.1\n0.002 0\n0 0\n"};
         double worst[2], up[3];
@@ -564,7 +560,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(up[0], up[1], sizeof(dem_real) == 8 ? 1e-9 : 1e-3);
     }
 
-    TEST("frames: a polygon is the disc of its area in .xb, its place and turn in .str; parts and chains are drawn") {
+    TEST("frames: a polygon is a disc of its area in .xb and its position and angle in .str; parts and chains are "
+         "drawn") {
         static const char xb[] = "build/tmp/p.xb", str[] = "build/tmp/p.str";
         dem_world *w;
         moldyn m = MOLDYN;
@@ -595,8 +592,8 @@ int main(int argc, char **argv) {
         remove(str);
     }
 
-    TEST("malformed polygons and chains are refused with line, value and limit, and what was read before stays; "
-         "clockwise ones are read") {
+    TEST("malformed polygons and chains are rejected with line, value and limit, leaving earlier data; clockwise ones "
+         "are read") {
         static const struct { moldyn_file file; const char *text, *says; } rows[] = {
             {MOLDYN_PARTICLES, "polygons x\n", "line 1: found 'x' where the number of polygons"},
             {MOLDYN_PARTICLES, "polygons 1 2\n3\n", "the end of the line is expected"},
@@ -663,8 +660,7 @@ int main(int argc, char **argv) {
         moldyn_free(&m);
     }
 
-    TEST("polygons filled in by hand are looked at before anything is added, and bodies that are none of m's are "
-         "not taken for them") {
+    TEST("hand-filled polygons are checked before anything is added, and other bodies are not mistaken for them") {
         dem_world *w, *other;
         moldyn m = MOLDYN;
         dem_real x[4] = {0, 0, 0, 0}, kept[2];

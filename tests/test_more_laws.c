@@ -128,7 +128,7 @@ int main(int argc, char **argv) {
     test_begin(argc, argv);
     dent.coefficients = powder.coefficients = DEM_NORMAL_LINEAR;
 
-    TEST("viscoelastic: restitution falls with the fifth root of the speed, by Schwager and Poeschel's series") {
+    TEST("viscoelastic: 1 - e grows as the fifth root of the speed, by Schwager and Poeschel's series") {
         static const double speeds[] = {1e-3, 1e-2, 0.1, 1};
         const double m = reduced_mass(&soft);
         double lost[2];
@@ -146,7 +146,7 @@ int main(int argc, char **argv) {
         lost[1] = 1 - restitution_of(&soft, 1);
         CHECK_NEAR(log(lost[1]/lost[0])/log(100.0), 0.2, DEMI_SINGLE ? 0.05 : 0.005);
     }
-    TEST("Walton and Braun: restitution is the root of k1/k2, at every speed or falling with it") {
+    TEST("Walton and Braun: restitution is sqrt(k1/k2), constant or falling with speed") {
         static const walton_braun kinds[] = {{DEM_R(1e4), 4, 0, 0}, {DEM_R(1e4), 1, DEM_R(3e4), 0},
                                              {DEM_R(5e3), 2, DEM_R(1e5), 0}};
         const double m = reduced_mass(&dent);
@@ -158,7 +158,7 @@ int main(int argc, char **argv) {
                 CHECK_REL(restitution_of(&dent, g), walton_braun_restitution(&yields, m, g), 2e-3);
             }
     }
-    TEST("Luding: restitution where k2 grows with depth and where it does not; where kc is large grains stick") {
+    TEST("Luding: restitution with k2 growing with depth and constant; where kc is large grains stick") {
         static const luding kinds[] = {{DEM_R(1e4), DEM_R(5e4), 0, 0, 0}, {DEM_R(1e4), DEM_R(3e4), DEM_R(2e3), 0, 0},
                                        {DEM_R(1e4), DEM_R(5e4), DEM_R(2e3), DEM_R(4e-5), 0}};
         const double m = reduced_mass(&powder);
@@ -176,7 +176,7 @@ int main(int argc, char **argv) {
         CHECK(luding_restitution2(&sticks, m, 0.1) < 0);
         CHECK_NEAR(restitution_of(&powder, 0.1), 0, 0.5);        /* swings on, in touch */
     }
-    TEST("Luding: pressed beyond Dp, a contact is wholly yielded: it loads and unloads along k2p, and pulls as at Dp") {
+    TEST("Luding: beyond Dp a contact is fully plastic: it loads and unloads along k2p and attracts as at Dp") {
         dem_contact c;
         dem_contact_force f;
         dem_real memory[6] = {0, 0, 0, 0, 0, 0};
@@ -199,7 +199,7 @@ int main(int argc, char **argv) {
         CHECK_REL(last, 5e4*3e-5 - 4e4*1e-5, 1e-5);
         CHECK_REL(least, -2e3*(4e4*1e-5)/(5.2e4), 0.02);
     }
-    TEST("the ledger explains where the energy of an impact by these laws goes") {
+    TEST("the ledger accounts for the energy of an impact under these laws") {
         const walton_braun w = {DEM_R(1e4), 1, DEM_R(3e4), DEM_R(1e-3)};
         const luding l = {DEM_R(1e4), DEM_R(5e4), DEM_R(2e3), DEM_R(4e-5), DEM_R(1e-3)};
         flows.A = DEM_R(4e-6);
@@ -219,7 +219,7 @@ int main(int argc, char **argv) {
         CHECK(passes(&dent));
         CHECK(passes(&powder));
     }
-    TEST("JKR: a pull-off of 3/2 pi w R*, separation by hand at 5/9 of it, where the closed form has it") {
+    TEST("JKR: pull-off at 3/2 pi w R*, separation under controlled displacement at 5/9 of it, as in the closed form") {
         double most, last, where, w = 0.05, R, E;
         CHECK(exam_contact(&skin));
         R = (double)skin.contact.r_eff;
@@ -244,7 +244,7 @@ int main(int argc, char **argv) {
             CHECK_NEAR(parted(&elastic, faster[k]*sticking)/sticking,
                        faster[k] > 1 ? sqrt(faster[k]*faster[k] - 1) : 0, 5e-3);
     }
-    TEST("DMT: a pull-off of 2 pi w R* at touch, nothing apart, and all of the energy back") {
+    TEST("DMT: pull-off 2 pi w R* at contact, no force at a gap, and all energy returned") {
         exam elastic = dry;
         double most, last, where;
         CHECK(exam_contact(&dry));
@@ -257,7 +257,7 @@ int main(int argc, char **argv) {
         /* the pull begins and ends within a step */
         CHECK_NEAR(parted(&elastic, 0.05)/0.05, 1, 2e-3);
     }
-    TEST("capillary bridge: 2 pi R g cos t at touch, Willett's force at a gap, breaks at (1 + t/2) V^(1/3)") {
+    TEST("capillary bridge: 2 pi R g cos t at contact, Willett's force at a gap, rupture at (1 + t/2) V^(1/3)") {
         const double R = 1e-3, rupture = (1 + 0.15)*cbrt(4e-12);
         double most, last, where;
         exam_path p;
@@ -286,7 +286,7 @@ int main(int argc, char **argv) {
             CHECK_NEAR(parted(&elastic, faster[k]*sticking)/sticking,
                        faster[k] > 1 ? sqrt(faster[k]*faster[k] - 1) : 0, 5e-3);
     }
-    TEST("the ledger closes for laws that stick: met, sheared and parted") {
+    TEST("the ledger closes for adhesive laws in contact, shear and separation") {
         soft_skin.w = DEM_R(0.005);
         hard.w = DEM_R(0.005);
         water.tension = DEM_R(0.002);
@@ -296,7 +296,7 @@ int main(int argc, char **argv) {
         soft_skin.w = hard.w = DEM_R(0.05);
         water.tension = DEM_R(0.073);
     }
-    TEST("laws that stick pass the exam, over their range, too") {
+    TEST("adhesive laws pass the exam, over their range too") {
         CHECK(passes(&dry));
         CHECK(passes(&skin));
         CHECK(passes(&wet));

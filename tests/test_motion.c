@@ -74,8 +74,8 @@ int main(int argc, char **argv) {
     const double near_by = fine ? 2e-4 : 0.05;       /* differences of two steps of 1/500 of the motion */
     test_begin(argc, argv);
 
-    TEST("with a ramp walls start smoothly: velocity and spin are the derivatives of the pose, and half a ramp of way is "
-         "missing for ever") {
+    TEST("a ramp starts a wall smoothly, with velocity and spin as the pose's derivatives, and lags by half a ramp "
+         "for ever") {
         int kind;
         for (kind = DEM_MOTION_TRANSLATING; kind <= DEM_MOTION_OSCILLATING; kind++) {
             dem_wall wall;
@@ -111,8 +111,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a table's poses are met at their times, begun and ended at rest, with velocities that are their derivatives; "
-         "the table is the caller's again after the call") {
+    TEST("a table's poses are reached on time from rest to rest, with velocities as their derivatives; the table is "
+         "copied") {
         dem_wall wall;
         dem_world *world = stage(&wall, 2e-3);
         dem_motion m = DEM_MOTION;
@@ -163,8 +163,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a table that repeats goes round without stopping, through a whole turn, and a run that is restored goes on with "
-         "the same bits") {
+    TEST("a repeating table runs without stopping through full turns and resumes from a checkpoint with the same "
+         "bits") {
         dem_wall wall, other;
         dem_world *world = stage(&wall, 1e-3), *copy = stage(&other, 1e-3);
         dem_motion m = DEM_MOTION;
@@ -193,8 +193,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(copy);
     }
 
-    TEST("what walls and their motions cost is measured on copies: meshes that touch keep their faces, edges and corners, and "
-         "the world steps on as one that nobody asked") {
+    TEST("wall and motion costs are measured on copies with all mesh features, and change no bit of the world") {
         static const dem_real corners[] = {0, 0, 0, DEM_R(0.2), 0, 0, DEM_R(0.1), DEM_R(0.2), 0};
         static const int32_t triangle[] = {0, 1, 2};
         dem_world *asked[2];
@@ -229,7 +228,7 @@ int main(int argc, char **argv) {
         for (k = 0; k < 2; k++) dem_world_destroy(asked[k]);
     }
 
-    TEST("tables that are none are refused by row") {
+    TEST("invalid motion tables are rejected with the row named") {
         dem_wall wall;
         dem_world *world = stage(&wall, 1e-3);
         dem_motion m = DEM_MOTION;

@@ -190,7 +190,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a call on a schedule comes once before and after each checkpoint, also at the step of the checkpoint") {
+    TEST("a scheduled call runs once, also if a checkpoint is written or read at its step") {
         int first, from;
         for (first = 0; first < 2; first++)
             for (from = 0; from < 4; from++) {
@@ -206,7 +206,7 @@ int main(int argc, char **argv) {
                 dem_world_destroy(b);
             }
     }
-    TEST("outputs that a restart adds, leaves out or gives other times go on from the step of the checkpoint") {
+    TEST("outputs that a restart adds, omits or reschedules continue from the step of the checkpoint") {
         int calls = 0, more[16] = {0}, k;
         dem_world *world = blown(1, &calls);
         CHECK_EQ(dem_world_run_to(world, 4e-3, 0, 0), DEM_OK);
@@ -238,7 +238,7 @@ int main(int argc, char **argv) {
             remove(name);
         }
     }
-    TEST("a call adds outputs, which begin at once, and goes back to a checkpoint, whose outputs come again") {
+    TEST("a scheduled call may add outputs, which start at once, and read a checkpoint, whose outputs return") {
         adder a;
         returner r;
         int other[16] = {0}, k;
@@ -262,8 +262,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         remove("build/tmp/output_back.ckpt");
     }
-    TEST("a CSV file of a run that begins late holds no line of an earlier run, and after a restart those up to the "
-         "checkpoint") {
+    TEST("a CSV file holds no line of an earlier run, and after a restart those up to the checkpoint") {
         int late;
         for (late = 0; late < 2; late++) {
             dem_world *world = lone();
@@ -296,8 +295,7 @@ int main(int argc, char **argv) {
         remove("build/tmp/output_late.ckpt");
         remove("build/tmp/output_late.csv");
     }
-    TEST("an output that could not be written stops the run, and the next run writes it, whether or not anyone read "
-         "why") {
+    TEST("an output that cannot be written stops the run, and the next run writes it") {
         int kind;
         for (kind = DEM_OUTPUT_VTP; kind <= DEM_OUTPUT_SURFACES; kind++) {
             dem_world *world = lone();
@@ -311,7 +309,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("an interval too short to be told from 0, or too short to count to its start, is refused") {
+    TEST("an interval too short for its time or its count is rejected") {
         dem_world *world = lone();
         int calls = 0;
         CHECK(every(world, 1e-30, blow, &calls).id == 0);
@@ -335,8 +333,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("files on a schedule: a run that was killed and goes on from its checkpoint leaves the very files of one "
-         "that was not, no frame missing, no line double") {
+    TEST("a run that is killed and resumes from its checkpoint leaves the files of an uninterrupted one") {
         int whole[16] = {0}, parts[16] = {0}, k;
         char name[128];
         dem_world *a = scheduled("whole", whole), *b = scheduled("parts", parts);
@@ -369,8 +366,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(a);
     }
 
-    TEST("outputs are refused by name, a file with other columns is not touched, and what cannot be written stops the "
-         "run, which goes on when it can be") {
+    TEST("bad outputs fail by name, a file with other columns stays, and a failed write stops the run, which can "
+         "continue") {
         dem_world *world = heap();
         dem_output_desc d = DEM_OUTPUT_DESC;
         dem_counters before;
@@ -415,7 +412,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a function on a schedule stops a run where it wants to, may change the world, and cannot step it") {
+    TEST("a scheduled function can stop a run and change the world, but not step it") {
         dem_world *world = heap();
         dem_output_desc d = DEM_OUTPUT_DESC;
         int refused = 0;
@@ -441,7 +438,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a run to a time ends there after whatever came before, and does not run back") {
+    TEST("dem_world_run_to ends at its time from any start, and does not run backwards") {
         dem_world *world = heap();
         dem_real dt;
         CHECK_EQ(dem_world_step(world, 17), DEM_OK);
@@ -458,8 +455,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a heap settles: nothing moves when dem_world_settle says so; a ball at the top of its flight is not at rest, "
-         "and one that loses nothing never is") {
+    TEST("dem_world_settle ends with a heap at rest; a ball at its apex and a lossless one are not at rest") {
         dem_world *world = heap();
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material m;
@@ -487,7 +483,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_settle(world, 1, DEM_R(1e-3), 0, 0), DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("settling ends after a time that is no whole number of steps, although less than a step of it is left") {
+    TEST("dem_world_settle ends after a time that is no multiple of the step") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         int k;
@@ -500,8 +496,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("velocities drawn for a temperature have it, their mean is kept, light grains and heavy ones share the energy "
-         "evenly; scaled ones keep their directions; the ledger counts what came in") {
+    TEST("dem_temperature_set gives the temperature, keeps the mean velocity, shares energy evenly, and enters the "
+         "ledger") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material m;

@@ -73,7 +73,7 @@ int main(int argc, char **argv) {
                         CHECK_EQ(asked, 0);
                     }
     }
-    TEST("a desc that names another law than DEM_LAW, none, or one that is told who touches, is told what that means") {
+    TEST("the report says when desc.law differs from DEM_LAW, is null, or uses law_who") {
         static const char *const says[] = {"DEM_LAW names another law", "desc.law is null, so it does not act",
                                            "law_who is set"};
         int k;
@@ -89,7 +89,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a world that names no law of its own keeps the built-in ones in a program with DEM_LAW") {
+    TEST("a world without a user-defined law uses the built-in ones in a program with DEM_LAW") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         dem_material glass = scene_material(world, 1e7, 1, 0, 0);
         dem_contact_info c;

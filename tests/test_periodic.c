@@ -77,8 +77,8 @@ static dem_world *place_gas(dem_world_desc *desc, dem_material *m) {
 }
 
 static void fills(void) {
-    TEST("a fill looks across periodic faces: nothing overlaps a large ball's image, nor itself, in "
-         "a box as long as the cell, or longer") {
+    TEST("a fill respects periodic images: no overlap with a large ball's image or itself, in boxes of a period or "
+         "longer") {
         int wide;
         for (wide = 0; wide < 2; wide++) {
             dem_material m;
@@ -114,8 +114,8 @@ static void fills(void) {
             dem_world_destroy(world);
         }
     }
-    TEST("a fill of sizes 1 to 100 finds the places that looking at every body would find, in any "
-         "order of sizes, across a face and beside a plane") {
+    TEST("a fill of sizes 1 to 100 finds the positions that a full search finds, in any order, across a face and at a "
+         "plane") {
         static const double radius[2][4] = {{0.1, 0.03, 0.004, 0.001}, {0.001, 0.004, 0.03, 0.1}};
         static const int wanted[2][4] = {{8, 40, 300, 500}, {60, 60, 20, 8}};
         int order, size, i, k;
@@ -159,8 +159,7 @@ static void fills(void) {
             dem_world_destroy(world);
         }
     }
-    TEST("a fill leaves free what walls of every kind take: in front of a plane, inside and outside "
-         "a cylinder, off a mesh, a profile, a wall of grains and a sieve, where they are now") {
+    TEST("a fill keeps clear of walls of every kind in their present pose") {
         int kind;
         for (kind = 0; kind < 7; kind++) {
             dem_material m;
@@ -209,7 +208,7 @@ static void fills(void) {
             dem_world_destroy(world);
         }
     }
-    TEST("a fill of 2^31 - 1 spheres in a box for few ends soon, with those that fit") {
+    TEST("a fill of 2^31 - 1 spheres in a small box ends soon, with those that fit") {
         dem_material m;
         dem_world *world = place_world(1, 1, 1, "", &m);
         const int n = dem_spheres_fill(world, m, DEM_R(0.1), dem_region_make(box_of(0, 0, 0, 1, 1, 1)),
@@ -219,8 +218,7 @@ static void fills(void) {
         CHECK_STR(dem_world_error_get(world), "2147483647");
         dem_world_destroy(world);
     }
-    TEST("a box that begins at a periodic face but is shorter than the period has faces: bodies stay "
-         "inside it") {
+    TEST("a box that begins at a periodic face but is shorter than the period keeps bodies inside") {
         dem_material m;
         dem_world *world = place_world(1, 1, 1, "x", &m);
         dem_bodies b;
@@ -234,8 +232,7 @@ static void fills(void) {
 }
 
 static void packings(void) {
-    TEST("five spheres are packed into a box of 1e17 places at once; all of them are refused, with "
-         "the number") {
+    TEST("five spheres pack at once into a box with room for 1e17, and packing it completely fails with the number") {
         dem_material m;
         dem_world *world = place_world(1, 1, 1, "", &m);
         const dem_box box = box_of(0, 0, 0, 1000, 1000, 1000);
@@ -245,7 +242,7 @@ static void packings(void) {
         CHECK_EQ(dem_body_counts_get(world).present, 5);
         dem_world_destroy(world);
     }
-    TEST("a packing leaves out places that bodies or walls take, and keeps off itself across a face") {
+    TEST("a packing keeps clear of bodies, walls and its periodic images") {
         dem_material m;
         const dem_world_desc desc = place_desc(1, 1, 1, "xy");
         dem_world *world = place_world(1, 1, 1, "xy", &m);
@@ -266,7 +263,7 @@ static void packings(void) {
 }
 
 static void feeds(void) {
-    TEST("a feed puts no grain into a wall, nor into one across a periodic face") {
+    TEST("a feed inserts no grain into a wall, nor into a wall across a periodic face") {
         const dem_world_desc desc = place_desc(0.1, 0.1, 0.1, "xy");
         dem_world *world = dem_world_create(&desc);
         const dem_material m = scene_material(world, 1e7, 0.9, 0, 0);
@@ -295,8 +292,7 @@ static void feeds(void) {
 }
 
 static void places(void) {
-    TEST("fields see all of a gas that crosses periodic faces, at every step between two rebuilds, "
-         "in boxes that begin anywhere") {
+    TEST("fields include all of a gas that crosses periodic faces, at every step, in boxes that begin anywhere") {
         static const double from[3] = {0, 0.037, -0.45};
         dem_world_desc desc;
         dem_material m;
@@ -328,7 +324,7 @@ static void places(void) {
         }
         dem_world_destroy(world);
     }
-    TEST("getters give places in the periodic box, at every step between two rebuilds") {
+    TEST("getters return positions inside the periodic box, at every step between rebuilds") {
         dem_world_desc desc;
         dem_material m;
         dem_world *world = place_gas(&desc, &m);
@@ -357,7 +353,7 @@ static void places(void) {
         CHECK_EQ(points, 0);
         dem_world_destroy(world);
     }
-    TEST("looking at a gas changes nothing, and setting a body where it is goes on as before") {
+    TEST("reading a periodic gas changes nothing, and setting a body to its own state changes no bit") {
         uint64_t hash[3];
         int look, i, k;
         for (look = 0; look < 3; look++) {
@@ -375,7 +371,7 @@ static void places(void) {
         CHECK_EQ(hash[0], hash[1]);
         CHECK_EQ(hash[0], hash[2]);
     }
-    TEST("files hold places in the periodic box") {
+    TEST("files hold positions inside the periodic box") {
         const char *path = "build/tmp/periodic.xyz";
         dem_world_desc desc;
         dem_material m;
@@ -407,8 +403,7 @@ static void places(void) {
         remove(path);
         dem_world_destroy(world);
     }
-    TEST("an outlet that reaches across a periodic face takes what stands beyond it, standing still "
-         "or moving with a wall") {
+    TEST("an outlet that reaches across a periodic face removes grains there, at rest or moving with a wall") {
         int moving;
         for (moving = 0; moving < 2; moving++) {
             dem_material m;
@@ -442,8 +437,8 @@ static dem_world *place_slide(int n, double more, double friction, dem_material 
 }
 
 static void walls(void) {
-    TEST("a ball slides over a mesh floor that ends at the periodic faces as over a plane: no hop, "
-         "no speed gained, in two triangles or many, along an axis or askew") {
+    TEST("a ball slides over a mesh floor that ends at periodic faces as over a plane, without a hop or a gain of "
+         "speed") {
         static const int cut[3] = {1, 4, 9};
         int c, way;
         for (c = 0; c < 3; c++)
@@ -472,8 +467,7 @@ static void walls(void) {
                 dem_world_destroy(world);
             }
     }
-    TEST("a ball rolls over the seam of a periodic mesh floor as on a plane: friction's memory goes "
-         "with it") {
+    TEST("a ball rolls over the seam of a periodic mesh floor as on a plane, with its friction history") {
         double v[2], spin[2];
         int flat;
         for (flat = 0; flat < 2; flat++) {
@@ -524,8 +518,7 @@ static void walls(void) {
             dem_world_destroy(world);
         }
     }
-    TEST("a checkpoint written while a ball lies on the seam of a periodic floor goes on as without it, "
-         "and in a ring of slabs the ball rolls on as in one world") {
+    TEST("a ball on the seam of a periodic floor continues alike after a checkpoint, and rolls on in a ring of slabs") {
         const char *path = "build/tmp/periodic.ckpt";
         double v[3], z[3];
         uint64_t hash[2] = {0, 0};
@@ -563,8 +556,7 @@ static void walls(void) {
         CHECK_NEAR(v[2], v[0], sizeof(dem_real) == 4 ? 1e-4 : 1e-10);   /* sums in another order */
         CHECK_NEAR(z[2], z[0], sizeof(dem_real) == 4 ? 1e-6 : 1e-12);
     }
-    TEST("an obstacle that stands across a periodic face is met from both sides, still or carried "
-         "on by many periods") {
+    TEST("an obstacle across a periodic face collides from both sides, at rest or carried over many periods") {
         int moved;
         for (moved = 0; moved < 2; moved++) {
             dem_world_desc desc = place_desc(1, 1, 1, "x");
@@ -593,8 +585,8 @@ static void walls(void) {
             dem_world_destroy(world);
         }
     }
-    TEST("a mesh longer than the period that ends within a grain of its face is refused by name; far "
-         "enough beyond it is a floor like any other") {
+    TEST("a mesh longer than the period is rejected if it ends within a grain of its face; far enough beyond it is a "
+         "floor") {
         dem_material m;
         dem_world *world = place_slide(3, 0.005, 0, &m);
         const uint64_t hash = dem_world_hash_get(world);

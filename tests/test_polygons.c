@@ -90,8 +90,7 @@ static dem_world *heap(int threads, int impulses) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("polygons: area, centre and moment of an L, of a star and of a polygon of 98 corners are the closed forms'; which way "
-         "round the corners are given does not matter") {
+    TEST("polygons: area, centre and moment of an L, a star and 98 corners equal the closed forms, in either winding") {
         dem_material m;
         dem_world *w = flat(0, 0, &m, 1, 0);
         dem_shape_info info;
@@ -129,8 +128,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("polygons whose sides cross, on a line, of too few corners or in a world of three dimensions are refused by name, "
-         "and leave no pieces behind") {
+    TEST("polygons with crossing sides, zero area, too few corners or in a 3D world are rejected and leave no pieces") {
         const dem_real bow[8] = {0, 0, 1, 1, 1, 0, 0, 1}, line[6] = {0, 0, 1, 1, 2, 2};
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material m;
@@ -150,8 +148,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("polygons with sides on one line, as a U, a plus, an E and a comb of 98 corners have them, are cut, too; those whose "
-         "sides lie on each other are refused") {
+    TEST("polygons with collinear sides, such as a U, plus, E and comb, are cut; overlapping sides are rejected") {
         const dem_real u[16] = {0, 0, 3, 0, 3, 3, 2, 3, 2, 1, 1, 1, 1, 3, 0, 3};
         const dem_real plus[24] = {1, 0, 2, 0, 2, 1, 3, 1, 3, 2, 2, 2, 2, 3, 1, 3, 1, 2, 0, 2, 0, 1, 1, 1};
         const dem_real e[24] = {0, 0, 3, 0, 3, 1, 1, 1, 1, 2, 3, 2, 3, 3, 1, 3, 1, 4, 3, 4, 3, 5, 0, 5};
@@ -179,8 +176,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("unions: two half bricks have the whole one's mass and moments; clusters, unions and bad places are refused by "
-         "name") {
+    TEST("unions: two half bricks have the mass and moments of a whole one; clusters, unions and bad positions are "
+         "rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w = dem_world_create(&desc);
         dem_cluster_desc pair = DEM_CLUSTER_DESC;
@@ -210,8 +207,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("unions: elastic crosses of bricks and an ellipsoid, and a ball, keep their energy, the better the smaller the step; "
-         "Ls, stars and a disc in the plane, too") {
+    TEST("unions: elastic crosses of bricks, planar Ls, stars and a disc conserve energy, better at smaller steps") {
         double error[2];
         int k, space;
         for (space = 0; space < 2 && fine; space++) {
@@ -266,8 +262,7 @@ int main(int argc, char **argv) {
         CHECK(1);
     }
 
-    TEST("polygons: squares and hexagons that hit the end of a line, upright or lying, from above, from beside and from "
-         "below, have their energy back when they have left it") {
+    TEST("polygons: elastic squares and hexagons that hit the end of a line from any side recover their energy") {
         double worst = 0, left = 0;
         int k;
         for (k = 0; k < 60 && fine; k++) {
@@ -315,8 +310,7 @@ int main(int argc, char **argv) {
         CHECK(!fine || left > 50);
     }
 
-    TEST("unions: a brick of two halves slides down a slope as the whole one does, by springs and by impulses; a polygon "
-         "in the plane, too") {
+    TEST("unions: a brick of two halves slides down a slope as a whole one, under springs and impulses, in 2D too") {
         int k, impulses;
         for (k = 0; k < 3; k++)
             for (impulses = 0; impulses < 2; impulses++) {
@@ -350,8 +344,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("polygons: heaps of Ls, stars, hexagons and discs have the same bits for 1, 2, 3 and 8 threads, in a second world "
-         "and after a checkpoint, by springs and by impulses, and stay in their plane") {
+    TEST("polygons: planar heaps have the same bits for 1 to 8 threads, in a second world and after a checkpoint") {
         const char *path = "build/tmp/polygons.dem";
         int k, i, impulses;
         for (impulses = 0; impulses < 2; impulses++) {

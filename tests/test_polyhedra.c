@@ -137,7 +137,7 @@ static dem_world *heap(int threads) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a box, a prism, a tetrahedron and an octahedron have the volumes, centres and moments of the closed forms") {
+    TEST("a box, a prism, a tetrahedron and an octahedron have the closed forms' volumes, centres and moments") {
         dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
         dem_real p[60];
         dem_shape_info info;
@@ -188,9 +188,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("points of a box that are off its faces by round-off of any size have its volume, but for that round-off, "
-         "or are "
-         "refused by name") {
+    TEST("a box whose points are off its faces by round-off of any size has its volume, or is rejected with an error") {
         dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
         uint64_t random = 3;
         int k, i, refused = 0;
@@ -221,9 +219,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("points in a plane, points that are not finite, too few, and hulls of too many faces are refused, and "
-         "nothing is "
-         "added") {
+    TEST("coplanar, non-finite or too few points, and hulls of too many faces, are rejected and add nothing") {
         dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
         uint64_t random = 5;
         dem_real p[900];
@@ -249,7 +245,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("a convex mesh is its hull; one with a dent is refused with the place of the dent, or filled where that is allowed") {
+    TEST("a convex mesh is its hull; a dented one is rejected with the position of the dent, or is filled if allowed") {
         static const char cube[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
             "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
         /* the top drawn in to its middle, .25 below */
@@ -275,7 +271,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("planar worlds refuse polyhedra by name") {
+    TEST("planar worlds reject polyhedra with an error") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w;
         desc.planar = 1;
@@ -285,8 +281,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("a polyhedron whose centre comes behind a plane, out of a tube, into another one or to its very place stops the run "
-         "with a sentence, as a ball does") {
+    TEST("a polyhedron whose centre passes a plane, a tube or another body stops the run with an error") {
         int k;
         for (k = 0; k < 5; k++) {
             dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 1e-6);
@@ -304,8 +299,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a cube that falls onto the edge of an upright sheet has its energy back, where the sheet has a triangle without area "
-         "at its edge or each twice as well, and from an edge of three sheets; one that an edge would cut in two stops the run") {
+    TEST("an elastic cube keeps its energy on the edge of an upright sheet; one that an edge would cut in two stops "
+         "the run") {
         static const double corner[24] = {-3, 0, -3, 3, 0, -3, 3, 0, 0, -3, 0, 0, 0, 0, 0, 3, 2, -2, 3, -2, 1, 0, 0, 0};
         static int32_t plain[6] = {0, 1, 2, 0, 2, 3}, sliver[12] = {0, 1, 4, 1, 2, 4, 0, 4, 3, 3, 4, 2};
         static int32_t twice[12] = {0, 1, 2, 0, 2, 3, 1, 2, 0, 3, 2, 0}, three[12] = {0, 1, 2, 0, 2, 3, 3, 5, 2, 2, 3, 6};
@@ -348,7 +343,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("a prism of eight sides wedged into a tube touches it all around, as a plank does at both ends") {
+    TEST("an eight-sided prism wedged into a tube touches all around, and a plank at both ends") {
         int k;
         for (k = 0; k < 2; k++) {
             dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 1e-6);
@@ -371,7 +366,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("the force is the gradient of what two polyhedra share, and the moment is, too, however they lie") {
+    TEST("force and moment between polyhedra are the gradients of the overlap potential, in any pose") {
         dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
         uint64_t random = 11;
         const double way = 1e-7, turn = 1e-6;
@@ -415,8 +410,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("pairs of all sizes from 1e-5 to 10 m, of aspect ratios to 50, touch where no plane keeps them apart, and nowhere "
-         "else; what they share goes with the square of small depths, or a higher power") {
+    TEST("pairs from 1e-5 to 10 m, aspect ratios to 50, touch where no plane separates them; overlap energy grows as "
+         "depth^2 or faster") {
         const int pairs = getenv("POLYHEDRA_PAIRS") ? atoi(getenv("POLYHEDRA_PAIRS")) : 4000;
         uint64_t random = 21;
         int touching = 0;
@@ -467,9 +462,7 @@ int main(int argc, char **argv) {
         if (getenv("POLYHEDRA_NUMBERS")) printf("%d pairs, %d touching, %d too close to tell\n", pairs, touching, close);
     }
 
-    TEST("a cube that lies on a cube, on a plane, on a floor of triangles, or on the floor of a profile, has the "
-         "overlap by "
-         "which they overlap, and the force of it") {
+    TEST("a cube on a cube, plane, mesh or profile has the geometric overlap and its force") {
         int floor_kind;
         for (floor_kind = 0; floor_kind < 4; floor_kind++) {
             dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 1e-8);
@@ -520,9 +513,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two elastic rocks: energy returns, better with the square of the step; momentum stays to round-off, "
-         "angular momentum "
-         "with the step that bodies rotate by") {
+    TEST("two elastic rocks conserve energy to second order in dt, momentum to round-off, angular momentum to the "
+         "rotation step") {
         double error[3];
         double turn[3];
         int k;
@@ -561,9 +553,7 @@ int main(int argc, char **argv) {
         } else CHECK(1);
     }
 
-    TEST("elastic rocks, spheres, ellipsoids and clusters in a box of planes, in one of triangles, in a tube and in "
-         "a funnel keep "
-         "their energy") {
+    TEST("elastic rocks, spheres, ellipsoids and clusters conserve energy in boxes, tubes and funnels") {
         static const char *const name[] = {"planes", "triangles", "tube", "funnel", "profile"};
         int kind;
         for (kind = 0; kind < 5 && fine; kind++) {
@@ -623,7 +613,7 @@ int main(int argc, char **argv) {
         CHECK(1);
     }
 
-    TEST("a cube that falls flat on a plane, on its like or on a mesh leaves with its restitution, and does not turn") {
+    TEST("a cube that falls flat on a plane, a cube or a mesh leaves with its restitution, without rotation") {
         int k;
         for (k = 0; k < 9; k++) {
             const double e = k%3 == 0 ? 0.3 : k%3 == 1 ? 0.7 : 1;
@@ -652,7 +642,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a cube on a slope stays below tan a = mu, and above slides as the textbook's block does") {
+    TEST("a cube on a slope sticks below tan a = mu and slides as the textbook's block above") {
         const double angle = 0.4;               /* tan = 0.4228 */
         int k;
         for (k = 0; k < 2; k++) {
@@ -678,7 +668,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a block on a rough floor that tilts slowly tips over its edge where its width over its height is tan a") {
+    TEST("a block on a slowly tilting rough floor tips at tan a = width/height") {
         const double height = 0.02, angle = 0.4, tilt = 0.5;    /* rad; rad/s */
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w;
@@ -705,8 +695,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("friction stops a cube that spins on its face as four points of its pressure would, and a stack of ten "
-         "stands") {
+    TEST("friction stops a cube spinning on its face as its four contact points predict, and a stack of ten is "
+         "stable") {
         const double g = 9.81;
         dem_world *w = world_of(g, DEM_NORMAL_HERTZ, 2e-6);
         dem_material m = scene_material(w, 1e8, 0.3, 0.4, 0);
@@ -741,8 +731,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("an arch of seven wedges stands with a tenth more friction than its line of thrust asks, and falls with a tenth "
-         "less") {
+    TEST("an arch of seven wedges is stable with 10 % more friction than its thrust line needs, and collapses with 10 "
+         "% less") {
         const double inner = 0.08, outer = 0.105, step = 3.14159265358979323846/WEDGES;
         int k;
         for (k = 0; k < 2 && fine; k++) {
@@ -780,9 +770,7 @@ int main(int argc, char **argv) {
         CHECK(1);
     }
 
-    TEST("a heap of rocks, cubes, balls, ellipsoids and clusters: threads 1, 2, 3, 4 and 8, a second world, a "
-         "checkpoint and one "
-         "slab give the same bits") {
+    TEST("a heap of mixed shapes has the same bits for 1 to 8 threads, a second world, a checkpoint and one slab") {
         const char *path = "build/tmp/polyhedra.dem";
         uint64_t hash[8];
         int k;

@@ -294,7 +294,7 @@ static void look(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a law that begins at a distance from a wall does what a thicker grain feels, on walls of every kind") {
+    TEST("a law with a range acts on a wall as on a grain thicker by the range, for walls of every kind") {
         int kind, cluster, turns, most = 0, again;
         uint64_t seed;
         for (kind = 0; kind < WALLS; kind++)
@@ -311,7 +311,7 @@ int main(int argc, char **argv) {
                     if (seed == 6) CHECK(most > 0);
                 }
     }
-    TEST("plates with round holes and reduced holes hold a grain off at the range") {
+    TEST("plates with round holes and reduced holes keep a grain at the range") {
         int kind, turns;
         uint64_t seed;
         for (kind = ROUND; kind <= REDUCED; kind++)
@@ -320,7 +320,7 @@ int main(int argc, char **argv) {
                 CHECK(turns > 0 && (double)x.z > R);
             }
     }
-    TEST("in a gas of spheres and clusters a law that begins at a distance does what thicker ones feel") {
+    TEST("in a gas of spheres and clusters a law with a range acts as thicker ones do") {
         int shapes, k;
         for (shapes = 0; shapes < 2; shapes++)
             for (k = 0; k < 2; k++) {          /* in m; in radii */
@@ -340,7 +340,8 @@ int main(int argc, char **argv) {
                 dem_world_destroy(b);
             }
     }
-    TEST("bridges have the same bits with any search and number of threads, after a restart and in one slab, and are as many with any skin") {
+    TEST("bridges have the same bits for any search and threads, a restart and one slab, and the same number for any "
+         "skin") {
         int first = 0, count = 0, k;
         const uint64_t hash = bridges(DEM_SEARCH_ALL_PAIRS, 0, 1, 0, 0, &first);
         CHECK(first > 20);
@@ -356,7 +357,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(bridges(0, 0, 2, 1, 0, &count), hash);
         CHECK_EQ(bridges(0, 0, 1, 0, 1, &count), hash);
     }
-    TEST("bridges over the borders of slabs: the same bits with any number of threads, and as many as in one world") {
+    TEST("bridges across slab borders have the same bits for any threads, and the number of one world") {
         int first, count = 0, k;
         bridges(0, 0, 1, 0, 0, &first);
         for (k = 2; k < 4; k++) {
@@ -365,7 +366,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(bridges(0, 0, 2, 0, k, &count), hash);
         }
     }
-    TEST("a bridge forms at touch and lasts to its rupture, over periodic borders and lists") {
+    TEST("a bridge forms at contact and lasts to its rupture, across periodic borders and rebuilt lists") {
         int other;
         for (other = 0; other < 4; other++) {
             /* a step of 5e-8 m, and that of the time at which it is looked at */
@@ -374,7 +375,7 @@ int main(int argc, char **argv) {
             CHECK_NEAR(let_go(other, -0.7, -1), rupture, 1.5e-7);
         }
     }
-    TEST("a law is asked about two ellipsoids from where their points are within its range") {
+    TEST("a law with a range sees two ellipsoids as soon as their contact points are within the range") {
         uint64_t seed = 5;
         int i, listed = 0, not_listed = 0;
         for (i = 0; i < 1500; i++) {
@@ -405,7 +406,7 @@ int main(int argc, char **argv) {
         }
         CHECK(listed > 100 && not_listed > 100);
     }
-    TEST("a law that asks is told who touches: ids, radii, masses, place and time") {
+    TEST("a law with law_who receives ids, radii, masses, position and time") {
         dem_world_desc desc = desc_of(look, 0, 0);
         dem_world *w;
         dem_material m;
@@ -433,7 +434,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(seen.who.point.z, -1e-3, 1e-9);
         dem_world_destroy(w);
     }
-    TEST("a grain that a feed adds within the range of others is pushed from its first step on") {
+    TEST("a feed's grain within range of others feels them from its first step on") {
         dem_world_desc desc = desc_of(shell, 5e-4, 0);
         dem_feed_desc feed;
         dem_world *w;
@@ -465,7 +466,7 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(w);
     }
-    TEST("what a law that says nothing of energy does to it is unknown to the ledger, and told as that") {
+    TEST("energy of a law that does not set force->energy is reported as unknown to the ledger") {
         int k;
         for (k = 0; k < 2; k++) {              /* a law of 4 lines; one that calls dem.h's */
             dem_world_desc desc = desc_of(k ? dem_law_linear : shell, 0, 0);
@@ -496,7 +497,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
-    TEST("the report says how far a law reaches") {
+    TEST("the report gives the range of a law") {
         dem_world_desc desc = desc_of(shell, 1e-4, 0.1);
         dem_world *w = dem_world_create(&desc);
         dem_sphere_add(w, scene_material(w, 1e5, 0.5, 0, 0), DEM_R(1e-3), at(0, 0, 1e-3));
@@ -504,7 +505,7 @@ int main(int argc, char **argv) {
         scene_report_has(w, "gaps below 0.0003 m");
         dem_world_destroy(w);
     }
-    TEST("a range without a law, below 0 or with segments that push by a fraction is refused by name") {
+    TEST("a range without a law, below 0 or with DEM_EDGE_FRACTION segments is rejected with an error") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_real v[4] = {0, 0, 1, 0};
         int32_t s[2] = {0, 1};

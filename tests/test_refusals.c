@@ -248,8 +248,7 @@ static void spare_run(dem_world *world, int steps) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("every public function answers a null world, desc or place for its answer, and says "
-         "which") {
+    TEST("every public function rejects a null world, desc or output pointer and names it") {
         dem_world *world = plain_world();
         dem_material m = stone(world);
         dem_field_desc field;
@@ -281,8 +280,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_outlet_get(world, dem_outlet_add(world, &outlet), 0), DEM_ERROR_ARGUMENT);
         dem_world_destroy(world);
     }
-    TEST("a run after a refusal that nobody read does not begin and quotes it; read, or made good, "
-         "it goes") {
+    TEST("a run after an unread error fails and quotes it, and runs once it has been read or corrected") {
         dem_world *world = plain_world();
         dem_material_desc bad = DEM_MATERIAL_DESC, good = scene_stuff(1e7, 0.5, 0.3, 0);
         dem_material m;
@@ -309,8 +307,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(world, 0), DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("what is looked at, taken away, read or written in vain, and a box too full, does not "
-         "stop a run") {
+    TEST("read-only, removing and file calls that fail, and a full box, do not block a run") {
         dem_world *world = plain_world();
         const dem_material m = stone(world);
         const dem_body body = dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 1));
@@ -350,8 +347,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(dem_world_time_get(world), 1.5 + 7*3.3e-4, 3.3e-4);
         dem_world_destroy(world);
     }
-    TEST("numbers in double precision are tested by their bits: a time that is none is refused "
-         "under any optimisation") {
+    TEST("NaN in double precision is detected by its bits under any optimisation") {
         const double bad[] = {HUGE_VAL, -HUGE_VAL, HUGE_VAL - HUGE_VAL, -1};
         int i;
         for (i = 0; i < 4; i++) {
@@ -387,8 +383,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("radii so small or large that a mass or its inverse is 0 or infinite are refused with a "
-         "sentence") {
+    TEST("radii whose mass or inverse mass is 0 or infinite are rejected with an error") {
         const double radius[] = {DEMI_SINGLE ? 1e-16 : 1e-110, DEMI_SINGLE ? 1e13 : 1e110,
                                  DEMI_SINGLE ? 1e-30 : 1e-300};
         const dem_real origin[3] = {0, 0, 0};
@@ -413,8 +408,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("an unknown way to weigh a cluster, a stiffness that is no number and a place beyond "
-         "1e15 m are refused") {
+    TEST("an unknown cluster mass rule, a NaN stiffness and a position beyond 1e15 m are rejected") {
         dem_world *world = plain_world();
         const dem_material m = stone(world);
         dem_world_desc desc = DEM_WORLD_DESC;
@@ -432,7 +426,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "1e+15 m");
         dem_world_destroy(world);
     }
-    TEST("an unknown edge rule, no vertices or fewer are refused, and more than can be counted") {
+    TEST("an unknown edge rule, and vertex counts of none, below none and beyond the limit are rejected") {
         dem_world *world = plain_world();
         const dem_material m = stone(world);
         dem_real x[4] = {0, 0, 1, 0};
@@ -454,8 +448,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_wall_profile_add(world, m, &profile, DEM_EDGE_FRACTION).id, 1);
         dem_world_destroy(world);
     }
-    TEST("a run that stops because grains overlap stands at the end of that step: what is refused "
-         "after it changes nothing") {
+    TEST("a run stopped by an overlap is at the end of that step, and later failing calls change nothing") {
         dem_world *world = plain_world();
         const dem_material m = stone(world);
         dem_sieve_desc sieve = DEM_SIEVE_DESC;
@@ -476,8 +469,7 @@ int main(int argc, char **argv) {
         CHECK(dem_world_hash_get(world) == hash);
         dem_world_destroy(world);
     }
-    TEST("a packing stops at its count however large the box, and one with more places than can be "
-         "counted is refused") {
+    TEST("a packing stops at its count in any box, and one with more positions than can be counted is rejected") {
         dem_world *world = plain_world();
         const dem_material m = stone(world);
         const dem_box huge = box_of(0, 0, 0, 1e6, 1e6, 1e6);
@@ -497,8 +489,7 @@ int main(int argc, char **argv) {
         CHECK(drum_grains(1, 1, DEM_R(0.01), 1, 0) > 1000);
         dem_world_destroy(world);
     }
-    TEST("bodies by the ten thousand at one place, or two heaps 1e12 m apart, are refused by the "
-         "search with a sentence") {
+    TEST("ten thousand bodies at one position, or two heaps 1e12 m apart, are rejected in the search with an error") {
         const int n = 80000;
         dem_real *x = (dem_real *)calloc((size_t)n*3, sizeof(dem_real));
         int how, i;
@@ -518,8 +509,7 @@ int main(int argc, char **argv) {
         }
         free(x);
     }
-    TEST("a published table of friction entered pair by pair is read back; static friction that is "
-         "not set follows the sliding one, in materials and in pairs") {
+    TEST("a published friction table reads back pair by pair; unset static friction follows sliding friction") {
         /* sliding friction of wood pellets (1), steel (2), acrylic (3): rows of the kind printed in
            calibration papers */
         static const double table[3][3] = {{0.24, 0.34, 0.41}, {0.34, 0.15, 0.2}, {0.41, 0.2, 0.1}};
@@ -549,8 +539,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "0 (the same as the sliding friction)");
         dem_world_destroy(world);
     }
-    TEST("a run that once got no memory and is called again takes the same way: the same grains "
-         "fed, the same candidates, the same bits") {
+    TEST("a run repeated after a failed allocation has the same feed, candidates and bits") {
         int fed, k;
         for (fed = 0; fed < 2; fed++) {
             scene_memory f, none;
@@ -572,8 +561,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(plain);
         }
     }
-    TEST("dealing a world to slabs leaves it as it was: list, candidates, rebuilds and the way it "
-         "goes on") {
+    TEST("creating slabs leaves the world unchanged: list, candidates, rebuilds and further run") {
         scene_memory none;
         dem_world *a = spare_world(&none, 0), *b = spare_world(&none, 0);
         dem_slabs_desc two = DEM_SLABS_DESC;
@@ -595,8 +583,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(a);
         dem_world_destroy(b);
     }
-    TEST("the hash is the same with the list of contacts and while their memory is on its way to "
-         "the next one") {
+    TEST("the hash is the same with a contact list and with its history in transit to the next one") {
         scene_memory none;
         dem_world *world = spare_world(&none, 0);
         uint64_t hash;
@@ -610,8 +597,8 @@ int main(int argc, char **argv) {
         CHECK(dem_world_hash_get(world) != hash);
         dem_world_destroy(world);
     }
-    TEST("a wall and a body that do not know each other are refused by name when the second of the "
-         "two is added, whichever that is; the scene stays as it was and runs") {
+    TEST("a wall and a body that cannot touch are rejected when the second is added, in either order, and the scene "
+         "still runs") {
         int order, kind, how;
         for (kind = 0; kind < 2; kind++)
             for (how = 0; how < 3; how++)
@@ -668,7 +655,7 @@ int main(int argc, char **argv) {
                     dem_world_destroy(world);
                 }
     }
-    TEST("a linked-list search of no bodies at all finds none") {
+    TEST("a linked-list search of no bodies finds none") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         desc.threads = 1;
@@ -678,8 +665,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(world, 2), DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("a list is not made of positions that are no numbers: the body is named, at once, whoever "
-         "asks") {
+    TEST("no list is built from positions that are not finite: the error names the body at once") {
         dem_world *world = plain_world();
         const dem_material m = stone(world);
         int i;
@@ -694,8 +680,7 @@ int main(int argc, char **argv) {
         CHECK(dem_world_step(world, 40) != DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("a feed does not put grains into walls: planes, cylinders, meshes of few and of many "
-         "triangles, profiles") {
+    TEST("a feed inserts no grain into a plane, cylinder, mesh or profile") {
         int kind;
         for (kind = 0; kind < 4; kind++) {
             dem_world *world = plain_world();
@@ -720,7 +705,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a writer follows a link, writes to a device as it is and refuses a pipe") {
+    TEST("a writer follows a link, writes to a device directly and rejects a pipe") {
         const char *link = "build/tmp/link.vtp", *file = "build/tmp/linked.vtp";
         const char *null_link = "build/tmp/null.vtp", *pipe_name = "build/tmp/pipe.vtp";
         FILE *f;
@@ -749,7 +734,7 @@ int main(int argc, char **argv) {
         remove(link); remove(file); remove(null_link); remove(pipe_name);
         dem_world_destroy(world);
     }
-    TEST("the report says of a law of one's own what is known, and nothing of built-in laws") {
+    TEST("the report describes a user-defined law and no built-in one") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         char text[4000] = "";
@@ -768,7 +753,7 @@ int main(int argc, char **argv) {
         remove("build/tmp/report.txt");
         dem_world_destroy(world);
     }
-    TEST("a region in which nothing can be is refused, with its corners: of outlets and of fields, on each axis") {
+    TEST("an empty region of an outlet or field is rejected with its corners, on each axis") {
         dem_world *world = plain_world();
         dem_outlet_desc outlet = DEM_OUTLET_DESC;
         dem_field_desc field;
@@ -787,8 +772,8 @@ int main(int argc, char **argv) {
             }
         dem_world_destroy(world);
     }
-    TEST("a world never steps by 0 s: coefficients beyond all measure are refused as they come in, a scene that asks "
-         "for less than 1e-20 s before its first step") {
+    TEST("a world never steps by 0 s: huge coefficients are rejected when set, and a step below 1e-20 s is rejected "
+         "before the first step") {
         static const double large[] = {1e10, 1e20, 1e155, 1e300};
         dem_world_desc desc = DEM_WORLD_DESC;
         int field, i, normal;

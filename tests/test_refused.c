@@ -240,7 +240,7 @@ static long refuse_all(const refused_call *one, int impulses) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     refused_file = tmpfile();
-    TEST("a call that is refused, whatever was bad about it, changes no bit of the next 100 steps") {
+    TEST("a failing call with any bad argument changes no bit of the next 100 steps") {
         const refused_call *one;
         long refused = 0;
         int impulses;

@@ -193,8 +193,8 @@ static double warmth_of(const dem_world *w, dem_body body, void *user) {
 int main(int argc, char **argv) {
     static film f;
     test_begin(argc, argv);
-    TEST("a film tells every frame's time, places to half its resolution, speeds to 4.5 %, orientations to 0.004 rad, numbers, "
-         "materials, shapes and plotted values") {
+    TEST("a replay holds times, positions to half its resolution, speeds to 4.5 %, orientations to 0.004 rad, and all "
+         "values") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay_desc desc = DEM_REPLAY_DESC;
@@ -240,7 +240,7 @@ int main(int argc, char **argv) {
         free(f.text);
         dem_world_destroy(w);
     }
-    TEST("bodies that come and go, slots used again, walls that move, come and go are told in the frame in which they do") {
+    TEST("a replay shows added and removed bodies, reused slots and changing walls in the right frame") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_motion motion = DEM_MOTION;
@@ -280,7 +280,7 @@ int main(int argc, char **argv) {
         free(f.text);
         dem_world_destroy(w);
     }
-    TEST("a bed that settles takes less than 10 byte a grain and frame, one at rest less than 3") {
+    TEST("the replay of a settling bed takes less than 10 bytes per grain and frame, and of one at rest less than 3") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay *film;
@@ -306,7 +306,7 @@ int main(int argc, char **argv) {
         CHECK((double)(size[2] - size[0])/(250*19) < 3);
         dem_world_destroy(w);
     }
-    TEST("a function's number is filmed under its name; a title, a name and a report cannot end the page's scripts") {
+    TEST("a replay shows number_fn under its name, and no title, name or report can end the page's scripts") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay_desc desc = DEM_REPLAY_DESC;
@@ -328,7 +328,7 @@ int main(int argc, char **argv) {
         free(f.text);
         dem_world_destroy(w);
     }
-    TEST("a number of a grain that is NaN in one frame is filmed again in the next") {
+    TEST("a number that is NaN in one frame returns in the next frame of a replay") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay_desc desc = DEM_REPLAY_DESC;
@@ -353,7 +353,7 @@ int main(int argc, char **argv) {
         free(f.text);
         dem_world_destroy(w);
     }
-    TEST("bad values are refused by a sentence, and an old film stays whole until the new one is closed") {
+    TEST("bad replay values are rejected with an error, and the old file stays until the new one is closed") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay_desc desc = DEM_REPLAY_DESC;
@@ -363,8 +363,8 @@ int main(int argc, char **argv) {
         CHECK(!dem_replay_open(0, film_path, 0));
         CHECK(!dem_replay_open(w, 0, 0));
         CHECK_STR(dem_world_error_get(w), "dem_replay_open: path is null");
-        CHECK(!dem_replay_open(w, "build/tmp/no/such/film.html", 0));
-        CHECK_STR(dem_world_error_get(w), "dem_replay_open: cannot write build/tmp/no/such/film.html");
+        CHECK(!dem_replay_open(w, "build/tmp/no/such/replay.html", 0));
+        CHECK_STR(dem_world_error_get(w), "dem_replay_open: cannot write build/tmp/no/such/replay.html");
         desc.number = "charm";
         CHECK(!dem_replay_open(w, film_path, &desc));
         CHECK_STR(dem_world_error_get(w), "number is \"charm\", which desc.body_reals does not name");
@@ -400,8 +400,8 @@ int main(int argc, char **argv) {
         CHECK(system("ls build/tmp/film.html.* > build/tmp/beside 2> build/tmp/beside.err") != 0);
         dem_world_destroy(w);
     }
-    TEST("a film with an interval takes its frames by itself: at its begin, each interval later to half a step, however the run is "
-         "divided; two films of one world, and no bit of the run is changed") {
+    TEST("a replay with an interval takes a frame at the start and after each interval, and changes no bit of the "
+         "run") {
         dem_material stuff;
         dem_world *w = scene(&stuff), *bare = scene(&stuff);
         dem_replay_desc desc = DEM_REPLAY_DESC;
@@ -442,7 +442,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
         dem_world_destroy(bare);
     }
-    TEST("a film with an interval goes on after its world has read a checkpoint: no frame twice, none missing") {
+    TEST("a replay with an interval continues after a checkpoint is read, with no frame twice and none missing") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay_desc desc = DEM_REPLAY_DESC;
@@ -466,7 +466,7 @@ int main(int argc, char **argv) {
         free(f.text);
         dem_world_destroy(w);
     }
-    TEST("memory that runs out is told, at whatever request, and loses nothing but the film") {
+    TEST("a failing allocation in a replay is reported and loses only the replay") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
         dem_replay *film;
@@ -488,7 +488,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_run(w, DEM_R(0.001), 0, 0), DEM_OK);
         dem_world_destroy(w);
     }
-    TEST("filming changes no bit of a run") {
+    TEST("a replay changes no bit of a run") {
         dem_material stuff;
         dem_world *a = scene(&stuff), *b = scene(&stuff);
         dem_replay *film;

@@ -33,8 +33,8 @@ int main(int argc, char **argv) {
     test_begin(argc, argv);
     memset(&all, 0, sizeof all);
 
-    TEST("heaps and charges that were built with a slope of 15 to 35 degrees are measured within 1.5 degrees, whichever way "
-         "is down, in a plane too, and grains outside the box do not count") {
+    TEST("slopes of 15 to 35 degrees built into heaps and drums are measured within 1.5 degrees, for any gravity and "
+         "in 2D") {
         int angle, way, drum;
         for (angle = 15; angle <= 35; angle += 10)
             for (way = 0; way < 3; way++)
@@ -70,7 +70,7 @@ int main(int argc, char **argv) {
                 }
     }
 
-    TEST("grains that ran away, fell off the table, fly or form a smaller heap change no bit of a heap's or charge's slope") {
+    TEST("stray grains and smaller heaps change no bit of the measured slope of a heap or drum") {
         int way, drum;
         for (way = 0; way < 2; way++)
             for (drum = 0; drum < 2; drum++) {
@@ -112,7 +112,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("without gravity, grains, or a level axis there is no slope, and the sentence says which") {
+    TEST("without gravity, grains or a horizontal axis there is no slope, and the error says which") {
         dem_material m;
         dem_world *world = world_of(at(0, 0, 0), 0, &m);
         dem_repose r;

@@ -33,8 +33,7 @@ static dem_wall tube_of(dem_world *world, dem_material m, int count, const doubl
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("a finite cylinder that is long enough acts as the endless one, a disc as a plane: grains that fall, rub and roll "
-         "in them take the same ways") {
+    TEST("a long finite cylinder acts as the infinite one and a disc as a plane, with the same paths") {
         const dem_wall floor = {2};
         dem_wall_loads loads;
         dem_world *world[2];
@@ -65,8 +64,8 @@ int main(int argc, char **argv) {
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
 
-    TEST("in a cone a grain presses along the normal of the surface; in an inner corner it touches both pieces, at an outer "
-         "one the ring, and where pieces go straight on there is no seam") {
+    TEST("a grain in a cone presses along the normal; inner corners give two contacts, outer ones the ring, straight "
+         "joins no seam") {
         static const double bowl_r[] = {0.05, 0.05, 0}, bowl_h[] = {0.1, 0, -0.05};
         static const double roof_r[] = {0.05, 0.02, 0.02}, roof_h[] = {0, 0.03, 0.1};
         dem_world *world = world_of(0, 0);
@@ -132,8 +131,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a ball that slides through a bowl of rings, a tenth of its radius deep, keeps its energy at each, however blunt "
-         "the corner") {
+    TEST("a ball sliding through a bowl of rings at an overlap of R/10 keeps its energy at each ring, however blunt") {
         int rings;
         for (rings = 4; rings <= DEM_RINGS && fine; rings += 4) {
             double r[DEM_RINGS], h[DEM_RINGS], before, after, worst = 0;
@@ -165,7 +163,7 @@ int main(int argc, char **argv) {
         CHECK(1);
     }
 
-    TEST("a drum with ends, a cone and a neck holds its gas: no grain leaves, energy stays, also while it turns and shakes") {
+    TEST("a drum with ends, a cone and a neck confines its gas with constant energy, also rotating and shaken") {
         static const double r[] = {0, 0.03, 0.03, 0.012, 0.012, 0}, h[] = {0, 0, 0.03, 0.05, 0.07, 0.07};
         int moving;
         for (moving = 0; moving < 3; moving++) {
@@ -205,7 +203,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("clusters slide down a cone as they do on the mesh of it, and a funnel bears the weight of what rests in it") {
+    TEST("clusters slide down a cone as down its mesh, and a funnel carries the weight of its contents") {
         dem_world *world = world_of(9.81, 0);
         dem_material m = scene_material(world, 2e6, 0.3, 0.5, 0.1);
         static const dem_real two[] = {DEM_R(-0.002), 0, 0, DEM_R(0.002), 0, 0};
@@ -228,8 +226,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("images of a funnel in a periodic box push alike, pictures hold its sides, checkpoints know its rings, ellipsoids are "
-         "refused by name") {
+    TEST("periodic images of a funnel repel alike, files and checkpoints hold its rings, and ellipsoids are rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world[2];
         dem_material m;
@@ -273,7 +270,7 @@ int main(int argc, char **argv) {
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
 
-    TEST("rings that make no surface are refused by number") {
+    TEST("rings that form no surface are rejected with the ring's number") {
         dem_world *world = world_of(0, 0);
         dem_material m = scene_material(world, 1e6, 0.6, 0.3, 0);
         static const double r[] = {0.1, 0.1, 0, 0}, h[] = {0, 0, 1, 2};

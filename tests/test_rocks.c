@@ -132,8 +132,8 @@ static void holds(const dem_contact *c, dem_real *memory, dem_contact_force *for
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("rocks: gaps between rocks are those of all separating planes where they overlap, and never more than the distance "
-         "of their corners, edges and faces where they do not") {
+    TEST("rocks: gaps between rocks equal the separating planes' when overlapping, and never exceed the feature "
+         "distance when apart") {
         dem_material m;
         dem_world *w = rigid(0, 0, 0, &m);
         uint64_t random = 11;
@@ -171,8 +171,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("rocks: the gap to a tube, from inside and outside, and to a cone is that of points all over their faces, to what "
-         "lies between those") {
+    TEST("rocks: the gap to a tube, inside and outside, and to a cone equals that of sampled surface points") {
         dem_material m;
         dem_world *w = rigid(0, 0, 0, &m);
         uint64_t random = 3;
@@ -206,9 +205,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("rocks: a block stays on a slope up to atan mu and slides with g (sin - mu cos) above, on a plane, on a mesh "
-         "whose edges it crosses and on another block; one twice as high as wide tips over where its width over its height "
-         "is tan a") {
+    TEST("rocks: a block sticks up to atan mu, slides at g (sin - mu cos) above and tips at width/height, on any flat "
+         "surface") {
         const double pi = 3.14159265358979, limit = atan(0.5), part = 0.05*pi/180;
         double spin;
         int floor;
@@ -225,8 +223,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("rocks: a cube that falls flat leaves with its restitution and does not turn; one that falls on a corner leaves "
-         "with it there, at that corner") {
+    TEST("rocks: a cube that falls flat leaves with its restitution without rotation; on a corner it does so at that "
+         "corner") {
         int k, corner;
         for (k = 0; k <= 4; k++)
             for (corner = 0; corner < 2; corner++) {
@@ -262,8 +260,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("rocks: a cube on its edge, a needle and a tetrahedron on its corner, a little in a floor of two triangles and on or "
-         "near the edge between them, stay on it as on a plane") {
+    TEST("rocks: cubes, needles and tetrahedra on edges and corners stay on a floor of two triangles as on a plane") {
         int pose, k, depth;
         for (pose = 0; pose < 3; pose++)
             for (depth = 0; depth < 3; depth++)
@@ -299,8 +296,7 @@ int main(int argc, char **argv) {
                 }
     }
 
-    TEST("rocks: a plate that falls onto the rim of a tube, thin, thick or of a cone, comes to rest on it or falls off it, and "
-         "is nowhere deep in it") {
+    TEST("rocks: a plate dropped onto the rim of a tube or cone rests on it or falls off, and is nowhere deep in it") {
         int kind, k;
         for (kind = 0; kind < 3; kind++)
             for (k = 0; k < 5; k++) {
@@ -326,8 +322,8 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("rocks: in thousands of impacts of rocks, cubes, balls and ellipsoids in a box none gains energy, and momentum is "
-         "kept where there are no walls") {
+    TEST("rocks: thousands of impacts of mixed shapes in a box never gain energy, and conserve momentum between "
+         "bodies") {
         int friction;
         for (friction = 0; friction < 2; friction++) {
             dem_material m;
@@ -367,8 +363,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("rocks: a stack of ten cubes stands for 600 steps of 1 ms and creeps slower than 1e-6 m/s; its floor bears its "
-         "weight") {
+    TEST("rocks: a stack of ten cubes is stable for 600 steps of 1 ms, creeps below 1e-6 m/s, and loads its floor "
+         "with its weight") {
         dem_material m;
         dem_world *w = rigid_to(1e-7, earth, 0, 0.5, &m);
         dem_shape cube = scene_box(w, 0.02, 0.02, 0.02);
@@ -391,8 +387,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("rocks: a heap of rocks, cubes, balls, ellipsoids and clusters in a drum: threads 1, 2, 3, 4 and 8, a second world "
-         "and a checkpoint give the same bits") {
+    TEST("rocks: mixed shapes in a drum have the same bits for 1 to 8 threads, a second world and a checkpoint") {
         const char *path = "build/tmp/rocks.dem";
         uint64_t hash[7];
         int k;
@@ -417,8 +412,7 @@ int main(int argc, char **argv) {
         for (k = 1; k < 7; k++) CHECK(hash[k] == hash[0]);
     }
 
-    TEST("rocks: a law that reaches beyond touch sees the gap between two cubes, and between one and a plane, a mesh, a "
-         "tube and a ball, and pulls with it") {
+    TEST("rocks: a law with a range acts over the gap of two cubes, and of a cube and a plane, mesh, tube and ball") {
         int k;
         for (k = 0; k < 5 && fine; k++) {
             dem_world_desc desc = DEM_WORLD_DESC;

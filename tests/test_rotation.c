@@ -179,7 +179,7 @@ static top spin_on_floor(dem_rotation rotation, double dt, double time, double l
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("quaternions turn and turn back, and the product turns by its right factor first") {
+    TEST("a quaternion and its inverse cancel, and a product rotates by its right factor first") {
         const dem_quat p = dem_quat_about(at(1, 2, 3), DEM_R(0.7));
         const dem_quat q = dem_quat_about(at(-2, 0.5, 1), DEM_R(2.1));
         const dem_vec3 v = at(0.3, -1.2, 0.8), z = dem_quat_rotate(dem_quat_about(at(0, 0, 2),
@@ -195,7 +195,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(z.x, 0, eps); CHECK_NEAR(z.y, 1, eps); CHECK_NEAR(z.z, 0, eps);
     }
 
-    TEST("a free body of moments 1, 2, 3 from spin 1, 1, 1 is where elliptic functions say") {
+    TEST("a free body of moments 1, 2, 3 and spin 1, 1, 1 follows the elliptic functions") {
         const double inertia[3] = {1, 2, 3}, w[3] = {1, 1, 1};
         const double w10[3] = {-.60347042, -1.27899314, .88772679};
         const double w100[3] = {-.50976625, -1.31914304, .86792120};
@@ -241,7 +241,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("NO_SQUISH keeps a free body's energy in a band that stays put for a million steps") {
+    TEST("NO_SQUISH keeps a free body's energy in a fixed band for a million steps") {
         const double inertia[3] = {1, 2, 3}, dt = 0.02;
         dem_world *world = free_world(DEM_ROTATION_NO_SQUISH, dt);
         const dem_body body = body_with(world, inertia[0], inertia[1], inertia[2]);
@@ -281,7 +281,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("Poinsot's body [HUG]: moments .3, .35, .4 at 15 rad/s flip every 6.1675 s") {
+    TEST("Poinsot's body [HUG]: moments 0.3, 0.35, 0.4 at 15 rad/s flip every 6.1675 s") {
         const double inertia[3] = {0.3, 0.35, 0.4}, w[3] = {0.1, 15, 0.1};
         int r, i;
         if (SINGLE) { CHECK(1); continue; }            /* as above */
@@ -343,7 +343,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("spheres turn by exactly spin times time once orientations are asked for") {
+    TEST("spheres rotate by exactly spin times time when orientations are followed") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc stuff = scene_stuff(1e6, 0.5, 0, 0);
         dem_world *world;
@@ -366,7 +366,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a sphere's orientation stays a rotation, whether it turns by 0.01 or by 100 rad in a step") {
+    TEST("a sphere's orientation stays a rotation at 0.01 to 100 rad per step") {
         static const double turns[5] = {0.01, 1, 2, 6.6, 100};
         int k;
         for (k = 0; k < 5; k++) {
@@ -403,7 +403,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("with a torque that changes all the time, halving the step quarters the error") {
+    TEST("under a torque that varies in time, halving the step quarters the error") {
         /* The heavy top of Simo & Wong needs a pivot, which there is none of: the floor's push on a
            leaning spheroid that is not in steady motion takes its place. It never leaves the floor,
            so that forces stay smooth. */

@@ -296,25 +296,23 @@ static dem_vec3 brake_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real ma
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("every method gives one list and one hash in a closed box, for every "
-         "skin") {
+    TEST("every search gives one list and one hash in a closed box, for every skin") {
         churn_skins(0, 0, 0, 0);
     }
-    TEST("every method gives one list and one hash with one periodic axis") {
+    TEST("every search gives one list and one hash with one periodic axis") {
         churn_skins(1, 0, 0, 0);
     }
-    TEST("every method gives one list and one hash with two periodic axes") {
+    TEST("every search gives one list and one hash with two periodic axes") {
         churn_skins(0, 1, 1, 0);
     }
-    TEST("every method gives one list and one hash with three periodic axes") {
+    TEST("every search gives one list and one hash with three periodic axes") {
         churn_skins(1, 1, 1, 0);
     }
-    TEST("every method gives one list and one hash for discs in a plane") {
+    TEST("every search gives one list and one hash for discs in a plane") {
         churn_skins(0, 0, 0, 1);
         churn_skins(1, 0, 0, 1);
     }
-    TEST("one grain out and one in, the same number as before: the linked list forgets the one "
-         "gone") {
+    TEST("when one grain leaves and one enters, the linked list forgets the former") {
         churn c = {{0, 0, 0}, 0, 1e-3, 0.08, 60, 0};
         dem_world *world[METHODS];
         dem_world_desc desc[METHODS];
@@ -332,7 +330,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(wrong, 0);
         for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
     }
-    TEST("radii 1 : 100 in one world: every method lists what brute force finds") {
+    TEST("radii 1:100 in one world: every search lists what brute force finds") {
         churn c = {{0, 0, 0}, 0, 1e-4, 0.1, 0, 0};
         int periodic, m;
         for (periodic = 0; periodic < 2; periodic++) {
@@ -369,8 +367,8 @@ int main(int argc, char **argv) {
             for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
         }
     }
-    TEST("mixtures of 1 : 10 and 1 : 100, periodic or not, in space and in a plane: every method "
-         "gives the list of all pairs, entry by entry") {
+    TEST("mixtures of 1:10 and 1:100, periodic or not, 2D and 3D: every search gives the brute-force list, entry by "
+         "entry") {
         static const mix all[] = {
             {10, 0.5, 2600, 0, 0, 1}, {10, 0.5, 2600, 1, 0, 1}, {10, 0.5, 2600, 6, 0, 1},
             {10, 0.5, 2600, 7, 0, 1}, {10, 0.3, 2600, 0, 1, 1}, {10, 0.3, 2600, 3, 1, 1},
@@ -383,7 +381,7 @@ int main(int argc, char **argv) {
         for (i = 0; i < sizeof all/sizeof *all; i++)
             mix_compare(all[i], all[i].ratio < 3 ? 1 : all[i].share < 0 && !all[i].planar ? 3 : 2);
     }
-    TEST("levels give one list for any number of threads") {
+    TEST("the hierarchical grid gives one list for any number of threads") {
         mix x = {30, -1, 20000, 3, 0, 1};
         dem_world *one = mix_world(&x, DEM_SEARCH_HIERARCHICAL), *other;
         CHECK(dem_counters_get(one).domains > 4);
@@ -394,8 +392,8 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(one);
     }
-    TEST("the library takes levels for mixtures of 1 : 10 and 1 : 100, and the grid for grains "
-         "alike or 1 : 2, and says so") {
+    TEST("the library chooses the hierarchical grid for mixtures of 1:10 and 1:100, a uniform grid to 1:2, and "
+         "reports it") {
         CHECK_EQ(mix_chosen(10, 0.5), DEM_SEARCH_HIERARCHICAL);
         CHECK_EQ(mix_chosen(10, 0.1), DEM_SEARCH_HIERARCHICAL);
         CHECK_EQ(mix_chosen(100, 0.9), DEM_SEARCH_HIERARCHICAL);
@@ -404,7 +402,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(mix_chosen(2, 0.5), DEM_SEARCH_GRID);
         CHECK_EQ(mix_chosen(2, 0.01), DEM_SEARCH_GRID);
     }
-    TEST("two swarms a kilometre apart are searched without a grid that spans the void") {
+    TEST("two swarms a kilometre apart are searched without a grid over the void") {
         churn c = {{0, 0, 0}, 0, 1e-3, 0.08, 0, 0};
         dem_world_desc desc;
         int m, i, contacts;
@@ -425,7 +423,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("how long a near list lasts does not change a bit: made in every step, or when it is due") {
+    TEST("the lifetime of a pruned neighbour list changes no bit: rebuilt every step or when due") {
         int integrator, late, k;
         for (integrator = DEM_INTEGRATOR_VELOCITY_VERLET; integrator <= DEM_INTEGRATOR_LEAPFROG; integrator++) {
             uint64_t hash[2], makes[2] = {0, 0};
@@ -453,8 +451,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(hash[0], hash[1]);
         }
     }
-    TEST("clusters that tumble: which of their spheres are near is told in time, made in every step or when it is due; of "
-         "few spheres, of more than a pair has room for, and spheres alone") {
+    TEST("in tumbling clusters every near member sphere is listed in time, for lists rebuilt every step or when due") {
         uint64_t hash[2], makes[2] = {0, 0};
         int late, k, i, d, few_near = 0, many_near = 0, contacts = 0;
         for (late = 0; late < 2; late++) {
@@ -514,7 +511,7 @@ int main(int argc, char **argv) {
         CHECK(makes[0] > 3*makes[1]);
         CHECK_EQ(hash[0], hash[1]);
     }
-    TEST("the list stays safe with every integrator when all grains brake within one step") {
+    TEST("the neighbour list stays complete with every integrator when all grains brake within one step") {
         int i, m;
         for (i = DEM_INTEGRATOR_VELOCITY_VERLET; i <= DEM_INTEGRATOR_LEAPFROG; i++)
             for (m = 0; m < METHODS; m++) {
@@ -575,7 +572,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(scene_step(world, 4000), DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("many grains added at once to a world with contact memory find their own contacts") {
+    TEST("many grains inserted at once into a world with contact history find their own contacts") {
         int m;
         for (m = 0; m < METHODS; m++) {
             dem_world_desc desc = DEM_WORLD_DESC;

@@ -288,7 +288,7 @@ static double volume_radius(const dem_ellipsoid *e) {
 static void meeting_tests(void) {
     const double eps = SINGLE ? 2e-6 : 1e-14;
 
-    TEST("two ellipsoids that are spheres meet as spheres do, by all three depths") {
+    TEST("two spherical ellipsoids collide as spheres do, with all three definitions of depth") {
         dem_ellipsoid a, b;
         dem_ellipsoid_contact m;
         uint64_t seed = 3;
@@ -310,7 +310,7 @@ static void meeting_tests(void) {
         CHECK_NEAR(m.depth_conservative, 0.2, 10*eps);
     }
 
-    TEST("the scale at which two ellipsoids touch is the largest of [PW85]'s function, rooted") {
+    TEST("the contact scale of two ellipsoids is the root of the maximum of [PW85]'s function") {
         static const double aspects[4] = {1.5, 3, 10, 100};
         static const double far[3] = {0.6, 0.97, 1.4};
         uint64_t seed = 11;
@@ -328,7 +328,7 @@ static void meeting_tests(void) {
             }
     }
 
-    TEST("at the scale of touching the point lies on both ellipsoids, the normal is that of both") {
+    TEST("at the contact scale the point lies on both ellipsoids, with their common normal") {
         uint64_t seed = 5;
         int i;
         for (i = 0; i < 60; i++) {
@@ -361,7 +361,7 @@ static void meeting_tests(void) {
         }
     }
 
-    TEST("quartic and eigenvectors of [RUB15], shrunk ever less, tend to the same meeting") {
+    TEST("quartic and eigenvectors of [RUB15] converge to the same contact as shrinkage vanishes") {
         uint64_t seed = 21;
         double error[2][3] = {{0, 0, 0}, {0, 0, 0}};
         int i, k, pairs = 0;
@@ -421,7 +421,7 @@ static void meeting_tests(void) {
         CHECK(dot(m.normal, m.normal) < 1.01 && dot(m.normal, m.normal) > 0.99);
     }
 
-    TEST("an ellipsoid inside another overlaps it, which the sign test of [RUB15] denies") {
+    TEST("an ellipsoid inside another overlaps it, which the sign test of [RUB15] misses") {
         dem_ellipsoid a, b;
         dem_ellipsoid_contact m;
         uint64_t seed = 2;
@@ -440,7 +440,7 @@ static void meeting_tests(void) {
         }
     }
 
-    TEST("an ellipsoid on a huge one is one on a plane: depth is its height less the gap") {
+    TEST("an ellipsoid on a huge one acts as on a plane: depth is its height less the gap") {
         uint64_t seed = 8;
         int i;
         if (SINGLE) { CHECK(1); continue; }
@@ -465,7 +465,7 @@ static void meeting_tests(void) {
         }
     }
 
-    TEST("a meeting does not change when both are moved, turned or swapped") {
+    TEST("a contact of ellipsoids is invariant under translation, rotation and exchange") {
         uint64_t seed = 31;
         int i;
         for (i = 0; i < 40; i++) {
@@ -686,7 +686,7 @@ static void cluster_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("a rod of five spheres has the moments of a body of revolution, counted once or in full") {
+    TEST("a rod of five spheres has the moments of a body of revolution, with overlaps counted once or fully") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         dem_real p[15];
         double c[5], volume, axial, across, s[3];
@@ -762,7 +762,7 @@ static void cluster_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("inertia given by the user is kept: its principal axes turn back into it") {
+    TEST("given inertia is kept: its principal axes transform back to it") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         const dem_real origin[3] = {0, 0, 0};
         const double given[6] = {2, 3, 4, 0.3, -0.2, 0.5}; /* xx yy zz xy xz yz */
@@ -801,7 +801,7 @@ static void cluster_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("spheres of one cluster never push each other, however deep they overlap") {
+    TEST("spheres of one cluster never repel each other, at any overlap") {
         dem_world_desc desc = DEM_WORLD_DESC;
         const dem_real p[9] = {0, 0, 0, DEM_R(0.005), 0, 0, 0, DEM_R(0.004), 0};
         dem_world *world;
@@ -888,8 +888,8 @@ static void wall_tests(void) {
         }
     }
 
-    TEST("an ellipsoid overlaps a plane, and a flat mesh, by its support height less the gap, "
-         "or by as much as its volume's sphere where energy is to be conserved") {
+    TEST("an ellipsoid overlaps a plane or flat mesh by support height less gap, or by its volume's sphere if "
+         "conservative") {
         uint64_t seed = 4;
         int i, k;
         for (i = 0; i < 24; i++) {
@@ -937,7 +937,7 @@ static void wall_tests(void) {
         }
     }
 
-    TEST("the point at which a leaning ellipsoid touches leaves with the restitution set") {
+    TEST("the contact point of a leaning ellipsoid leaves with the restitution set") {
         uint64_t seed = 12;
         int i;
         for (i = 0; i < 8; i++) {
@@ -980,7 +980,7 @@ static void wall_tests(void) {
         }
     }
 
-    TEST("a long ellipsoid lies across a drum on both its ends, and bounces there without gain") {
+    TEST("a long ellipsoid lies across a drum on both its ends, and bounces there without gaining energy") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material m;
@@ -1011,7 +1011,7 @@ static void wall_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("Hertz keeps the energy of an elastic collision of ellipsoids, too") {
+    TEST("Hertz's law conserves the energy of an elastic collision of ellipsoids") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material m;
@@ -1290,7 +1290,7 @@ static void gas_tests(void) {
         dem_world_destroy(c.world);
     }
 
-    TEST("a dilute gas of ellipsoids, xi 2, e .8, cools at the rate of kinetic theory") {
+    TEST("a dilute gas of ellipsoids, xi 2, e 0.8, cools at the rate of kinetic theory") {
         /* theta 1.0405, zeta* .08834, S_c 90.8317 b2: docs/ellipsoids.md, as g at .02 */
         const double area = 90.8317, g = 1.0562;
         cloud c = cloud_make(2, 10, 0.02, 0.03, 0.8, 1.04);
@@ -1349,7 +1349,7 @@ static void gas_tests(void) {
 }
 
 static void promise_tests(void) {
-    TEST("a frame far off, spheres far apart and quaternions of any length do no harm") {
+    TEST("an offset frame, widely spaced spheres and unnormalised quaternions do no harm") {
         const dem_real far[6] = {1000, 0, 0, DEM_R(1000.0015), 0, 0}, apart[6] = {0, 0, 0, 0, 1, 1};
         const dem_real near_by[6] = {0, 0, 0, DEM_R(0.0015), 0, 0}, long_rod[6] = {0, 0, 0, 0, 1, 1e-3f};
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
@@ -1390,7 +1390,7 @@ static void promise_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("a body that turns by more than a radian a step is refused, and by itself dt follows it") {
+    TEST("a body that rotates by more than a radian per step is rejected, and dt = 0 follows its spin") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         int k;
@@ -1414,7 +1414,7 @@ static void promise_tests(void) {
         }
     }
 
-    TEST("orientation, spin and shape come back as they were set, in the user's own frame") {
+    TEST("orientation, spin and shape read back as they were set, in the user's frame") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         const dem_real p[9] = {0, 0, 0, DEM_R(0.01), DEM_R(0.004), 0, DEM_R(0.003), DEM_R(0.012),
                                DEM_R(0.001)};
@@ -1448,7 +1448,7 @@ static void promise_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("a scaled body has the mass of its cube and the moments of its fifth power") {
+    TEST("a scaled body has mass and moments scaled by its cube and fifth power") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         const dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
         const dem_shape shape = dem_shape_ellipsoid_add(world, at(0.01, 0.02, 0.03));
@@ -1466,7 +1466,7 @@ static void promise_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("bad axes, quaternions, scales, ids and descs are refused and leave the world as it was") {
+    TEST("bad axes, quaternions, scales, ids and descs are rejected and leave the world unchanged") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         const dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
         const dem_shape good = dem_shape_ellipsoid_add(world, at(1, 2, 3));
@@ -1517,7 +1517,7 @@ static void promise_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("shapes of all sorts: 1, 2, 3 threads, a second world, a checkpoint give the same bits") {
+    TEST("mixed shapes have the same bits for 1, 2, 3 threads, in a second world and after a checkpoint") {
         const char *path = "build/tmp/shapes.dem";
         uint64_t hash[5];
         int k;
@@ -1545,7 +1545,7 @@ static void promise_tests(void) {
         for (k = 1; k < 5; k++) CHECK(hash[k] == hash[0]);
     }
 
-    TEST("bodies filled in at random do not touch, whatever way they turn") {
+    TEST("bodies filled in at random positions and orientations do not touch") {
         dem_world_desc desc = linear_desc(1e-6);
         dem_world *world = dem_world_create(&desc);
         const dem_material m = soft_stuff(world, 1e5, 1, 0);
@@ -1669,7 +1669,7 @@ static void own_linear(const dem_contact *c, dem_real *memory, dem_contact_force
 }
 
 static void more_tests(void) {
-    TEST("two ellipsoids part with the restitution set, at the point of touch along the normal") {
+    TEST("two ellipsoids separate with the restitution set, at the contact point along the normal") {
         double sum = 0, e = 0;
         int i, met = 0;
         for (i = 0; i < 40; i++) {
@@ -1682,7 +1682,7 @@ static void more_tests(void) {
         CHECK_NEAR(sum/met, 0.8, 0.005);
     }
 
-    TEST("the overlap of [RUB15] leaves a floor of energy error that the conservative one has not") {
+    TEST("the overlap of [RUB15] leaves a floor of energy error; the conservative one has none") {
         const double stiffness = 1e6, mass = mass_of(2500, 0.01, 0.012, 0.02);
         const double dt = pi*sqrt(mass/2/stiffness)/800;
         double floor_of[3] = {0, 0, 0};
@@ -1735,7 +1735,7 @@ static void more_tests(void) {
         for (k = 1; k < 5; k++) CHECK_NEAR(height[k], height[0], SINGLE ? 1e-3 : 1e-7);
     }
 
-    TEST("a linear law of one's own moves ellipsoids and clusters as the built-in one does") {
+    TEST("a user-defined linear law moves ellipsoids and clusters as the built-in one does") {
         double height[2];
         int k;
         for (k = 0; k < 2; k++) {
@@ -1754,7 +1754,7 @@ static void more_tests(void) {
         CHECK_NEAR(height[1], height[0], SINGLE ? 1e-4 : 1e-12);
     }
 
-    TEST("spheres, ellipsoids and clusters meet and keep momentum and angular momentum") {
+    TEST("spheres, ellipsoids and clusters collide with conserved momentum and angular momentum") {
         const dem_real p[6] = {DEM_R(-0.008), 0, 0, DEM_R(0.008), 0, 0};
         int i, j;
         for (i = 0; i < 3; i++)
@@ -1788,8 +1788,8 @@ static void more_tests(void) {
             }
     }
 
-    TEST("clusters whose contacts are shared collide elastically without gaining or losing energy, momentum or angular "
-         "momentum, whichever of their spheres touch") {
+    TEST("clusters with merged contacts collide elastically with conserved energy and momenta, whichever spheres "
+         "touch") {
         const dem_real p[9] = {0, 0, 0, DEM_R(0.008), 0, 0, DEM_R(-0.004), DEM_R(0.006), DEM_R(0.002)};
         const double k = 1e5, mass = 2500*4.2e-6*2.2;
         double worst[2] = {0, 0};
@@ -1837,7 +1837,7 @@ static void more_tests(void) {
         CHECK_NEAR(worst[1], 0, SINGLE ? 1e-3 : 2.5e-4);
     }
 
-    TEST("needles of 20 to 1 collide elastically without gaining or losing energy") {
+    TEST("needles of 20:1 collide elastically with conserved energy") {
         dem_world_desc desc;
         dem_world *world;
         const double k = 1e5, mass = mass_of(2500, 0.001, 0.001, 0.02);
@@ -1872,7 +1872,7 @@ static void more_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("a fixed ellipsoid stays where it is and pushes as a wall does") {
+    TEST("a fixed ellipsoid stays in place and repels as a wall does") {
         dem_world_desc desc = mixture_desc();
         dem_world *world;
         dem_body_state s, ball;
@@ -1896,7 +1896,7 @@ static void more_tests(void) {
         dem_world_destroy(world);
     }
 
-    TEST("when the last bodies that are not spheres go, their contacts go with them") {
+    TEST("removing the last non-spherical bodies removes their contacts") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;
@@ -1919,7 +1919,7 @@ static void more_tests(void) {
         for (i = 0; i < DEMI_DOMAINS; i++) CHECK_EQ(world->domains[i].kept, 0);
         dem_world_destroy(world);
     }
-    TEST("bodies of all shapes are removed and leave, and the rest goes on") {
+    TEST("bodies of all shapes are removed and leave, and the others continue") {
         dem_world_desc desc = mixture_desc();
         dem_world *world;
         dem_body_counts balance;

@@ -198,7 +198,7 @@ int main(int argc, char **argv) {
     const int n = 100000;
     test_begin(argc, argv);
 
-    TEST("rain on a square weave: spheres pass untouched with ((a - d)/(a + w))^2 (Gaudin)") {
+    TEST("rain on a square weave: a fraction ((a - d)/(a + w))^2 of spheres passes untouched (Gaudin)") {
         static const double rows[3][4] = {{1, 0.5, 0.5, 0.11111}, {1, 0.5, 0.8, 0.017778},
                                           {2, 1, 1.5, 0.027778}};
         int i;
@@ -208,7 +208,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("rain on slots, square and round holes passes with the open share of each") {
+    TEST("rain on slots, square and round holes passes in the fraction of open area") {
         const double a = 1, w = 0.5, d = 0.6, pi = 3.14159265358979;
         dem_sieve_desc s = sieve_of(DEM_SIEVE_SLOTS, a, w);
         double p = (a - d)/(a + w);
@@ -231,7 +231,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(rain(&s, d/2, n, 13), p, 3*sigma(p, n) + 0.01*p);   /* rows are cut */
     }
 
-    TEST("what falls through a weave untouched in a run is what geometry says, grain by grain") {
+    TEST("the grains that fall through a weave untouched are those that geometry predicts, one by one") {
         const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004);
         dem_world *world = world_of(9.81, 1e-5);
         dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
@@ -274,8 +274,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("on a plate's solid part, between wires far apart, and above crossings a grain feels one "
-         "wall's force") {
+    TEST("on a plate, between distant wires and above crossings a grain feels one wall's force") {
         dem_sieve_desc s = sieve_of(DEM_SIEVE_SQUARE, 1, 1);
         dem_vec3 f;
         s.thickness = DEM_R(0.2);
@@ -300,8 +299,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(f.x, 0, 1e-6);
     }
 
-    TEST("how a normal turns is what it does between two places, on wires and their ends, crossings, strips, "
-         "corners and rims, thin and thick") {
+    TEST("a contact normal turns with position as its curvature says, on wires, ends, crossings, strips, corners and "
+         "rims") {
         static const dem_sieve_kind kinds[] = {
             DEM_SIEVE_WIRES, DEM_SIEVE_BARS, DEM_SIEVE_SQUARE, DEM_SIEVE_ROUND, DEM_SIEVE_SLOTS,
             DEM_SIEVE_REDUCED};
@@ -320,7 +319,7 @@ int main(int argc, char **argv) {
                 CHECK_EQ(off, 0);
             }
     }
-    TEST("the force on a grain has no jump on any way over wires, rims and crossings") {
+    TEST("the force on a grain is continuous along any path over wires, rims and crossings") {
         static const dem_sieve_kind kinds[5] = {DEM_SIEVE_WIRES, DEM_SIEVE_SQUARE, DEM_SIEVE_ROUND,
                                                 DEM_SIEVE_SLOTS, DEM_SIEVE_BARS};
         uint64_t seed = 2;
@@ -378,7 +377,7 @@ int main(int argc, char **argv) {
         if (longer) printf("%.3g contacts, %.3g of them with wires\n", contacts, wires);
     }
 
-    TEST("grains that only just fit pass in the end when nothing rubs") {
+    TEST("grains that barely fit pass in the end without friction") {
         shaking q = shaking_of(sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004), 0.01*(1 - 1e-6));
         int left[8];
         q.amplitude = 0.0003;
@@ -390,8 +389,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(left[7], 0);
     }
 
-    TEST("grains that lie alone on a shaking weave are left behind in geometric numbers: first-order "
-         "sieving") {
+    TEST("single grains on a shaking weave remain in geometric progression: first-order sieving") {
         shaking q = shaking_of(sieve_of(DEM_SIEVE_WIRES, 0.01, 0.005), 0.0085);
         int left[12], i, first = 2, m = 0;       /* straight once those over a hole are through */
         double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, r2;
@@ -438,8 +436,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("an elastic bounce on crossings and corners keeps its energy to 3.5 overlaps over the radius, "
-         "on bars and round holes to 1e-3") {
+    TEST("elastic bounces on crossings and corners keep energy to 3.5 overlaps per radius, on bars and round holes to "
+         "1e-3") {
         static const dem_sieve_kind kinds[4] = {DEM_SIEVE_WIRES, DEM_SIEVE_SQUARE, DEM_SIEVE_BARS,
                                                 DEM_SIEVE_ROUND};
         static const double stiffness[2] = {2e3, 2e5};
@@ -464,7 +462,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a grain that rolls over the rim of a sieve, or flies against it, gains nothing") {
+    TEST("a grain that rolls over a sieve's rim, or flies against it, gains no energy") {
         static const dem_sieve_kind kinds[5] = {DEM_SIEVE_SQUARE, DEM_SIEVE_ROUND, DEM_SIEVE_SLOTS,
                                                 DEM_SIEVE_WIRES, DEM_SIEVE_REDUCED};
         int i, k;
@@ -525,7 +523,7 @@ int main(int argc, char **argv) {
         CHECK((double)height[0][0] < 0.007 && (double)height[0][0] > 0.0065);
     }
 
-    TEST("an endless sieve that swings does not ask for a new list at every step") {
+    TEST("an endless oscillating sieve needs no list rebuild every step") {
         dem_world *world = world_of(9.81, 1e-5);
         dem_material stuff = stiff(world, 1e4, 0.3, 0);
         const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.004, 0.002);
@@ -542,7 +540,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a cluster of which a part is under way through a reduced hole gains nothing") {
+    TEST("a cluster partly inside a reduced hole gains no energy") {
         static const dem_real places[6] = {DEM_R(-0.003), 0, 0, DEM_R(0.003), 0, 0};
         int i;
         for (i = 0; i < 6; i++) {
@@ -576,7 +574,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a sieve's frame is one of unit vectors at right angles, whatever directions are given") {
+    TEST("a sieve's frame is orthonormal for any given directions") {
         static const double rows[6][6] = {{1, 1, 1, 1, 1, 1}, {1, 1, 1, 0.1, 0.1, 0.1 + 1e-15},
             {0, 0, 0, 0, 0, 1}, {1e200, 0, 1e200, 0, 1e-200, 0}, {1e-160, 0, 1e-160, 1e200, 1e200, 0},
             {1, 0, 0, 1, 1e-9, 0}};
@@ -618,8 +616,7 @@ int main(int argc, char **argv) {
         CHECK_REL(speed[1], (double)speed[0], 2e-3);
     }
 
-    TEST("reduced holes let through ((1 - zeta)(2w - 2r)/(2w + g))^2 of what falls on them, whole, "
-         "and nothing too large") {
+    TEST("reduced holes pass ((1 - zeta)(2w - 2r)/(2w + g))^2 of the grains that land, whole, and none too large") {
         static const struct { int model; double zeta, r; } rows[4] = {
             {1, 0.2, 0.004}, {1, 0.8, 0.001}, {2, 0.6, 0.0049}, {2, 0.2, 0.0051}};
         int i, k;
@@ -669,7 +666,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a sieve of wires gives the same bits after a checkpoint, and another sieve refuses it") {
+    TEST("a sieve of wires has the same bits after a checkpoint, and another sieve fails to read it") {
         static const char path[] = "build/tmp/sieve.ckpt";
         uint64_t hash[2] = {0, 1};
         int i;
@@ -702,7 +699,7 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("sieves with bad sizes are refused, by name") {
+    TEST("sieves with bad sizes are rejected with the size named") {
         dem_world *world = world_of(0, 0);
         dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
         dem_sieve_desc s = sieve_of(DEM_SIEVE_NONE, 1, 1);

@@ -140,8 +140,7 @@ static dem_world *shaken(int impulses, int sort, int threads) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("sieve rocks: elastic rocks and boxes that fall on wires, bars and plates, through holes and stuck half way, keep "
-         "their energy") {
+    TEST("sieve rocks: elastic rocks and boxes on wires, bars and plates, in holes and stuck midway conserve energy") {
         int sort;
         for (sort = 0; sort < SORTS; sort++) {
             dem_sieve_desc s = sieve_of(sort, 0.012, 0.005);
@@ -174,8 +173,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("sieve rocks: the gap to a sieve is that of points all over their faces, to what lies between those; moved "
-         "along the normal by more than that they overlap by no more than the rest") {
+    TEST("sieve rocks: the gap to a sieve equals that of sampled surface points, and moving out by it removes the "
+         "overlap") {
         dem_material m;
         dem_world *w = world_of(1, 0, 0, 0, 0, 1e-3, 1, &m);
         uint64_t random = 19;
@@ -211,8 +210,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("sieve rocks: a cube that is smaller than the holes falls through, by springs and by impulses, one that is larger "
-         "stays and lies still") {
+    TEST("sieve rocks: a cube smaller than the holes falls through, a larger one rests, under springs and impulses") {
         int impulses, sort, large;
         for (impulses = 0; impulses < 2; impulses++)
             for (sort = 0; sort < SORTS; sort++)
@@ -234,8 +232,7 @@ int main(int argc, char **argv) {
                 }
     }
 
-    TEST("sieve rocks: a block slides over bars, holes and weave with g (sin - mu cos), by impulses, and its edges do not "
-         "catch") {
+    TEST("sieve rocks: under impulses a block slides over bars, holes and weave at g (sin - mu cos) without catching") {
         int sort;
         for (sort = 0; sort < SORTS; sort++) {
             dem_sieve_desc s = sieve_of(sort, 0.006, 0.004);
@@ -254,7 +251,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("sieve rocks: a steep wedge that falls into a hole gets stuck there and is counted") {
+    TEST("sieve rocks: a steep wedge that falls into a hole jams and counts as blinded") {
         int impulses, sort;
         for (impulses = 0; impulses < 2; impulses++)
             for (sort = SQUARE; sort < SORTS; sort++) {
@@ -276,8 +273,8 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("sieve rocks: a square prism that is jammed between the walls of a round hole, or of a tube, keeps the springs of "
-         "friction at each of its edges: a twist springs back") {
+    TEST("sieve rocks: a square prism jammed in a round hole or tube keeps a friction spring per edge: a twist "
+         "springs back") {
         int tube;
         for (tube = 0; tube < 2; tube++) {
             const double half = 0.005*sqrt(0.5)*1.01;
@@ -304,7 +301,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("sieve rocks: on a sieve that shakes the same bits come for any number of threads, and after a restart") {
+    TEST("sieve rocks: a shaking sieve has the same bits for any number of threads and after a restart") {
         int impulses, sort;
         for (impulses = 0; impulses < 2; impulses++)
             for (sort = WEAVE; sort < SORTS; sort += 3) {
@@ -324,8 +321,8 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("sieve rocks: reduced holes, a disc, unions with an ellipsoid, and to springs a sheet, are refused by name; to impulses "
-         "a sheet is a sieve") {
+    TEST("sieve rocks: reduced holes, a disc, unions with an ellipsoid, and for springs a sheet, are rejected; "
+         "impulses accept a sheet") {
         static const char *const says[3] = {"reduced holes are only for spheres", "cut from a disc", "give the sieve a thickness"};
         int k, order;
         for (order = 0; order < 4; order++) {   /* a union is what its pieces are, whichever comes first */

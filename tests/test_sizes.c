@@ -35,7 +35,8 @@ int main(int argc, char **argv) {
     const int many = 200000;
     test_begin(argc, argv);
 
-    TEST("drawn radii have the shares that are asked for, of mass or of number, of discs too, by chance and in equal steps") {
+    TEST("drawn radii have the fractions by mass or number of their distribution, for discs too, at random and in "
+         "equal steps") {
         int kind, by_count, planar, seed, i;
         for (kind = 0; kind < 4; kind++)
             for (by_count = 0; by_count < 2; by_count++)
@@ -68,8 +69,7 @@ int main(int argc, char **argv) {
                     }
     }
 
-    TEST("closed forms: half of a log-normal is finer than its median, 1 - 1/e of a Weibull finer than its scale, a sieve "
-         "curve passes what it says, and what passes the first sieve is of its size") {
+    TEST("closed forms: log-normal median, 1 - 1/e of a Weibull below its scale, and the passing of a sieve curve") {
         dem_world *world = empty(0);
         dem_sizes d = DEM_SIZES;
         int i;
@@ -121,7 +121,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("classes for a feed hold the shares and the number of grains of the distribution; a feed of them brings its mass") {
+    TEST("classes for a feed hold the fractions and number of the distribution; their feed inserts its mass") {
         dem_world *world = empty(0);
         dem_sizes d = sieves();
         dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
@@ -148,8 +148,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a fill by sizes puts in grains of all of them, none overlapping, the same for the same seed; what has no room is "
-         "told with its radius") {
+    TEST("a fill by sizes inserts all sizes without overlap, equally for equal seeds; a size without room is named") {
         dem_world *world = empty(0);
         dem_sizes d = sieves();
         dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
@@ -178,7 +177,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("sizes that are none are refused by name") {
+    TEST("invalid size distributions are rejected with the value named") {
         dem_world *world = empty(0);
         dem_sizes d = DEM_SIZES;
         CHECK_EQ(dem_sizes_draw(world, &d, 10, 0, radii), DEM_ERROR_ARGUMENT);
@@ -201,7 +200,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_sizes_classes_get(world, &d, 17, radii, 0), 0);
         dem_world_destroy(world);
     }
-    TEST("a distribution of every kind, with ends of every size, is refused or draws radii between them") {
+    TEST("a distribution of any kind and limits is rejected or draws radii between its limits") {
         static const double ends[] = {0, 1e-300, 1e-100, 1e-38, 1e-16, 1e-9, 1e-3, 1, 1e14, 1e30, 1e300};
         dem_world *world = empty(0);
         int kind, i, j, k, drawn = 0;
@@ -236,7 +235,7 @@ int main(int argc, char **argv) {
         CHECK(drawn > 100);
         dem_world_destroy(world);
     }
-    TEST("a sieve curve in per cent is told so, whichever call takes it") {
+    TEST("a sieve curve in per cent is rejected with a hint, in whichever call") {
         dem_world *world = empty(0);
         dem_material m = scene_material(world, 1e7, 0.5, 0.5, 0);
         dem_sizes d = sieves();

@@ -514,8 +514,7 @@ static uint64_t ring_bits(int scene, int count, int steps, int *ranks) {
 int main(int argc, char **argv) {
     const int wide = sizeof(dem_real) == sizeof(double);
     test_begin(argc, argv);
-    TEST("one slab gives the very bits of the world, ledger and wall loads, whatever the "
-         "integrator") {
+    TEST("one slab gives the bits of the world, ledger and wall loads included, for any integrator") {
         int integrator, periodic;
         for (integrator = 0; integrator < 5; integrator++)
             for (periodic = 0; periodic < 2; periodic++) {
@@ -607,8 +606,7 @@ int main(int argc, char **argv) {
                 dem_world_destroy(other);
             }
     }
-    TEST("every law, integrator, search, field and law of one's own gives in slabs what it gives "
-         "in one world") {
+    TEST("every law, integrator, search, field and user-defined law gives in slabs what it gives in one world") {
         int k;
         for (k = 0; k < 20; k++) {
             drum_desc d = DRUM;
@@ -667,8 +665,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(other);
         }
     }
-    TEST("a gas of three radii in four slabs: in 1e5 steps no grain is lost or doubled, momentum "
-         "and energy stay") {
+    TEST("a gas of three radii in four slabs loses and doubles no grain in 1e5 steps, and conserves momentum and "
+         "energy") {
         int periodic, i;
         for (periodic = 0; periodic < 2; periodic++) {
             dem_world *world = gas(periodic, 1);
@@ -694,8 +692,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("outlets let out in slabs what they let out in one world, each grain once, of two slabs and "
-         "more; one slab gives the very bits") {
+    TEST("outlets remove in slabs the grains of one world, each once; one slab gives the same bits") {
         int count, k;
         for (count = 1; count <= 4; count++) {
             dem_world *one = bits_world(OUTLETS, 1), *other = bits_world(OUTLETS, 1);
@@ -732,8 +729,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(other);
         }
     }
-    TEST("feeds put into slabs the grains they put into one world, at the same places; they are "
-         "collected as often as one likes, and the world goes on with them") {
+    TEST("feeds insert in slabs the grains of one world at the same positions, and repeated collection changes "
+         "nothing") {
         int ring, count, k;
         for (ring = 0; ring < 2; ring++)
             for (count = 1; count <= 4; count++) {
@@ -784,8 +781,8 @@ int main(int argc, char **argv) {
                 dem_world_destroy(other);
             }
     }
-    TEST("ellipsoids, clusters, orientations, a sieve that shakes and a field are in slabs what they "
-         "are in one world: the same bits in one slab; in more they stay nearer than 1e-12 m grow to") {
+    TEST("ellipsoids, clusters, a shaking sieve and fields keep their bits in one slab; in more, errors start at "
+         "1e-12 m") {
         static const double bound[] = {1e-15, 1e-12};
         int scene, count, k;
         for (scene = SHAPES; scene <= SIEVE; scene++) {
@@ -835,7 +832,7 @@ int main(int argc, char **argv) {
             }
         }
     }
-    TEST("as many slabs give the same bits on one, two, three and four threads") {
+    TEST("a number of slabs gives the same bits on one, two, three and four threads") {
         int scene, threads;
         for (scene = 0; scene < BITS; scene++) {
             const int steps = scene < SHAPES ? 3000 : 1800;
@@ -924,7 +921,7 @@ int main(int argc, char **argv) {
             for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
         }
     }
-    TEST("borders follow a heap that runs to one side, and share its work out") {
+    TEST("borders follow a heap that runs to one side, and balance its load") {
         int still;
         double worst[2] = {0, 0};
         for (still = 0; still < 2; still++) {
@@ -1019,8 +1016,7 @@ int main(int argc, char **argv) {
         dem_slabs_destroy(slabs);
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
-    TEST("a time step and a gravity that were set while the world ran hold in slabs and in the world that collects "
-         "them") {
+    TEST("a time step and a gravity set in mid-run hold in slabs and in the collected world") {
         int count;
         for (count = 1; count < 4; count += 2) {
             dem_world *world[3];                /* stepped, dealt, collected into */
@@ -1055,7 +1051,7 @@ int main(int argc, char **argv) {
             for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
         }
     }
-    TEST("one slab goes on to the bits of the world, whatever field of whatever desc is changed") {
+    TEST("one slab continues with the bits of the world, whichever desc field changes") {
         const walk_fields *all = walk_all();
         int k, kind, way, runs = 0;
         for (k = 0; k < all->count; k++)
@@ -1094,8 +1090,8 @@ int main(int argc, char **argv) {
                 }
         CHECK(runs > 250);
     }
-    TEST("a time step that is too large for what presses, also across borders, is refused in slabs with the limit "
-         "of one world, and one that is chosen is made as small") {
+    TEST("a step too large for pressed contacts is rejected in slabs with the limit of one world, and dt = 0 shortens "
+         "it") {
         int count, chosen;
         for (count = 1; count <= 3; count++)
             for (chosen = 0; chosen < 2; chosen++) {
@@ -1122,7 +1118,7 @@ int main(int argc, char **argv) {
                 dem_world_destroy(twin);
             }
     }
-    TEST("a grain that would pass others within one step is refused by name in slabs, at the start and on the way") {
+    TEST("a grain that would pass others within one step stops slabs with its name, at the start and in mid-run") {
         int count;
         for (count = 1; count <= 3; count++) {
             dem_world *world = crystal(1e-7, 2e4, 0);
@@ -1141,8 +1137,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("memory that is refused at any moment is named, and the run goes on from there to the "
-         "same bits") {
+    TEST("an allocation that fails at any moment is named, and the run continues with the same bits") {
         /* a heap of spheres; bodies of all shapes, at every fifth request */
         int shapes;
         for (shapes = 0; shapes < 2; shapes++) {
@@ -1198,7 +1193,7 @@ int main(int argc, char **argv) {
             CHECK(calls > 100);
         }
     }
-    TEST("loads can be begun anew; what cannot be is refused in a sentence") {
+    TEST("loads can be reset, and impossible calls fail with an error") {
         drum_desc d = DRUM;
         dem_world *world = drum(&d), *small = gas(1, 1), *flat;
         dem_slabs_desc desc = DEM_SLABS_DESC;
@@ -1272,7 +1267,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(small);
         dem_world_destroy(flat);
     }
-    TEST("a grain that runs into itself's like is stopped in the slab that saw it, with its name") {
+    TEST("an overlap above one radius stops the run with the number of the slab that found it") {
         dem_world *world = crate(0, 0, DEM_BOUNDARY_OPEN, 60, 0);
         dem_slabs *slabs;
         dem_body_state s;

@@ -61,7 +61,8 @@ static double farthest(const double *a, const double *b, int count) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("impulses: what is allowed is in the cone, is nearest in the metric of the contact, and stays where it is") {
+    TEST("impulses: projected impulses lie in the cone, nearest in the contact's metric, and projecting again changes "
+         "nothing") {
         uint64_t seed = 11;
         double out = 0, moved = 0, off = 0, polar = 0;
         int i;
@@ -100,8 +101,8 @@ int main(int argc, char **argv) {
         CHECK(off < 1e-14);
         CHECK(polar < 1e-14);
     }
-    TEST("impulses: four solvers agree on the velocities of a heap to 1e-8 m/s in the convex law, of spheres and of "
-         "ellipsoids, stiff and on springs") {
+    TEST("impulses: four solvers agree on a heap's velocities to 1e-8 m/s in the convex law, for spheres and "
+         "ellipsoids") {
         int k, shaped, soft;
         for (shaped = 0; shaped < 2; shaped++)
             for (soft = 0; soft < 2; soft++) {
@@ -130,7 +131,7 @@ int main(int argc, char **argv) {
             CHECK((double)c.residual <= 1e-9 && c.sweeps > 1);
         }
     }
-    TEST("impulses: sweeps end where they are told to, and the counters and the report say what was left") {
+    TEST("impulses: sweeps end at the limit set, and counters and report give the residual") {
         dem_world_desc desc = solver_desc(DEM_SOLVER_GAUSS_SEIDEL, DEM_CONE_COULOMB);
         dem_counters c;
         desc.sweeps = 3;
@@ -160,7 +161,7 @@ int main(int argc, char **argv) {
         scene_report_has(world, "4 contacts were at their friction limit");
         dem_world_destroy(world);
     }
-    TEST("impulses: cohesion holds up what weighs less, and lets go of what weighs more; a contact tells its pull") {
+    TEST("impulses: cohesion holds up lighter bodies and releases heavier ones, and a contact reports its tension") {
         double low;
         int k;
         for (k = 0; k < 2; k++) {
@@ -225,7 +226,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(scene_state(world, ball).spin.z, 0, 1e-9);
         dem_world_destroy(world);
     }
-    TEST("impulses: what springs do not know, and what a solver does not, is refused by name") {
+    TEST("impulses: options unknown to springs or to a solver are rejected with the option named") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc stuff = scene_stuff(1e7, 0.5, 0.5, 0.1);
         dem_world *world = dem_world_create(&desc);

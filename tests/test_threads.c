@@ -123,7 +123,7 @@ int main(int argc, char **argv) {
             check_same(&one, &many);
         }
     }
-    TEST("threads, a checkpoint in between and a second world beside it leave the one hash") {
+    TEST("threads, an intermediate checkpoint and a second world give one hash") {
         static const int threads[] = {1, 2, 3, 4, 8};
         static const char path[] = "build/tmp/threads.ckpt";
         const outcome one = bed(1, 40, 40);
@@ -147,13 +147,12 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("forty-two steps at once, one by one and seven at a time are the same forty-two steps") {
+    TEST("forty-two steps in one call, singly or in sevens are the same") {
         const outcome a = bed(2, 42, 42), b = bed(2, 42, 1), c = bed(2, 42, 7);
         check_same(&a, &b);
         check_same(&a, &c);
     }
-    TEST("the laws of the commonest scenes, worked out at once, give the bits that they give one after "
-         "the other") {
+    TEST("the common laws computed in one stage give the bits of law by law") {
         static const struct { int friction, rolling, ledger; } sets[] = {
             {0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {1, 1, 0}, {1, 1, 1}};
         size_t i;
@@ -169,8 +168,7 @@ int main(int argc, char **argv) {
                     CHECK_EQ(by_law, 0);
                 }
     }
-    TEST("coefficients that all pairs share, that stand in a table, or that every pair has for itself, "
-         "give the same bits") {
+    TEST("coefficients shared by all pairs, from a table, or per pair give the same bits") {
         static const struct { int materials, seconds, species; } sets[] = {
             {2, 1, 2}, {2, 150, 2}, {7, 0, 7}, {40, 0, DEMI_SPECIES + 1}};
         size_t i;
@@ -187,8 +185,7 @@ int main(int argc, char **argv) {
                     }
                 }
     }
-    TEST("a tile of one row of coefficients, shorter than the next of the same row, leaves none of the tile "
-         "before in it") {
+    TEST("a short tile of one coefficient row reads nothing of the tile before") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material one;
@@ -226,8 +223,7 @@ int main(int argc, char **argv) {
         free(tile);
         dem_world_destroy(world);
     }
-    TEST("a grain of a new material joins the list of a scene of many radii only where coefficients of several "
-         "materials are already told apart") {
+    TEST("a grain of a new material joins an existing list only if its coefficients already distinguish materials") {
         int materials;
         for (materials = 1; materials <= 2; materials++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -247,8 +243,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a time step that the library chooses anew falls on the same step however the steps are "
-         "asked for") {
+    TEST("a newly chosen time step starts on the same step for any division into calls") {
         uint64_t hash[3] = {0, 0, 0};
         int k;
         for (k = 0; k < 3; k++) {              /* a wall at 5 m/s kicks grains that were slow */

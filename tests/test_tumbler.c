@@ -33,8 +33,8 @@ static void printed_matrix(const tumbler *m, double t, double b, double A[9]) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("the barrel's rotation and place are eq 4.1 and 4.3 of the thesis as printed, for a barrel "
-         "that turns freely, is held, turns at its own speed or swings") {
+    TEST("rotation and position of the barrel are eq 4.1 and 4.3 of the thesis, for a free, held, driven or swinging "
+         "barrel") {
         static const double factor[4] = {1, 0, 0.4, 0.7}, period[4] = {0, 0, 0, 0.31};
         int i, k, n;
         for (i = 0; i < 4; i++)

@@ -156,7 +156,7 @@ static dem_world *one_wall_world(dem_material *glass) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("bodies may come and go any number of times between two steps") {
+    TEST("bodies can be added and removed any number of times between two steps") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         const dem_material glass = scene_material(world, 1e7, 0.5, 0.3, 0);
         const dem_body keep = dem_sphere_add(world, glass, DEM_R(1e-3), at(0, 0, 0));
@@ -170,7 +170,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(scene_state(world, keep).radius, 1e-3, 1e-9);
         dem_world_destroy(world);
     }
-    TEST("a world desc with a bad value is refused with one sentence, and a good one with none") {
+    TEST("a bad value in a world desc is rejected with one error message, and a good desc has none") {
         int what, refusals = 0;
         for (what = 0; what < 20; what++) {
             dem_world_desc d = DEM_WORLD_DESC;
@@ -208,7 +208,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(0), "dem_world_create_error_get");
         dem_world_destroy(0);
     }
-    TEST("a tension or convention that does not exist is refused as the other choices are") {
+    TEST("an unknown tension or convention is rejected as the other choices do") {
         dem_world_desc d = DEM_WORLD_DESC;
         d.tension = (dem_tension)5;
         CHECK(*dem_world_create_error_get(&d) != 0);
@@ -216,7 +216,7 @@ int main(int argc, char **argv) {
         d.convention = (dem_convention)5;
         CHECK(*dem_world_create_error_get(&d) != 0);
     }
-    TEST("a bad material is refused: the field, its value, the limit") {
+    TEST("a bad material is rejected with the field, its value and the limit") {
         static const struct { int field; double value; const char *name, *limit; } rows[] = {
             {0, 0, "density is 0", "> 0 kg/m3"}, {0, -1, "density is -1", "> 0"},
                 {1, 0, "young is 0", "> 0 Pa"},
@@ -249,7 +249,7 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(world);
     }
-    TEST("the 65th material is refused") {
+    TEST("the 65th material is rejected") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         int i;
         for (i = 0; i < 64; i++) CHECK_EQ(scene_material(world, 1e7, 1, 0, 0).id, i + 1);
@@ -257,7 +257,7 @@ int main(int argc, char **argv) {
                    "dem_material_add: ", "64", "limit");
         dem_world_destroy(world);
     }
-    TEST("a bad pair is refused: the field, its value, the limit, both materials") {
+    TEST("a bad pair is rejected with the field, its value, the limit and both materials") {
         dem_world *world = small_world();
         const uint64_t hash = dem_world_hash_get(world);
         dem_material glass, no;
@@ -290,7 +290,7 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(world);
     }
-    TEST("a pair that would have no stiffness under the world's law is refused") {
+    TEST("a pair without stiffness under the world's law is rejected") {
         dem_world *world = small_world();
         const uint64_t hash = dem_world_hash_get(world);
         dem_world_desc desc = DEM_WORLD_DESC;
@@ -317,7 +317,7 @@ int main(int argc, char **argv) {
         } else CHECK(*dem_world_error_get(world) != 0);
         dem_world_destroy(world);
     }
-    TEST("grains with bad numbers are refused, all or nothing") {
+    TEST("grains with bad numbers are rejected, all or nothing") {
         dem_world *world = small_world();
         const uint64_t hash = dem_world_hash_get(world);
         const dem_body_counts before = dem_body_counts_get(world);
@@ -359,7 +359,7 @@ int main(int argc, char **argv) {
         CHECK(memcmp(&before, &after, sizeof before) == 0);
         dem_world_destroy(world);
     }
-    TEST("a box that is too full takes what fits and says how many that were, and what to do") {
+    TEST("a box that is too full takes what fits, and the error gives the number and a remedy") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
         dem_material glass = scene_material(world, 1e7, 1, 0, 0);
         const int n = dem_spheres_fill(world, glass, 1, dem_region_make(box_of(0, 0, 0, 8, 8, 8)), 200, 1);
@@ -371,8 +371,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_bodies_get(world).count, n);
         dem_world_destroy(world);
     }
-    TEST("a body that was removed, has left or never was is refused, also when its slot lives "
-         "again") {
+    TEST("a body that was removed, has left or never existed is rejected, also when its slot is reused") {
         dem_world *world = small_world();
         uint64_t hash;
         dem_body gone = dem_body_id_get(world, 4), never, again_there;
@@ -406,7 +405,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_body_id_get(world, dem_bodies_get(world).count).slot, 0);
         dem_world_destroy(world);
     }
-    TEST("walls with bad numbers are refused") {
+    TEST("walls with bad numbers are rejected") {
         dem_world *world = small_world();
         const uint64_t hash = dem_world_hash_get(world);
         dem_material glass, no;
@@ -445,7 +444,7 @@ int main(int argc, char **argv) {
                    "finite");
         dem_world_destroy(world);
     }
-    TEST("a wall that does not exist, or a motion with bad numbers, is refused") {
+    TEST("a missing wall, or a motion with bad numbers, is rejected") {
         dem_world *world = small_world();
         dem_wall floor, no;
         dem_motion m = DEM_MOTION;
@@ -502,8 +501,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_wall_plane_add(world, glass, at(0, 0, -1), at(0, 0, 1)).id, 2);
         dem_world_destroy(world);
     }
-    TEST("a time step beyond t_c/20 is refused, with t_c/20 in the sentence, unless it is "
-         "allowed") {
+    TEST("a time step beyond t_c/20 is rejected with t_c/20 in the message, unless it is allowed") {
         dem_world_desc desc = DEM_WORLD_DESC;
         int allowed;
         for (allowed = 0; allowed < 2; allowed++) {
@@ -531,7 +529,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a step chosen for a given speed is not chosen again when grains get faster; without a given speed it is") {
+    TEST("with impact_speed set the chosen step ignores speeds; without it the step follows them") {
         int given, k;
         for (given = 0; given < 2; given++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -551,8 +549,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("dt = 0 is chosen as t_c/50 of the shortest contact there is, walls and fixed grains "
-         "included") {
+    TEST("dt = 0 chooses t_c/50 of the shortest contact in the scene, walls and fixed grains included") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material soft, hard;
@@ -588,8 +585,7 @@ int main(int argc, char **argv) {
         CHECK((double)a.contact_time <= 1.001*(double)k.contact_time);
         dem_world_destroy(world);
     }
-    TEST("grains or walls that overlap by more than a radius stop the run, with the step, the "
-         "share and what to do") {
+    TEST("an overlap of more than a radius stops the run with step, overlap and remedy") {
         int wall;
         for (wall = 0; wall < 2; wall++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -611,8 +607,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a force that is not a number stops the run in the step that it comes up, and names a "
-         "body") {
+    TEST("a force that is NaN stops the run in its step and names a body") {
         int late;
         for (late = 0; late < 2; late++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -635,7 +630,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a motion of one's own that answers no numbers stops the run") {
+    TEST("a user-defined motion that returns NaN stops the run") {
         int kind;
         for (kind = 0; kind < 2; kind++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -660,7 +655,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a periodic box shorter than two grains and the skin, twice, is refused") {
+    TEST("a periodic box shorter than twice two grains and the skin is rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;
@@ -676,7 +671,7 @@ int main(int argc, char **argv) {
                 "3 m long on periodic axis 1", "4.5 m");
         dem_world_destroy(world);
     }
-    TEST("steps, seconds, fields and checks with bad numbers are refused") {
+    TEST("steps, seconds, fields and checks with bad numbers are rejected") {
         dem_world *world = small_world();
         const uint64_t hash = dem_world_hash_get(world);
         dem_field_desc f;
@@ -722,7 +717,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("inserted = present + removed + left while grains run out, are taken out and come in") {
+    TEST("inserted = present + removed + left while grains leave, are removed and are added") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;
@@ -761,8 +756,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_body_counts_get(world).inserted, 135);
         dem_world_destroy(world);
     }
-    TEST("discs stay in their plane: z, velocity along z and spins about x and y are 0, whatever "
-         "pushes them") {
+    TEST("discs stay in their plane under any load: z, its velocity and spins about x and y are 0") {
         int integrator;
         for (integrator = DEM_INTEGRATOR_VELOCITY_VERLET; integrator <= DEM_INTEGRATOR_LEAPFROG; integrator++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -799,8 +793,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("the report tells laws, time step, search, balance, pairs, walls and ledger, and changes "
-         "nothing") {
+    TEST("the report lists laws, time step, search, balance, pairs, walls and ledger, and changes nothing") {
         int changed;
         for (changed = 0; changed < 2; changed++) {
             dem_world *w[2];
@@ -846,7 +839,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(w[1]);
         }
     }
-    TEST("a material that no grain is made of changes nothing when it is added during a run") {
+    TEST("a material without grains changes nothing when it is added in mid-run") {
         dem_world *w[2];
         dem_bodies b;
         double worst = 0;
@@ -882,8 +875,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(w[0]);
         dem_world_destroy(w[1]);
     }
-    TEST("a pair set during a run counts from the next step on, for contacts that last and for "
-         "walls too") {
+    TEST("a pair set in mid-run acts from the next step on, on existing contacts and walls too") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;
@@ -912,8 +904,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(force[1], 2, 1e-3);
         dem_world_destroy(world);
     }
-    TEST("contacts, candidates, totals and ledger can be asked for at every step without changing "
-         "the run") {
+    TEST("reading contacts, candidates, totals and ledger at every step changes no bit of the run") {
         static dem_contact_info infos[500];
         static uint32_t slots[4000];
         dem_world *asked = small_world(), *left_alone = small_world();
@@ -965,7 +956,7 @@ int main(int argc, char **argv) {
         CHECK(most > 0);
         dem_world_destroy(world);
     }
-    TEST("a law of one's own that spells out the built-in one moves the grains alike") {
+    TEST("a user-defined copy of the built-in law moves the grains alike") {
         dem_body_state s;
         dem_world *w[2];
         dem_bodies b;
@@ -1018,7 +1009,7 @@ int main(int argc, char **argv) {
         }
         for (i = 0; i < 4; i++) CHECK_EQ(hash[i], alone);
     }
-    TEST("all memory comes from the functions of the desc, and goes back through them") {
+    TEST("all memory comes from the allocator of the desc and returns to it") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         int out = 0;
@@ -1035,7 +1026,7 @@ int main(int argc, char **argv) {
         CHECK(dem_world_create(&desc) == 0);
     }
 
-    TEST("every kind of wall pushes a grain back along its normal with Hertz's force") {
+    TEST("every kind of wall repels a grain along its normal with Hertz's force") {
         static const dem_real line[] = {-1, 0, 1, 0}, beads[] = {0, 0, 0, 1, 0, 0};
         static const int32_t segments[] = {0, 1};
         const double d = 1e-5, r = 1e-3;
@@ -1096,8 +1087,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a flat mesh gives the plane's forces and torques over faces, edges and vertices, "
-         "sliding with memory") {
+    TEST("a flat mesh gives the plane's forces and torques over faces, edges and vertices, with friction history") {
         static const double ways[][2] = {{1, 0}, {0.8, 0.6},
             {0.70710678118654752, 0.70710678118654752}, {-0.5, 0.8660254037844386}};
         static dem_vec3 f[2][SLIDE_STEPS], t[2][SLIDE_STEPS];
@@ -1136,8 +1126,7 @@ int main(int argc, char **argv) {
         }
         CHECK_REL(force[1], force[0], 1e-11);
     }
-    TEST("DEM_EDGE_FRACTION: a segment's force is a^2(3-2a) of its line's, a the share of the "
-         "chord inside") {
+    TEST("DEM_EDGE_FRACTION: a segment's force is a^2(3-2a) of its line's, a the fraction of the chord inside") {
         const double r = 1e-3, depth = 1e-4, chord = sqrt(r*r - (r - depth)*(r - depth));
         double whole = 0;
         int i;
@@ -1196,7 +1185,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(ch.work, 0, 0);
         dem_world_destroy(world);
     }
-    TEST("a rotating cylinder's power is torque times omega, and its work what the ledger books") {
+    TEST("a rotating cylinder's power is torque times omega, and its work is in the ledger") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;
@@ -1231,8 +1220,7 @@ int main(int argc, char **argv) {
         CHECK_REL(ch.work, -30*ch.torque_impulse, 1e-9);
         dem_world_destroy(world);
     }
-    TEST("walls that translate, rotate, oscillate or follow a function: velocities are those of "
-         "finite differences") {
+    TEST("walls that translate, rotate, oscillate or follow a function have the velocities of finite differences") {
         int kind;
         for (kind = DEM_MOTION_TRANSLATING; kind <= DEM_MOTION_USER; kind++) {
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -1292,7 +1280,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a wall of grains carries a grain that rests on it as it moves up") {
+    TEST("a wall of grains that moves up carries a grain resting on it") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;

@@ -949,8 +949,8 @@ static double roll_long(int steps) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("five glass balls of 10 mm on a rigid floor come to rest with overlaps of 0.19528, "
-         "0.33657, 0.27783, 0.21203 and 0.13357 um") {
+    TEST("five glass balls of 10 mm on a rigid floor come to rest with Hertz's overlaps, 0.13357 "
+         "to 0.33657 um") {
         /* references.md 5.11, of T1 glass. Its first figure is that of a rigid floor */
         static const double glass[5] = {2800, 2800, 2800, 2800, 2800};
         static const double um[5] = {0.19528, 0.33657, 0.27783, 0.21203, 0.13357};
@@ -963,8 +963,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(out.worst, 0, 1);
         CHECK_NEAR(out.load, 1, out.load_allowed);
     }
-    TEST("stacks of 3 to 10 balls with masses 1:1000 and 1000:1, and 1:1e6 and 1e6:1 in turn, "
-         "rest with the overlaps (N/K)^(2/3) of the weight above each contact") {
+    TEST("stacks of 3 to 10 balls with mass ratios of 1e3 and 1e6 rest with overlaps (N/K)^(2/3) "
+         "of the weight above") {
         static const double ratio[4] = {1e3, 1e-3, 1e6, 1e-6};
         int n, k, i;
         for (n = 3; n <= 10; n += n == 3 ? 2 : 5)
@@ -983,8 +983,8 @@ int main(int argc, char **argv) {
                 CHECK_NEAR(out.aside, 0, 0);
             }
     }
-    TEST("a column of 1000 beads as Hertz presses it stays so: each contact bears what is above "
-         "it, the floor the weight within 1e-4, and nothing drifts") {
+    TEST("a column of 1000 beads started in Hertzian equilibrium stays in it, and the floor bears "
+         "its weight within 1e-4") {
         stack s = {COLUMN, 1e-3, 1e7, 0.25, 9.81, 0, 0, 1, 0, 2000};
         stacked out = stack_run(&s);
         CHECK_NEAR(out.worst, 0, 1);
@@ -994,7 +994,7 @@ int main(int argc, char **argv) {
            one sign */
         CHECK_NEAR(out.drift, 0, 1000*2*eps());
     }
-    TEST("beads that just touch sink into the column that Hertz says, with the weight on the "
+    TEST("beads placed just in contact settle into the Hertzian column, with their weight on the "
          "floor") {
         stack s = {100, 1e-3, 1e7, 0.25, 9.81, 0, 0, 0, 30, 0};
         stacked out;
@@ -1004,8 +1004,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(out.load, 1, out.load_allowed);
         CHECK_NEAR(out.aside, 0, 0);
     }
-    TEST("under 1e6 g a stack of five beads of 1 mm and 100 GPa rests with the overlaps of Hertz, "
-         "the lower ones 0.04 radii deep") {
+    TEST("at 1e6 g a stack of five 1 mm, 100 GPa beads rests with Hertz's overlaps, up to 0.04 "
+         "radii") {
         stack s = {5, 1e-3, 1e11, 0.25, 9.81e6, 0, 0, 0, 30, 0};
         stacked out = stack_run(&s);
         CHECK_NEAR(out.worst, 0, 1);
@@ -1013,8 +1013,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(out.rest[1], 0.0406e-3, 0.0001e-3);
         CHECK_EQ(out.checked, 5);
     }
-    TEST("a ball 200 times as large as 160 beads around it, and 8e5 times as heavy, comes to rest "
-         "on them: no step gains energy, and the floor bears the weight of all") {
+    TEST("a ball 200 times as large and 8e5 times as heavy as 160 beads rests on them without "
+         "gaining energy") {
         const heap h = heap_run();
         CHECK_EQ(h.stopped, 0);
         /* sums over steps count the last one whole, where the path takes half: 1e-4 of the time */
@@ -1028,8 +1028,8 @@ int main(int argc, char **argv) {
             CHECK_NEAR(h.residual, 0, 1e-3);
         }   /* float: at 0.2 m a step of less than 7e-9 m is none: below 0.02 m/s the ball hangs */
     }
-    TEST("a sphere that spins at 1e6 rad/s keeps its spin to the last bit in free flight, and "
-         "falls as one that does not") {
+    TEST("a sphere spinning at 1e6 rad/s keeps its spin to the last bit in free flight and falls "
+         "like one at rest") {
         dem_world_desc desc = one_thread(9.81);
         dem_world *world;
         dem_body body;
@@ -1049,9 +1049,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(s.velocity.x, 0, 0);
         dem_world_destroy(world);
     }
-    TEST("a ball of 1 mm that spins at 1e6 rad/s lands on a plane or on its mirror image as a "
-         "rigid one that slides: it is thrown along by mu(1 + e)v and loses 2.5 mu(1 + e)v/R of "
-         "its spin") {
+    TEST("a 1 mm ball spinning at 1e6 rad/s slides through an impact: it gains mu(1 + e)v and "
+         "loses 2.5 mu(1 + e)v/R of spin") {
         static const double e[3] = {1, 0.5, 0.1};
         int i, pair;
         for (pair = 0; pair < 2; pair++)
@@ -1077,9 +1076,8 @@ int main(int argc, char **argv) {
                 }
             }
     }
-    TEST("a ball that spins at 1e6 rad/s about the normal of its plane and slides is braked to "
-         "rolling, 5/7 of its energy, as one that does not: with steps of 1 to 100 rad what friction "
-         "keeps is carried along and never grows") {
+    TEST("a sliding ball spinning at 1e6 rad/s about the normal slows to rolling, 5/7 of its "
+         "energy, in steps of 1 to 100 rad") {
         static const dem_tangent_law laws[3] = {DEM_TANGENT_SPRING, DEM_TANGENT_MINDLIN,
                                                 DEM_TANGENT_MINDLIN_RESCALED};
         int i, law;
@@ -1108,8 +1106,8 @@ int main(int argc, char **argv) {
                 dem_world_destroy(world);
             }
     }
-    TEST("an egg that spins at 1e6 rad/s is refused with a step of 2 us, and turns by 0.1 rad in "
-         "a step that is chosen, with its angular momentum kept") {
+    TEST("an ellipsoid spinning at 1e6 rad/s rejects a step of 2 us; with the chosen step it "
+         "rotates by 0.1 rad and keeps L") {
         int given, i;
         for (given = 0; given < 2; given++) {
             dem_world_desc desc = one_thread(0);
@@ -1136,9 +1134,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("two spheres that meet at 0.4 of their speed of sound, sqrt(E/rho), part as fast as they "
-         "met, with Hertz's overlap of 0.93 radii; at the speed of sound it would be 1.9 radii, "
-         "and the run stops with a sentence") {
+    TEST("spheres colliding at 0.4 sqrt(E/rho) rebound with Hertz's overlap of 0.93 radii; at "
+         "sqrt(E/rho) the run stops") {
         const fast slow = fast_run(0.4), sound = fast_run(1);
         CHECK_EQ(slow.result, DEM_OK);
         CHECK_NEAR(slow.speed, 1, 1e-4);
@@ -1153,14 +1150,13 @@ int main(int argc, char **argv) {
         CHECK_STR(sound.why, "the material is too soft");
         CHECK(fabs(sound.speed) < 1);
     }
-    TEST("grains inside each other, at one point, behind a plane, in a wire, a rod or a wall of "
-         "grains, or with the middle exactly on a face, edge, vertex or rim stop the run by a "
-         "sentence; all stays finite, can be saved, and goes on without them") {
+    TEST("grains placed inside grains or walls, or on a face, edge, vertex or rim, stop the run, "
+         "which can go on without them") {
         int what;
         for (what = 0; what < WHERES; what++) inside_check((where)what);
     }
-    TEST("a bead that meets a sheet of facets at 0.4 of the speed of sound of its stuff bounces "
-         "off as off a plane; at 0.6 it stops the run as on a plane, and does not get through") {
+    TEST("a bead at 0.4 of its speed of sound bounces off a facet sheet as off a plane; at 0.6 it "
+         "stops the run and never passes") {
         static const double speed[2] = {8, 12};          /* m/s; sqrt(E/rho) is 20 */
         int i, sheet;
         for (i = 0; i < 2; i++)
@@ -1180,8 +1176,8 @@ int main(int argc, char **argv) {
                 dem_world_destroy(world);
             }
     }
-    TEST("a sheet that moves by more than a radius of the beads in a step that is chosen for it is "
-         "refused by name, and gets past none unseen") {
+    TEST("a sheet that moves more than a bead radius per step stops the run; no bead passes it "
+         "undetected") {
         dem_world_desc desc = one_thread(0);
         dem_world *world = dem_world_create(&desc);
         dem_material m = scene_material(world, 1e9, 0.5, 0.3, 0);
@@ -1192,16 +1188,15 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "must be at most 1");
         dem_world_destroy(world);
     }
-    TEST("a cloud of 343 grains that collide, rub and roll without gravity keeps its momentum to "
-         "round-off") {
+    TEST("a gas of 343 grains with friction and rolling keeps its momentum to round-off") {
         const int steps = 3000;
         const cloud c = cloud_run(steps);
         /* every kick rounds a velocity by half an eps of it at most; they come in either sign */
         CHECK_NEAR(c.momentum, 0, eps()*sqrt(steps/343.0));
         CHECK(c.collided > 0.2 && c.spin > 1e-3);
     }
-    TEST("the bounce of a bead at 1 m, 1 km and 1000 km from the origin differs from that at it "
-         "by no more than rounding of its place explains: force times half a rounding, a step") {
+    TEST("a bounce 1 m, 1 km or 1000 km from the origin differs only by the rounding of "
+         "positions") {
         static const double place[3] = {1, 1e3, 1e6};
         int i, pair;
         for (pair = 0; pair < 2; pair++) {
@@ -1228,8 +1223,8 @@ int main(int argc, char **argv) {
             CHECK_EQ(hit_run(&h, 1e-3).result, DEM_ERROR_UNSTABLE);
         }
     }
-    TEST("beads of 1 um bounce, rub and spin as beads of 1 mm do: the same speeds, spins 1000 "
-         "times as large, to round-off") {
+    TEST("beads of 1 um bounce, rub and spin as beads of 1 mm do, with spins 1000 times as large, "
+         "to round-off") {
         int pair;
         for (pair = 0; pair < 2; pair++) {
             hit h = {1e7, 0.5, 0.3, 1, 0.5, 300, 0, 0, DEM_LOAD_REPULSIVE, 0};
@@ -1247,8 +1242,7 @@ int main(int argc, char **argv) {
             CHECK(fabs(large.spin*1e-3) > 0.1);
         }
     }
-    TEST("restitution 1 gives all speed back, restitution 0.001 a thousandth of it, and 0 is "
-         "refused with a sentence") {
+    TEST("restitution 1 returns all of the speed, 0.001 a thousandth of it, and 0 is rejected") {
         hit h = {1e7, 1, 0, 1, 0, 0, 0.25, 0, DEM_LOAD_REPULSIVE, 0};
         dem_world_desc desc = one_thread(0);
         dem_world *world = dem_world_create(&desc);
@@ -1264,8 +1258,8 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "restitution is 0, must be");
         dem_world_destroy(world);
     }
-    TEST("friction 0 changes neither the speed along a wall nor spin by a bit; friction 1e6 holds "
-         "as friction 100 does, and lets a ball roll down 80 degrees at 5/7 g sin") {
+    TEST("friction 0 changes no bit of the tangential speed and spin; friction 1e6 acts as 100 "
+         "and lets a ball roll down 80 degrees") {
         hit h = {1e7, 0.5, 0, 1, 0.7, 300, 0, 0, DEM_LOAD_REPULSIVE, 0};
         rebound smooth, rough, rougher;
         for (h.pair = 0; h.pair < 2; h.pair++) {
@@ -1287,8 +1281,8 @@ int main(int argc, char **argv) {
         /* the arm is the radius less the overlap, which is 9e-4 of it: 4/7 of that */
         CHECK_NEAR(roll_down(80, 1e6), 1, 5e-4);
     }
-    TEST("three sticky grains, pressed on a ceiling by F, hang from it while F kad(kun - "
-         "kn)/((kun + kad) kn) is more than their weight, and fall together when it is less") {
+    TEST("three sticky grains hang from a ceiling while F kad(kun - kn)/((kun + kad) kn) exceeds "
+         "their weight, and fall below it") {
         double fallen;
         /* float: what 4 % more or less moves in this air is less than a rounding a step */
         CHECK_EQ(chain_hangs(either(1.01, 1.1), &fallen), LINKS);
@@ -1296,9 +1290,8 @@ int main(int argc, char **argv) {
         /* since 0.03 s, in air that lets nothing fall faster than g/2000 */
         CHECK_NEAR(fallen, 9.81/2000*0.03, 0.2*9.81/2000*0.03);
     }
-    TEST("a plane or sheet that would come down by 1.5 or 2.5 radii a step is refused, with the "
-         "step that is possible; allowed all the same, the plane stops the run at its first "
-         "beads") {
+    TEST("a plane or sheet moving 1.5 or 2.5 radii per step is rejected; if allowed, the plane "
+         "stops the run at first contact") {
         static const double radii[2] = {1.5, 2.5};
         int i, sheet;
         for (sheet = 0; sheet < 2; sheet++)
@@ -1315,8 +1308,8 @@ int main(int argc, char **argv) {
                 CHECK(steps >= 1 && steps <= 14/radii[i] + 3);
             }
     }
-    TEST("a thin sheet hit from both sides at once throws both balls back as a plane does, at 0.7 "
-         "of their speed, and bears nothing itself") {
+    TEST("a thin sheet hit from both sides at once returns both balls as a plane does, at 0.7 of "
+         "their speed, without net load") {
         double plane[2], sheet[2], load, push;
         both_sides(1, 0, plane, &push);
         both_sides(0, 2e-3, sheet, &load);
@@ -1332,7 +1325,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(load/push, 0, 100*eps());   /* 1.5 eps R/overlap */
         CHECK(sheet[0] > 0.5 && sheet[0] < 0.71);
     }
-    TEST("a bead between a plane and a sheet that comes down on it at 1 mm/s pushes both by K (u "
+    TEST("a bead squeezed between a plane and a sheet at 1 mm/s presses on both with K (u "
          "t/2)^1.5") {
         double above, below;
         piston(&above, &below);
@@ -1340,8 +1333,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(above, 1, 5e-3);
         CHECK_NEAR(below, 1, 5e-3);
     }
-    TEST("two beads in a periodic box of 4.001 radii hit each other from both sides in turn, as "
-         "often as their gaps and Hertz's contact time say, without losing momentum or energy") {
+    TEST("two beads in a periodic box of 4.001 radii collide on both sides in turn at Hertz's "
+         "rate and keep momentum and energy") {
         const carousel c = carousel_run(4.001, 2, -1);
         CHECK_EQ(c.result, DEM_OK);
         CHECK_NEAR(c.bounces, c.expected, 1);
@@ -1349,8 +1342,8 @@ int main(int argc, char **argv) {
         CHECK_NEAR(c.energy, 0, 1e-3);
         CHECK(c.expected > 20);
     }
-    TEST("periodic boxes of 3.999 radii, in which a bead could touch another on both sides, and "
-         "of 1.9, in which it touches itself, are refused by the length that is needed") {
+    TEST("periodic boxes of 3.999 and 1.9 radii are rejected with an error that gives the length "
+         "they need") {
         static const double radii[2] = {3.999, 1.9};
         int i, beads;
         for (i = 0; i < 2; i++)
@@ -1361,8 +1354,8 @@ int main(int argc, char **argv) {
                 CHECK_STR(c.why, i ? "0.0019 m long on periodic axis 0" : "0.003999 m long");
             }
     }
-    TEST("thirty beads pressed by 0.0001, 0.001 and 0.01 radii are run with 0.98 of sqrt(m/k), "
-         "disturbances staying small, and refused with 1.02 of it, at which they would grow") {
+    TEST("thirty pressed beads are stable at 0.98 sqrt(m/k); a step of 1.02 sqrt(m/k), which "
+         "would diverge, is rejected") {
         static const double pressed[3] = {1e-4, 1e-3, 1e-2};
         const double E = 1e8/(1 - 0.0625), K = hertz(E, E, 1e-3, 1e-3), m = 2500*4/3.0*pi*1e-9;
         int i;
@@ -1386,8 +1379,8 @@ int main(int argc, char **argv) {
             CHECK(grown > 1000 || result == DEM_ERROR_UNSTABLE);     /* as float has it */
         }
     }
-    TEST("over a floor of slivers, facets given twice, turned over or without area, corners on "
-         "sides and holes a ball slides and rolls as on a plane") {
+    TEST("a ball slides and rolls over slivers, duplicate, reversed and empty facets and hanging "
+         "corners as over a plane") {
         static track plane, rubbish;
         soup s;
         if (!soup_make(&s, 4000)) continue;
@@ -1399,8 +1392,7 @@ int main(int argc, char **argv) {
         CHECK_REL(plane.v[79][0], 25.0/7, 1e-3);
         soup_free(&s);
     }
-    TEST("over one floor of facets from a hundredth of its radius to more than a hundred radii a "
-         "ball slides and rolls as on a plane") {
+    TEST("a ball slides and rolls over facets of 0.01 to 100 radii in one floor as over a plane") {
         static track plane, graded;
         soup s;
         if (!soup_make(&s, 20000)) continue;
@@ -1411,9 +1403,8 @@ int main(int argc, char **argv) {
         CHECK(graded.x > 1.7);
         soup_free(&s);
     }
-    TEST("two beads that bounce between walls without loss, 1e6 steps (1e8 in the long form): no "
-         "bounce at t_c/200 is off by more than 2e-5 of the energy, and they do not add up but by "
-         "chance") {
+    TEST("in 1e6 steps elastic bounces at t_c/200 err by at most 2e-5 of the energy each, and the "
+         "errors add up only at random") {
         const drifts d = bounce_long(long_steps());
         CHECK_EQ(d.stopped, 0);
         CHECK_NEAR(d.one, 0, either(2e-5, 2e-4));
@@ -1421,8 +1412,7 @@ int main(int argc, char **argv) {
         /* n of either sign come to sqrt(n) of one; all of one sign would come to n */
         CHECK_NEAR(d.most, 0, 2*d.one*sqrt(d.bounces));
     }
-    TEST("a ball rolls 1e6 steps (1e8 in the long form) on a plane: neither speed, spin nor "
-         "height change") {
+    TEST("a ball rolls for 1e6 steps on a plane without change of speed, spin or height") {
         CHECK_NEAR(roll_long(long_steps()), 0, either(1e-9, 1e-3));
     }
     return test_end();

@@ -237,8 +237,8 @@ static double stands(dem_world *world, double side, int settling) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("impulses: of impacts of spheres, clusters and ellipsoids, on each other and on a floor, at any restitution and "
-         "friction, none gains energy") {
+    TEST("impulses: impacts of spheres, clusters and ellipsoids never gain energy, at any "
+         "restitution and friction") {
         const int worlds = at_length() ? 84 : 7;
         int hit = 0, gained = 0, k, kind, on_floor;
         double worst = 0;
@@ -250,8 +250,8 @@ int main(int argc, char **argv) {
         CHECK(hit > worlds*lanes*6*3/5);
         CHECK_EQ(gained, 0);
     }
-    TEST("impulses: a rod that slides on its end (Painleve): energy never rises but by the turn of a step, below friction 4/3 its end slows down "
-         "step by step, at friction 2 the end that is pushed jams in one step, with an impulse of its own") {
+    TEST("impulses: Painleve's sliding rod never gains energy; below friction 4/3 its tip "
+         "decelerates, at 2 it jams in one step") {
         static const double mus[3] = {0.5, 1.2, 2};
         int k, i;
         for (k = 0; k < 3; k++)
@@ -263,8 +263,8 @@ int main(int argc, char **argv) {
                 else CHECK_REL((speed[0] - 1)/1e-3, slows, 0.02);
             }
     }
-    TEST("impulses: ten boxes of clusters, a column of spheres and a heap stand: nobody creeps, rocks or turns by "
-         "1e-6 m/s") {
+    TEST("impulses: ten boxes of clusters, a column of spheres and a heap are stable: none creeps "
+         "or rotates at 1e-6 m/s") {
         const int grains = at_length() ? 10000 : 500;
         const double boxes = stands(stack_of_boxes(), 0, 2000), column = stands(column_of_spheres(at_length() ? 100 : 20), 0, 2000);
         const double pile = stands(heap(grains), side_of(grains), 4000);

@@ -151,7 +151,8 @@ static void mechanisms(void) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("joints: what they hold never adds energy, in trees, loops and against stops, at 1 to 200 sweeps")
+    TEST("joints: constraints never add energy, in trees, loops and against stops, with 1 to 200 "
+         "sweeps")
         mechanisms();
     return test_end();
 }

@@ -173,8 +173,8 @@ static void stones_throw(stone_target target, int lanes, int elastic, uint64_t s
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("polyhedra on their like, a plane, tubes, a roof of triangles, a union, sieves, and the edges of sheets and pipes "
-         "without thickness: of all impacts none gains 1 in 1000 of its energy, and elastic ones lose no more") {
+    TEST("polyhedra: no impact on any body or surface gains 1/1000 of its energy, and elastic "
+         "impacts lose no more") {
         const int rounds = getenv("TEST_LONG") ? 160 : 1;
         stone_sum all = {0, 0, 0, 0};
         int target, round;

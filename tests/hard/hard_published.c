@@ -347,13 +347,13 @@ int main(int argc, char **argv) {
     /* A harmonic oscillator of frequency w is stable in the leapfrog family for w dt < 2, whatever
        k and m. */
     TEST("stability limit: a sphere on a linear wall stays bounded below dt = 2 sqrt(m/k) and "
-         "blows up above") {
+         "diverges above") {
         check_limit(WALL_NORMAL, DEM_INTEGRATOR_SYMPLECTIC_EULER, 2, 0.02);
         check_limit(WALL_NORMAL, DEM_INTEGRATOR_LEAPFROG, 2, 0.02);
         check_limit(WALL_NORMAL, DEM_INTEGRATOR_VELOCITY_VERLET, 2, 0.02);
         check_limit(WALL_NORMAL, DEM_INTEGRATOR_POSITION_VERLET, 2, 0.02);
     }
-    TEST("stability limit: 1.41421 sqrt(m/k) for two equal spheres that press on each other") {
+    TEST("stability limit: 1.41421 sqrt(m/k) for two equal spheres in contact") {
         check_limit(PAIR_NORMAL, DEM_INTEGRATOR_SYMPLECTIC_EULER, sqrt(2.0), 0.01);
         check_limit(PAIR_NORMAL, DEM_INTEGRATOR_VELOCITY_VERLET, sqrt(2.0), 0.01);
     }
@@ -363,15 +363,15 @@ int main(int argc, char **argv) {
         check_limit(WALL_TANGENT, DEM_INTEGRATOR_LEAPFROG, 2*sqrt(2.0/7), 0.01);
         check_limit(WALL_TANGENT, DEM_INTEGRATOR_VELOCITY_VERLET, 2*sqrt(2.0/7), 0.01);
     }
-    TEST("stability limit: .755929 sqrt(m/kt) for the tangential spring between two equal "
+    TEST("stability limit: 0.755929 sqrt(m/kt) for the tangential spring between two equal "
          "spheres") {
         check_limit(PAIR_TANGENT, DEM_INTEGRATOR_SYMPLECTIC_EULER, 2*sqrt(1.0/7), 0.01);
         check_limit(PAIR_TANGENT, DEM_INTEGRATOR_LEAPFROG, 2*sqrt(1.0/7), 0.01);
         check_limit(PAIR_TANGENT, DEM_INTEGRATOR_VELOCITY_VERLET, 2*sqrt(1.0/7), 0.01);
     }
 
-    TEST("Rayleigh's time step: pi R sqrt(rho/G)/(.1631 nu + .8766), 12.928 us for Chung & Ooi's "
-         "glass") {
+    TEST("Rayleigh's time step: pi R sqrt(rho/G)/(0.1631 nu + 0.8766), 12.928 us for Chung & "
+         "Ooi's glass") {
         static const double nu[] = {0.2, 0.3}, coefficient[] = {3.4553, 3.3944};
         int i;
         for (i = 0; i < 2; i++) {
@@ -399,7 +399,7 @@ int main(int argc, char **argv) {
 
     /* Vertex 3 lies within an edge of the second triangle: the mesh is flat, but not conforming. */
     TEST("MercuryDPM rolling over triangles: height, force and speed stay constant over edges and "
-         "the vertex") {
+         "vertices") {
         static const dem_real vertices[] = {0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 1, 0, 2, -1, 0,
                                             2, 0, 0, 2, 1, 0};
         static const int32_t triangles[] = {0, 1, 4, 0, 2, 4, 2, 3, 6, 2, 5, 6, 3, 4, 7, 3, 6, 7};
@@ -437,8 +437,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("MercuryDPM rolling over triangles: with friction the ball moves as on a plane, memory "
-         "handed over") {
+    TEST("MercuryDPM rolling over triangles: with friction the ball moves as on a plane, and "
+         "contact history carries over") {
         static const dem_real vertices[] = {0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 1, 0, 2, -1, 0,
                                             2, 0, 0, 2, 1, 0};
         static const int32_t triangles[] = {0, 1, 4, 0, 2, 4, 2, 3, 6, 2, 5, 6, 3, 4, 7, 3, 6, 7};
@@ -528,8 +528,8 @@ int main(int argc, char **argv) {
     /* Steps of 3e-4 rad, far more than a simulation's. 1e-10 per turn is the published case; also
        checked is where the force points after the turn: when the contact plane is also twisted that
        is of second order, .4 (angle)^2 per turn. */
-    TEST("co-rotation (ON-DEM shear test): the tangential force of a law of one's own turns with "
-         "its contact, without work") {
+    TEST("co-rotation (ON-DEM shear test): the tangential force of a user-defined law rotates "
+         "with its contact without work") {
         static const double axes[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 2, -1}, {1, 2, 3}, {2, 0, 1},
                                          {1, 0, 0}};
         size_t i;
@@ -537,7 +537,7 @@ int main(int argc, char **argv) {
             check_turned(turn_once(at(axes[i][0], axes[i][1], axes[i][2]), 1, 20000),
                          fabs(axes[i][0]) > 0);
     }
-    TEST("co-rotation (ON-DEM shear test): the frozen spring of friction turns with its contact, "
+    TEST("co-rotation (ON-DEM shear test): the stored spring of friction rotates with its contact "
          "without work") {
         static const double axes[][3] = {{0, 1, 0}, {0, 0, 1}, {1, 2, 3}};
         size_t i;
@@ -637,7 +637,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("Kratos benchmarks 13 to 16: dropped exactly on a facet, edge, vertex or grid a sphere "
+    TEST("Kratos benchmarks 13 to 16: a sphere dropped exactly on a facet, edge, vertex or grid "
          "never leaves the vertical") {
         const dem_material_desc stuff = hertz_stuff(100, 1e5, 0.2, 0.9, 0.5);
         int t;
@@ -706,8 +706,8 @@ int main(int argc, char **argv) {
             }
         CHECK_REL(v[0][samples - 1].x, 25.0/7, 1e-3); /* it rolls by then: 5/7 of the first speed */
     }
-    TEST("an oblique impact never has more energy than it came with, nor does sliding give any back, "
-         "for every law with a spring") {
+    TEST("an oblique impact never gains energy, nor does sliding return any, for every law with a "
+         "spring") {
         static const double restitution[3] = {0.1, 0.3, 0.7}, tangent[2] = {0.5, 2};
         int normal, law, i, j, k;
         for (normal = DEM_NORMAL_HERTZ; normal <= DEM_NORMAL_HYSTERETIC; normal++)

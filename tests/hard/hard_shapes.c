@@ -398,15 +398,15 @@ static dem_wall trough_add(dem_world *world, dem_material m, double s) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("needles, discs and eggs of 10, 100 and 1000 to 1 in any orientation, from scale 0.01 to "
-         "3, meet at the scale that brute force finds, the same both ways, within 40 evaluations") {
+    TEST("ellipsoids of aspect ratio 10 to 1000 touch at the brute-force scale, the same both "
+         "ways, within 40 evaluations") {
         uint64_t seed = 17;
         meet_random(10, &seed);
         meet_random(100, &seed);
         meet_random(1000, &seed);
     }
-    TEST("nearly parallel and nearly touching needles, discs and eggs, tilted by 0 to 0.01 rad and "
-         "apart by a millionth of their thickness, meet where brute force says") {
+    TEST("nearly parallel needles and discs, 1e-6 of their thickness apart, touch where brute "
+         "force finds") {
         uint64_t seed = 18;
         int way;
         for (way = 0; way < 3; way++) {
@@ -415,8 +415,8 @@ int main(int argc, char **argv) {
             meet_parallel(way, 1000, &seed);
         }
     }
-    TEST("head to head, side by side, crossed at 90 degrees and face to face, needles and discs of "
-         "1000 to 1 meet at the distance over the sum of their half axes; about one centre at 0") {
+    TEST("aligned and crossed needles and discs of 1000:1 touch at the distance over the sum of "
+         "half axes; at 0 when concentric") {
         /* along an axis that both share nothing is tilted: W0 = d/(ha + hb) */
         const dem_quat cross = dem_quat_about(at(0, 1, 0), (dem_real)(pi/2));
         static const double gaps[3] = {0.5, 0.9999, 1.2};
@@ -445,9 +445,8 @@ int main(int argc, char **argv) {
             CHECK(demi_finite3(dem_ellipsoids_contact_get(&a, &b, 0).normal));
         }
     }
-    TEST("needles and discs of 100 and 1000 to 1 collide elastically: what they gain or lose of "
-         "energy falls with the square of the step, momentum and angular momentum stay to "
-         "round-off") {
+    TEST("needles and discs of 100:1 and 1000:1 collide elastically: the energy error falls as "
+         "dt^2, momentum holds to round-off") {
         int way;
         for (way = 0; way < 3; way++) {
             collide_some(100, way, 0);
@@ -455,21 +454,21 @@ int main(int argc, char **argv) {
             if (!single) collide_some(1000, way, 0);
         }
     }
-    TEST("needles and discs of 10 to 1 that spin at 100000 rad/s collide elastically and keep "
-         "energy, momentum and angular momentum") {
+    TEST("needles and discs of 10:1 spinning at 1e5 rad/s collide elastically and keep energy, "
+         "momentum and angular momentum") {
         collide_some(10, 0, 1e5);
         collide_some(10, 1, 1e5);
     }
-    TEST("a needle of 100 to 1 that falls on its tip, on a plane, a face, an edge and a vertex of "
-         "a mesh, rises as fast as it fell, straight, and goes equally deep on all four") {
+    TEST("a 100:1 needle dropped on its tip rises as fast as it fell, from a plane, a face, an "
+         "edge and a vertex alike") {
         falls(at(2e-4, 2e-4, 2e-2), ON_VERTEX);
     }
-    TEST("a disc of 100 to 1 that falls flat, on a plane, a face, an edge and a vertex of a mesh, "
-         "rises as fast as it fell, straight, and goes equally deep on all four") {
+    TEST("a 100:1 disc dropped flat rises as fast as it fell, from a plane, a face, an edge and a "
+         "vertex alike") {
         falls(at(1e-2, 1e-2, 1e-4), ON_VERTEX);
     }
-    TEST("an ellipsoid that stands at another's centre stops the run with a sentence, and no "
-         "number is lost") {
+    TEST("an ellipsoid at the centre of another stops the run with an error, and all numbers stay "
+         "finite") {
         int way;
         for (way = 0; way < 3; way++) {
             dem_world_desc desc = shapes_desc(1e-7);
@@ -490,8 +489,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a thousand spheres at one point are one sphere: volume, moments, radius, and how it "
-         "falls and rebounds") {
+    TEST("a thousand coincident spheres in one cluster equal one sphere: volume, moments, radius, "
+         "fall and rebound") {
         static dem_real x[3000];
         double up[2];
         int which;
@@ -525,8 +524,8 @@ int main(int argc, char **argv) {
         CHECK_REL(up[0], 0.6, 0.01);
         CHECK_REL(up[1], up[0], 1e-4);          /* as their volumes */
     }
-    TEST("a rod of two spheres whose moments are a million to one turns freely without losing "
-         "angular momentum, and bounces without gaining energy") {
+    TEST("a rod of two spheres with moments 1e6:1 rotates freely with constant L and bounces "
+         "without gaining energy") {
         /* 1 + 5/2 (L/r)^2 = 1e6 */
         const double r = 1e-4, half = r*sqrt(0.4*(1e6 - 1));
         dem_real x[6] = {0, 0, 0, 0, 0, 0};
@@ -570,8 +569,8 @@ int main(int argc, char **argv) {
         CHECK_REL(stored(world), first, 1e3/(t.mass/2)*4e-14/8 + (single ? 1e-3 : 0));
         dem_world_destroy(world);
     }
-    TEST("two hooks of balls hold each other: the lower hangs in the upper, which is held fast, "
-         "and weighs on it with its weight") {
+    TEST("two interlocked hooks of spheres hang: the lower one loads the fixed upper one with its "
+         "weight") {
         dem_real x[39], y[39];
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
@@ -614,8 +613,8 @@ int main(int argc, char **argv) {
         CHECK((double)demi_length(s.velocity) < 0.01);
         dem_world_destroy(world);
     }
-    TEST("a cluster of four balls that is dropped into the corner of a mesh box comes to rest "
-         "there, and the three faces bear its weight") {
+    TEST("a cluster of four balls dropped into the corner of a mesh box rests there, and three "
+         "faces bear its weight") {
         static const dem_real x[12] = {0, 0, 0, DEM_R(4e-3), 0, 0, 0, DEM_R(3e-3), 0, 0, 0,
                                        DEM_R(3.5e-3)};
         dem_world_desc desc = DEM_WORLD_DESC;
@@ -648,9 +647,8 @@ int main(int argc, char **argv) {
         CHECK(s.position.x > 0 && s.position.y > 0 && s.position.z > 0);
         dem_world_destroy(world);
     }
-    TEST("a pile of spheres, needles and discs of 10 to 1 and clusters comes to rest on a floor "
-         "that bears its weight: its kinetic energy falls on and on, but for what spheres have by "
-         "spinning about the vertical, which no law resists") {
+    TEST("a pile of spheres, needles, discs and clusters comes to rest, but for vertical spin, "
+         "and its floor bears the weight") {
         static const dem_real three[9] = {DEM_R(-2e-3), 0, 0, DEM_R(2e-3), 0, 0, 0, DEM_R(3e-3), 0};
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
