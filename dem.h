@@ -30034,9 +30034,10 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
             return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to "
-                             "another scene: it has %d %s, this world %d (removed ones count); "
-                             "create the world like the one that wrote it, then read", path,
-                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part]);
+                             "another scene: the checkpoint has %d %s, this world %d (removed "
+                             "ones count); create the world like the one that wrote it, then read",
+                             path, (int)parts[part], demi_scene_parts[part].many,
+                             (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = gone = 0; i < counts[part]; i++)
             for (k = 0; k < demi_scene_parts[part].row_count; k++) {

@@ -496,7 +496,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_body_reals_set(w, body, &q), DEM_OK);
         CHECK_EQ(scene_step(w, 1000), DEM_OK);
         CHECK_REL(scene_state(w, body).velocity.x, 2e-9*1000*0.01/mass, wide ? 1e-12 : 1e-4);
-        scene_report_has(w, "charge: carried; no law answers rates");
+        scene_report_has(w, "charge: constant; no law gives rates");
         dem_world_destroy(w);
     }
     return test_end();

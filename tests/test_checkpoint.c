@@ -593,7 +593,7 @@ static int walk_into(const walk_scene *from, const walk_scene *to, char *why) {
     else if (dem_checkpoint_read(b, path) != DEM_OK) {
         snprintf(why, 512, "%s", dem_world_error_get(b));
         how = (strstr(why, "written with ") && (strstr(why, ", this world has ") || strstr(why, " than those of this world"))) ||
-            (strstr(why, " there, ") && strstr(why, " here (")) ? 0 : -1;
+            (strstr(why, "the checkpoint has ") && strstr(why, ", this world ")) ? 0 : -1;
     } else {
         const dem_result ra = dem_world_step(a, 100), rb = dem_world_step(b, 100);
         x = walk_bytes(a, &m);
@@ -1051,7 +1051,7 @@ int main(int argc, char **argv) {
         static const char *parts[] = {"", "density 2500 of material 1, this world has 2501",
             "tangent_damping 1 (dem_pair_set) of materials 1 and 1, this world has 0.5",
             "gravity.z -9.81, this world has -9.8", "integrator velocity_verlet, this world has leapfrog",
-            "4 walls there, 3 here", "other elements of wall 1 than", "share 1 of wall 2, this world has 0.5",
+            "the checkpoint has 4 walls, this world 3", "other elements of wall 1 than", "share 1 of wall 2, this world has 0.5",
             "motion.kind oscillating of wall 1, this world has translating",
             "box.hi.x 1 of field 1, this world has 2", "cells[0] 2 of field 1, this world has 3",
             "kind profile of wall 3, this world has segments"};
@@ -1077,7 +1077,7 @@ int main(int argc, char **argv) {
             if (lie >= 100) CHECK(demi_list_drop(liar));
             if (lie_write(liar, lie)) {
                 told++;
-                refused(world, DEM_ERROR_FORMAT, "cannot be");
+                refused(world, DEM_ERROR_FORMAT, ": invalid ");
                 CHECK_EQ(scene_step(world, 5), DEM_OK);
             }
             if (test_now.wrong > before) printf("        with lie %d\n", lie);

@@ -187,7 +187,7 @@ int main(int argc, char **argv) {
         mesh.triangles[4] = swap;
         mesh.triangle_count = 2;
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(w), "closed");
+        CHECK_STR(dem_world_error_get(w), "so it has no inside");
         mesh = block(1, 1, 1e-4);
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error_get(w), "thinner");

@@ -107,7 +107,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(effects_of(s.world, "rolling friction").missing, 1);
         CHECK_EQ(effects_of(s.world, "walls").missing, 1);
         CHECK(strstr(effects_of(s.world, "walls").text, "wall 2 was never touched") != 0);
-        scene_report_has(s.world, "rolling friction: EPSD; materials 1 and 2 have not been seen to touch");
+        scene_report_has(s.world, "rolling friction: EPSD; materials 1 and 2 have not touched so far");
         scene_report_has(s.world, "wall 2 was never touched");
         {
             dem_body_state state = scene_state(s.world, s.steel);

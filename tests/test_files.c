@@ -426,7 +426,7 @@ static void bad_meshes(void) {
         }
         memset(binary + 80, 255, 4);
         CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error_get(world), "a binary STL has 84 and 50 for each triangle");
+        CHECK_STR(dem_world_error_get(world), "a binary STL has 84 bytes and 50 for each triangle");
         binary[80] = binary[81] = binary[82] = binary[83] = 0;
         CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
         CHECK_EQ(p.bytes, held);
@@ -744,7 +744,7 @@ static void walls(void) {
     TEST("profiles cannot be drawn with z1 below z0") {
         dem_wall_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
         CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", 1, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "z0 is 1 and z1 is 1");
+        CHECK_STR(dem_world_error_get(world), "z0 is 1 m and z1 is 1 m");
     }
     TEST("wall loads are appended line by line under one heading") {
         const char *const path = "build/tmp/loads.csv";

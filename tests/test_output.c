@@ -303,7 +303,7 @@ int main(int argc, char **argv) {
             sprintf(name, "build/tmp/output_folder_%d/a", kind);
             CHECK(dem_output_every_add(world, (dem_output_kind)kind, name, 1e-3).id == 1);
             CHECK_EQ(dem_world_run(world, 2e-3, 0, 0), DEM_ERROR_FILE);
-            CHECK_EQ(dem_world_run(world, 2e-3, 0, 0), DEM_ERROR_FILE);   /* nor does it now; not: "not begun" */
+            CHECK_EQ(dem_world_run(world, 2e-3, 0, 0), DEM_ERROR_FILE);   /* nor does it now; not: "did not start" */
             CHECK_STR(dem_world_error_get(world), name);
             CHECK_EQ(dem_world_steps_get(world), 0);
             dem_world_destroy(world);
@@ -387,7 +387,7 @@ int main(int argc, char **argv) {
         d.kind = DEM_OUTPUT_CSV;
         d.path = "build/tmp/output_#.csv";
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error_get(world), "leave it out");
+        CHECK_STR(dem_world_error_get(world), "leave the # out");
         d.path = "build/tmp/output_other.csv";
         d.columns = "b c";
         CHECK(dem_output_add(world, &d).id == 0);

@@ -238,7 +238,7 @@ static void packings(void) {
         const dem_box box = box_of(0, 0, 0, 1000, 1000, 1000);
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(box), 5), 5);
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(box), 0), 0);
-        CHECK_STR(dem_world_error_get(world), "dem_spheres_pack: the box has about 1.77e+17 places");
+        CHECK_STR(dem_world_error_get(world), "dem_spheres_pack: the box has room for about 1.77e+17 spheres");
         CHECK_EQ(dem_body_counts_get(world).present, 5);
         dem_world_destroy(world);
     }

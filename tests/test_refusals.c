@@ -290,7 +290,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_run(world, 0.01, 0, 0), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_world_steps_get(world), 0);
-        CHECK_STR(dem_world_error_get(world), "dem_world_step: not begun");
+        CHECK_STR(dem_world_error_get(world), "dem_world_step: did not start");
         CHECK_STR(dem_world_error_get(world), "dem_material_add: density is 0");
         CHECK_EQ(dem_world_run(world, 0.01, 0, 0), DEM_OK);                 /* read */
         dem_material_add(world, &bad);
@@ -478,7 +478,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "the box is smaller than one sphere");
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(huge), 10), 10);
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(huge), 0), 0);
-        CHECK_STR(dem_world_error_get(world), "places");
+        CHECK_STR(dem_world_error_get(world), "the box has room for");
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_inside_make(huge, everywhere, &asked), 10), 10);
         CHECK(asked <= 20);                      /* those that are taken are asked, too */
         /* 1626^3 places: more than 2^32 */

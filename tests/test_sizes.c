@@ -245,13 +245,13 @@ int main(int argc, char **argv) {
         for (k = 0; k < d.count; k++) d.passing[k] *= 100;
         region.box = feed.box = box_of(0, 0, 0, 1, 1, 1);
         CHECK_EQ(dem_sizes_fill(world, m, &d, region, 10, 1), 0);
-        CHECK_STR(dem_world_error_get(world), "dem_sizes_fill: sizes, sieves: the last of passing is 100, must be 1");
+        CHECK_STR(dem_world_error_get(world), "dem_sizes_fill: sizes, sieves: the last entry of passing is 100, must be 1");
         feed.material = m;
         feed.class_count = 1;
         feed.amount[0] = feed.rate = 1;
         feed.sizes[0] = &d;
         CHECK_EQ(dem_feed_add(world, &feed).id, 0);
-        CHECK_STR(dem_world_error_get(world), "dem_feed_add: sizes, sieves: the last of passing is 100, must be 1");
+        CHECK_STR(dem_world_error_get(world), "dem_feed_add: sizes, sieves: the last entry of passing is 100, must be 1");
         dem_world_destroy(world);
     }
     return test_end();

@@ -437,7 +437,7 @@ static void inside_check(where what) {
     const int findings = dem_world_check(world, finding, 4);
     int stopped;
     CHECK(findings > 0 && finding[0].severity == DEM_SEVERITY_ERROR);
-    CHECK_STR(finding[0].text, "begin");
+    CHECK_STR(finding[0].text, "overlap");
     stopped = dem_world_step(world, 10) == DEM_ERROR_UNSTABLE;
     CHECK(stopped);
     CHECK_STR(dem_world_error_get(world), "dem_world_step: step 0");
