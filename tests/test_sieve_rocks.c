@@ -339,7 +339,7 @@ int main(int argc, char **argv) {
             if (order & 2) CHECK(dem_wall_sieve_add(w, m, &s).id);
             CHECK_EQ(dem_body_add(w, m, both, at(0, 0, 0.03), straight).slot > 0, !(order & 2));
             if (!(order & 2)) CHECK_EQ(dem_wall_sieve_add(w, m, &s).id, 0);
-            CHECK_STR(dem_world_error_get(w), "an ellipsoid: the two do not know each other");
+            CHECK_STR(dem_world_error_get(w), "an ellipsoid: contacts between the two are not available");
             CHECK_EQ(scene_step(w, 2), DEM_OK);
             dem_world_destroy(w);
         }

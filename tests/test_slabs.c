@@ -1237,7 +1237,7 @@ int main(int argc, char **argv) {
         dem_wall_loads_get(world, wall, &c);
         CHECK_NEAR(c.time, 1e-4, 1e-9);
         CHECK_EQ(dem_slab_get(slabs, 3, &slab), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error_get(slabs), "slab 3 is not here, this process holds 0 to 2 of 3");
+        CHECK_STR(dem_slabs_error_get(slabs), "slab 3 is not here, this process holds slabs 0 to 2 of 3");
         CHECK_EQ(dem_slabs_step(slabs, -1), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_slabs_error_get(slabs), "steps is -1, must be >= 0");
         CHECK_EQ(dem_slabs_collect(slabs, small), DEM_ERROR_ARGUMENT);

@@ -242,7 +242,7 @@ int main(int argc, char **argv) {
         m = dem_material_add(world, &stuff);
         dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
         CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "rolling or spinning friction between materials, which APGD does not know");
+        CHECK_STR(dem_world_error_get(world), "rolling or spinning friction, which the solver APGD does not support");
         dem_world_destroy(world);
     }
     return test_end();

@@ -328,13 +328,13 @@ int main(int argc, char **argv) {
         refused_id(world, (int)dem_sphere_add(world, no, 1, at(0, 0, 0)).slot, hash, "dem_sphere",
                    "material 0", "there are 1");
         refused_id(world, (int)dem_sphere_add(world, glass, 0, at(0, 0, 0)).slot, hash,
-                   "dem_sphere", "is 0", "> 0 m");
+                   "dem_sphere", "is 0", "> 0 and finite");
         refused_id(world, (int)dem_sphere_add(world, glass, (dem_real)infinite, at(0, 0, 0)).slot,
-                   hash, "dem_sphere", "inf", "> 0 m");
+                   hash, "dem_sphere", "inf", "> 0 and finite");
         refused_id(world, (int)dem_sphere_add(world, glass, 1, at(nan_number, 0, 0)).slot, hash,
                    "dem_sphere", "position", "finite");
         refused(world, dem_spheres_add(world, glass, 2, x, 0, r, 0), DEM_ERROR_ARGUMENT, hash,
-                "dem_spheres_add: ", "sphere 1", "> 0 m");
+                "dem_spheres_add: ", "sphere 1", "> 0 and finite");
         refused(world, dem_spheres_add(world, glass, -1, x, 0, 0, 1), DEM_ERROR_ARGUMENT, hash,
                 "dem_spheres_add: ", "-1", ">= 0");
         refused(world, dem_spheres_add(world, glass, 2, 0, 0, 0, 1), DEM_ERROR_ARGUMENT, hash,
@@ -352,7 +352,7 @@ int main(int argc, char **argv) {
                                            1),
                    hash, "dem_spheres_fill: ", "box", "");
         refused_id(world, dem_spheres_pack(world, glass, 1, -1, dem_region_make(box_of(0, 0, 0, 9, 9, 9)), 0),
-                   hash, "dem_spheres_pack: ", "padding -1", ">= 0");
+                   hash, "dem_spheres_pack: ", "padding is -1 m", ">= 0");
         refused_id(world, dem_spheres_pack(world, no, 1, 0, dem_region_make(box_of(0, 0, 0, 9, 9, 9)), 0),
                    hash, "dem_spheres_pack: ", "material", "there are 1");
         after = dem_body_counts_get(world);
@@ -426,11 +426,11 @@ int main(int argc, char **argv) {
         refused_id(world, dem_wall_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), 0, 1).id, hash,
                    "dem_wall_cylinder_add: ", "radius is 0", "> 0");
         refused_id(world, dem_wall_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 0), 1, 1).id, hash,
-                   "dem_wall_cylinder_add: ", "axis (0, 0, 0)", "not zero");
+                   "dem_wall_cylinder_add: ", "axis is (0, 0, 0)", "not zero");
         refused_id(world, dem_wall_grains_add(world, glass, 3, v, 0, 1).id, hash,
                    "dem_wall_grains_add: ", "radius is 0", "> 0");
         refused_id(world, dem_wall_grains_add(world, glass, 3, v, 1, 2).id, hash,
-                   "dem_wall_grains_add: ", "share 2", "<= 1");
+                   "dem_wall_grains_add: ", "share is 2", "at most 1");
         refused_id(world, dem_wall_grains_add(world, glass, 0, v, 1, 1).id, hash,
                    "dem_wall_grains_add: ", "0 vertices", "at least one");
         t[2] = 3;
