@@ -292,7 +292,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_settle(world, 0.1, 0, 0, 0), DEM_ERROR_ARGUMENT);    /* what is slow? */
         CHECK_EQ(dem_world_settle(world, 0.1, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);
         CHECK_STR(dem_world_error_get(world), "feed 1 is not done");
-        CHECK_STR(dem_world_error_get(world), "wait for room");
+        CHECK_STR(dem_world_error_get(world), "waiting for room");
         CHECK_EQ(dem_world_settle(world, 1e-20, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);     /* and ends */
         dem_world_destroy(world);
     }
@@ -770,7 +770,7 @@ int main(int argc, char **argv) {
         o.wanted_min = 2;
         o.wanted_max = 1;
         CHECK_EQ(dem_outlet_add(world, &o).id, 0);
-        CHECK_STR(dem_world_error_get(world), "wanted 2 to 1");
+        CHECK_STR(dem_world_error_get(world), "wanted is 2 to 1");
         none.id = 3;
         CHECK_EQ(sorting_get(world, &none, 1, &sorted), DEM_ERROR_ARGUMENT);
         CHECK_STR(sorted.error, "outlet 3, number 1 of 1, does not exist");
