@@ -206,8 +206,8 @@ static void rods_refused(void) {
     CHECK_STR(dem_world_error_get(world), "half_length is 0");
     rod = dem_shape_capsule_add(world, DEM_R(0.01), DEM_R(0.004));
     CHECK_EQ(dem_shape_ellipsoid_add(world, at(1, 2, 3)).id, 0);
-    CHECK_STR(dem_world_error_get(world), "dem_shape_ellipsoid_add: shape 2, an ellipsoid, and shape 1, a capsule, do not "
-                                      "know each other");
+    CHECK_STR(dem_world_error_get(world), "dem_shape_ellipsoid_add: contacts between shape 2, an ellipsoid, and shape 1, "
+                                      "a capsule, are not available");
     scene_floor(world, m, -0.1, -0.1, 0.1, 0.1, 3, 3);
     CHECK_EQ(dem_body_add(world, m, rod, at(0, 0, 1), dem_quat_make(1, 0, 0, 0)).slot, 0);
     CHECK_STR(dem_world_error_get(world), "wall 1 is a mesh and the body a capsule");
