@@ -708,7 +708,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(world, 2), DEM_OK);
         dem_world_destroy(world);
     }
-    TEST("a replay and a checkpoint tell a wall from the removed one whose place it has") {
+    TEST("a replay and a checkpoint distinguish a wall from the removed wall whose place it takes") {
         static const char *const page = "build/tmp/changes_walls.html";
         dem_material m;
         dem_body ball;
