@@ -1,11 +1,12 @@
 # sh tests/check.sh [short]: dem.h through every compiler, standard, precision and warning found here.
 # The matrix is the middle of this file, one line a case. `short` leaves out the strict warnings, the
 # optimisation levels and the test runs. A compiler that is missing is skipped, loudly. Ends with
-# "N passed, N failed, N skipped" and a non-zero code when anything failed.
+# "N passed, N failed, N skipped" and a non-zero code when anything failed. CASES=REGEX runs the cases whose names
+# match, NOT=REGEX leaves those out that match, which finishes a check that was interrupted.
 JOBS=${JOBS:-1}
 dir=build/check
 rm -rf $dir; mkdir -p $dir build/tmp
-number=1000; skipped=0; turn=2                 # turn 1: the long ones, which begin first
+number=1000; skipped=0; left=0; turn=2                 # turn 1: the long ones, which begin first
 
 found() { command -v "$1" >/dev/null 2>&1; }
 skip() { echo "SKIP: $1"; skipped=$((skipped + 1)); }
@@ -189,7 +190,7 @@ if [ "$1" != short ]; then
         try "the browser lesson: the same digests in node, in a browser and native" "sh tests/web.sh \$bin.web; code=\$?; rm -rf \$bin.web; exit \$code"
     else skip "no compiler for WebAssembly, or no node (Debian packages clang, lld, wasi-libc, libclang-rt-14-dev-wasm32, nodejs)"; fi
     if found chromium; then
-        try "films play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_film.c -o \$bin -lm && FILM=\$bin sh tests/browser.sh"
+        try "replays play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_film.c -o \$bin -lm && FILM=\$bin sh tests/browser.sh"
     else skip "chromium not found (Debian package chromium)"; fi
     emulator=$run32
     [ "$run32" = qemu-i386 ] && skip "gcc -m32: tests: this kernel runs no 32-bit programs, and in qemu-i386 they take hours"
@@ -204,6 +205,10 @@ if sh "$1" > "$1.log" 2>&1; then echo "ok    $name"; : > "$1.ok"
 else echo "FAIL  $name"; { sed 1d "$1"; sed -n "/FAILED\|rror:\|ERROR\|undefined ref/,\$p" "$1.log" | head -n 12; tail -n 1 "$1.log"; } | cut -c1-200 | sed "s/^/      | /"; fi
 rm -rf "${1%.sh}.bin" "${1%.sh}.bin.o"
 X
+for case in $dir/*.sh; do
+    sed -n '1s/# //p' $case | grep -E -e "${CASES:-.}" | grep -qvE -e "${NOT:-^$}" || { rm $case; left=$((left + 1)); }
+done
+[ $left -eq 0 ] || skip "$left cases that CASES and NOT leave out"
 ls $dir/*.sh | xargs -P "$JOBS" -n 1 sh $dir/one
 echo
 for case in $dir/*.sh; do [ -f $case.ok ] || sed -n '1s/# /FAILED: /p' $case; done

@@ -89,7 +89,9 @@ static int film_next(film *f) {                    /* 0: there is no frame left 
     if (n%4) { v <<= 6*(4 - n%4); for (k = 2; k > 3 - n%4; k--) f->bytes[f->size++] = (unsigned char)(v >> 8*k); }
     f->time = film_number(f, 8);
     for (n = film_count(f); n > 0; n--) {
-        s = film_count(f);
+        dem_wall wall;
+        wall.id = film_count(f);
+        s = 1 + demi_wall_place(wall);
         f->wall_there[s] = f->bytes[f->pos++];
         for (k = 0; k < 7 && f->wall_there[s]; k++) f->wall[s][k] = film_number(f, 4);
     }
@@ -272,11 +274,11 @@ int main(int argc, char **argv) {
         CHECK_EQ(f.fresh, 1);
         CHECK_EQ(f.gone, 1);
         film_compare(&f, w);
-        CHECK_EQ(f.wall_there[wall.id], 1);
-        CHECK_NEAR(f.wall[wall.id][0], dem_world_time_get(w), 1e-7);
+        CHECK_EQ(f.wall_there[1 + demi_wall_place(wall)], 1);
+        CHECK_NEAR(f.wall[1 + demi_wall_place(wall)][0], dem_world_time_get(w), 1e-7);
         CHECK_EQ(film_next(&f), 1);
         CHECK_EQ(f.fresh + f.gone, 0);
-        CHECK_EQ(f.wall_there[wall.id], 0);
+        CHECK_EQ(f.wall_there[1 + demi_wall_place(wall)], 0);
         free(f.text);
         dem_world_destroy(w);
     }

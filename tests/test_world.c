@@ -498,7 +498,9 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_wall_remove(world, floor), DEM_OK);
         CHECK_EQ(dem_wall_remove(world, floor), DEM_ERROR_ARGUMENT);
         /* ids are not used again */
-        CHECK_EQ(dem_wall_plane_add(world, glass, at(0, 0, -1), at(0, 0, 1)).id, 2);
+        m = DEM_MOTION;
+        CHECK(dem_wall_plane_add(world, glass, at(0, 0, -1), at(0, 0, 1)).id != floor.id);
+        CHECK_EQ(dem_wall_motion_set(world, floor, &m), DEM_ERROR_ARGUMENT);
         dem_world_destroy(world);
     }
     TEST("a time step beyond t_c/20 is rejected with t_c/20 in the message, unless it is allowed") {
