@@ -5,7 +5,7 @@
    moving walls.
 
    Include it wherever you use it. Define DEM_IMPLEMENTATION before the include in exactly *one* C
-   or C++ file. dem.c is such a file: compile it once (about 20 s with gcc at -O2), and your own
+   or C++ file. dem.c is such a file: compile it once (10 to 20 s with gcc at -O2), and your own
    files compile in a moment:
 
        cc -O2 -c dem.c                        (add -fopenmp for threads)
@@ -105,11 +105,11 @@
 
            dem_material_desc glass_desc = DEM_MATERIAL_DESC;
            glass_desc.density = 2500;                      // kg/m3
-           glass_desc.young = 1.5e7;                       // Pa, softened: see section 7
+           glass_desc.young = 1.5e7;                       // Pa; glass has 7e10: see section 6
            glass_desc.poisson = 0.23;
            glass_desc.restitution = 0.5;
            glass_desc.friction = 0.7;
-           glass_desc.rolling_friction = 0.2;
+           glass_desc.rolling_friction = 0.2;              // of the effective radius: section 4
            dem_material glass = dem_material_add(world, &glass_desc);
 
            dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
@@ -122,34 +122,31 @@
            dem_replay_desc replay_desc = DEM_REPLAY_DESC;
            replay_desc.interval = 0.02;                    // s between frames
            dem_replay *replay = dem_replay_open(world, "heap.html", &replay_desc);
+           // 1 s; then until all beads rest, for at most 2 s (0: default speed limit of rest)
            if (dem_world_run(world, 1, dem_progress_print, stderr) != DEM_OK ||
                dem_world_settle(world, 2, 0, dem_progress_print, stderr) != DEM_OK)
                puts(dem_world_error_get(world));
            dem_replay_close(replay);
            dem_repose slope;
-           dem_box all = {{0, 0, 0}, {0, 0, 0}};
+           dem_box all = {{0, 0, 0}, {0, 0, 0}};           // all zero: the heaviest heap
            if (dem_repose_heap_get(world, all, &slope) == DEM_OK)
                printf("slope %.2f +- %.2f rad\n", slope.angle, slope.error);
-           dem_world_report(world, stdout);                // laws, time step, balances: section 13
+           dem_world_report(world, stdout);                // laws, time step, loads: section 11
            dem_world_destroy(world);
            return 0;
        }
 
-   Most programs create a world, add materials, walls and grains, run, measure, and destroy the
-   world. The sections below follow this order.
+   Most programs follow this order: world, materials, walls, grains, run, measure, destroy. So do
+   the sections below.
 
-   --- 2. Scope ---
+   --- 2. Scope, units, signs ---
 
    A world holds bodies (grains), walls, and optionally feeds, outlets, fields and joints. Bodies
    are rigid. Contacts are either soft (springs: a contact law computes the force from the overlap)
    or rigid (impulses prevent overlap). Worlds are three-dimensional, or planar with discs and
-   polygons.
-
-   dem.h has no fluids, no breaking grains and no implicit time integration. User-defined contact
-   laws can add effects: examples/laws has capillary bridges, bonds that break, heat and charge.
-   dem.h draws nothing except replays; other results are files for other programs.
-
-   --- 3. Units and signs ---
+   polygons. dem.h has no fluids, no breaking grains and no implicit integration of springs.
+   User-defined contact laws can add effects: examples/laws has capillary bridges, bonds that break,
+   heat and charge. dem.h draws nothing except replays; other results are files for other programs.
 
    All quantities are in SI units; angles are in radians. Rotations are right-handed.
        overlap             positive while two bodies touch, negative across a gap
@@ -159,15 +156,11 @@
        force->tangent, force->moment    act on body a; b receives the opposite
        stress              pressure is positive
 
-   Contact laws see the velocities of the full step, v(t), with every integrator. Half-step
-   velocities v(t - dt/2) give unphysical static friction at size ratios above 3 [VYA25].
-
-   --- 4. The world and its options ---
+   --- 3. The world and its options ---
 
    A world is created from a dem_world_desc. Start from DEM_WORLD_DESC, which is all zero, and set
-   only the fields you need. Zero means "absent" or "chosen for you". dem_world_desc_get returns the
-   values in force, and dem_world_report prints most of them. An effect that is absent costs
-   nothing.
+   only the fields you need. Zero means "absent" or "default". dem_world_desc_get returns the values
+   in force, and dem_world_report prints most of them. An effect that is absent costs nothing.
 
        dem_world_desc desc = DEM_WORLD_DESC;
        desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
@@ -179,47 +172,33 @@
        ------------------------------------------------------------------------------------------
        gravity                  acceleration, m/s2                     none
        domain, boundary         a box, and what happens at its faces   open
-       planar, thickness        discs in the x-y plane; m              three dimensions; 1 m
+       planar                   discs and polygons, moving in z = 0    three dimensions
+       thickness                of discs and polygons along z, m       1 m
        response                 springs (soft) or impulses (rigid)     springs
        normal_law               law of the normal force                Hertz
-       tangent_law              law of friction                        a spring, if any pair has
-                                                                       friction; otherwise none
-       rolling_law              law of rolling resistance              EPSD, if any pair has rolling
-                                                                       friction; otherwise none
+       tangent_law              law of friction                        a spring, if friction is set
+       rolling_law              rolling resistance (EPSD: section 5)   EPSD, if its friction is set
        tension                  may a dashpot attract?                 yes
        friction_load            the load L in Coulomb's limit mu L     the repulsive normal force
-       slider                   spring and dashpot while sliding       in parallel
-       convention               effective radius, mass, moduli         as in the literature
-       law, law_user            your contact law and its argument      built-in laws
-       law_memory, _names,
-         law_vectors            contact history of your law            none
-       law_stiffness            its largest stiffness, N/m             that of the built-in law
-       law_range, _radii        gap up to which your law is called, m  0: called in contact only
-       law_who                  fill in c->who for your law            no
-       law_rate                 bound on rates of change for dt        not checked
-       body_reals, _fn, _user   user-defined numbers on bodies, walls  none
-       force, body_force,
-         force_user             force fields                           none
+       slider                   how the tangential spring and dashpot  both lie behind one slider
+                                share Coulomb's limit while sliding
+       convention               definitions of R*, m*, E*, G*          1/R* = 1/Ra + 1/Rb, ...
+                                (the other reproduces [MIL] only)
+       law, law_...             a user-defined law: section 5          built-in laws
+       body_reals, ...          user-defined numbers on bodies, walls  none
+       force, body_force        force fields                           none
        integrator               scheme of time integration             velocity Verlet
        dt                       time step, s                           chosen; impulses: required
-       allow_large_dt           run with a dt that is too large        no
-       impact_speed             typical impact speed, m/s              estimated; for the stiffness
-                                                                       of the linear law 1 m/s
-       cone, solver, sweeps,
-         tolerance              solution of impulses                   Coulomb, Gauss-Seidel, 200,
-                                                                       chosen
-       cold_start               start from zero impulses               no: from the last step's
-       unsolved_stops           stop if a step exceeds tolerance       no: count such steps
+       impact_speed             typical impact speed, m/s: for dt      estimated from the scene
+                                for a stiffness derived from young     1 m/s
+       cone, solver, ...        the solution of impulses               Coulomb, Gauss-Seidel
        search, skin             broad phase and its margin, m          chosen
-       rotation                 rotation of bodies other than spheres  SPIRAL
-       ellipsoid_overlap        overlap of two ellipsoids              conservative
-       cluster_contacts         several contacts of a cluster          merged
-       orientations             follow orientations of spheres, too    no
+       rotation, ...            choices for bodies other than spheres  SPIRAL, ...
        ledger                   account of energy                      no
        threads                  OpenMP threads, at most 64             all that OpenMP offers
-       allocator                memory functions                       malloc, free
+   The comments at dem_world_desc name the remaining fields.
 
-   --- 5. Materials ---
+   --- 4. Materials ---
 
    A material has a density, Young's modulus, Poisson's ratio, a coefficient of restitution and
    coefficients of friction. Damping follows from the restitution. dem.h mixes the values for each
@@ -231,15 +210,17 @@
        dem_pair_set(world, glass, steel, &pair);
 
    Sources of values:
-       density, young, poisson   tables of materials; soften young (section 7)
+       density, young, poisson   tables of materials; soften young (section 6)
        restitution               drop a grain on a plate: sqrt(rebound height / drop height)
        friction                  tilt a plate until a block with grains glued under it slides: the
                                  tangent of that angle
-       rolling_friction          usually fitted to a measured angle of repose; 0.01 to 0.3 as a rule
+       rolling_friction          fit to a measured angle of repose; usually 0.01 to 0.3
 
-   Sliding and rolling friction are 0 unless you set them.
+   Sliding and rolling friction are 0 unless you set them. rolling_friction is mu_r in the largest
+   moment, mu_r R* Fn. The effective radius R* is R/2 between two equal spheres and R at a wall:
+   between spheres, double a value that comes from a code with the limit mu_r R Fn.
 
-   --- 6. Choosing a contact law ---
+   --- 5. Choosing a contact law ---
 
    Normal force (desc.normal_law):
        DEM_NORMAL_HERTZ          elastic spheres; the stiffness grows with the overlap
@@ -254,7 +235,8 @@
                                  near 1
        DEM_TANGENT_VISCOUS, _STEP     cheap, without contact history: heaps creep
    Rolling resistance (desc.rolling_law):
-       DEM_ROLLING_EPSD          default: a spring and dashpot, holds a grain on a slope
+       DEM_ROLLING_EPSD          default: an elastic-plastic spring and a dashpot (EPSD, [AI11]);
+                                 holds a grain on a slope
        DEM_ROLLING_CONSTANT      a constant moment; holds a grain on a slope, too
    The other choices reproduce published models; their comments in >>api say which. docs/theory.md
    derives the laws, docs/accuracy.md lists their costs.
@@ -268,33 +250,45 @@
        static void sticky(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
            dem_law_hertz(c, memory, force);
            dem_law_spring(c, memory, force);               // needs 3 reals of contact history
-           force->normal -= DEM_R(0.02);                   // N
+           force->normal -= DEM_R(2e-3);                   // N, adhesion
        }
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
+   law_memory is the number of reals of contact history, law_vectors how many vectors they begin
+   with. Other fields are law_stiffness (N/m, largest stiffness of the law, which limits dt; 0: that
+   of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in c->who:
+   ids, radii, masses, user-defined numbers) and law_rate, a function that returns how fast the law
+   changes such numbers, so that dem.h can limit dt. Laws see velocities of the full step, v(t),
+   because those of the half step, v(t - dt/2), give unphysical static friction at size ratios above
+   3 [VYA25]. The Verlet schemes and leapfrog predict v(t) with the force of the step before.
+
    `make law` tests a law for mistakes (docs/laws.md). docs/own_law.md is a tutorial.
 
-   --- 7. Choosing a time step ---
+   --- 6. Choosing a time step ---
 
    Springs need steps that resolve a collision. Leave desc.dt at 0: dem.h then takes a fiftieth of
    the shortest contact time t_c of the scene, or less where dashpots, many contacts on one grain,
    or fast rotation require it. It adapts the step when the scene changes or grains become much
-   faster than assumed. A given dt is kept; a run stops with DEM_ERROR_TIME_STEP if dt exceeds
-   t_c/20 or another limit. dem_step_advice_get returns t_c, the limit and the contact that sets it.
+   faster than assumed. A given dt is kept. A run stops with DEM_ERROR_TIME_STEP if dt exceeds
+   t_c/20 or the largest stable step of contacts with their dashpots, friction and rolling
+   resistance. dem_step_advice_get returns t_c, the limit and the contact that sets it.
 
    Hertz's law has t_c = 2.87 (m*^2/(R* E*^2 v))^(1/5), v the impact speed: about 10 us for glass
    beads of 3 mm diameter at 1 m/s. Therefore Young's modulus is usually reduced. E smaller by 100
-   makes steps longer by 100^(2/5) = 6.3 and overlaps larger by the same factor. Restitution, angles
-   of repose and flow hardly change while overlaps stay below 0.01 radii; the report prints the
-   largest overlap. The speed of sound and adhesion depend on the true stiffness.
+   makes steps longer by 100^(2/5) = 6.3 and overlaps larger by the same factor.
 
-   Impulses need a given dt: 1e-3 s for grains of some millimetres, and so short that grains move by
-   less than a tenth of their radius.
+   Keep the largest overlap near 0.01 radii, where results hardly depend on the stiffness, and in
+   any case below 0.05, above which the report warns. The program in section 1 reaches 0.047.
+   Angle of repose, discharge rate and mill power change by 1 % at 0.024 to 0.073 radii
+   (docs/accuracy.md). The speed of sound and adhesion depend on the true stiffness.
+
+   Impulses need a given dt, in which the fastest grain moves by less than a tenth of its radius;
+   1e-3 s is usual for slow grains of some millimetres.
 
    dem_trials_run tries longer and shorter steps, softer grains and other laws on copies of your
    scene and reports how far your results change (docs/accuracy.md).
 
-   --- 8. Grains and other bodies ---
+   --- 7. Grains and other bodies ---
 
    Spheres are added singly (dem_sphere_add), from arrays (dem_spheres_add, dem_grains_read), at
    random places (dem_spheres_fill, dem_sizes_fill), as a packing (dem_spheres_pack) or during the
@@ -307,17 +301,18 @@
        dem_bodies_fill(world, glass, egg, box, 100, 1);    // 100 bodies, seed 1
 
    Shapes are ellipsoids, clusters of spheres, convex polyhedra (from points or a mesh), unions of
-   polyhedra or ellipsoids, and in planar worlds polygons. A body is `fixed` if dem_body_set says
-   so: it never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids do not collide
-   with sieves, surfaces of revolution and profiles of DEM_EDGE_FRACTION; dem.h reports an error
-   there.
+   polyhedra or ellipsoids, and in planar worlds polygons. A body that dem_body_set makes `fixed`
+   never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids have no contact with
+   sieves, surfaces of revolution and profiles whose edges follow the rule of [MIL]
+   (DEM_EDGE_FRACTION); polyhedra have none with such profiles and with some sieves. dem.h refuses
+   such a pair when you add the second of the two.
 
-   --- 9. Walls and motions ---
+   --- 8. Walls and motions ---
 
    Walls are rigid: planes, cylinders, cones and other surfaces of revolution, profiles (segments in
-   the x-y plane, extended along z), triangle meshes (STL, OBJ), walls of grains, and sieves. Planes
-   and cylinders are solid on one side; the others repel on both sides. A wall is at rest until it
-   gets a motion:
+   the x-y plane, extended along z), triangle meshes (STL, OBJ), walls made of spheres, and sieves.
+   A plane is solid on the side opposite to its normal. A cylinder is solid outside or inside, as
+   you choose. All others repel on both sides. A wall is at rest until it gets a motion:
 
        dem_motion turn = DEM_MOTION;
        turn.kind = DEM_MOTION_ROTATING;
@@ -328,7 +323,7 @@
    Other motions are translation, oscillation, a table of poses, and a function of yours.
    dem_wall_loads_get returns force, torque and power of the grains on a wall.
 
-   --- 10. Feeds and outlets ---
+   --- 9. Feeds and outlets ---
 
    A feed adds grains of given sizes at random places in a box, at a rate or all at once (the
    program above). An outlet removes grains whose centre is in a box, or only counts them, by size
@@ -340,63 +335,56 @@
        dem_outlet_state state;
        dem_outlet_get(world, drain, &state);               // state.total, state.total_mass
 
-   inserted = present + removed + left holds at every step (dem_body_counts_get).
+   inserted = present + removed + left holds at every step (dem_body_counts_get). `left` counts
+   grains taken out by outlets and outflow boundaries, `removed` those that you removed.
 
-   --- 11. One step ---
+   --- 10. One step ---
 
    A step has six stages, in the order in which data flows (the code uses the same numbers):
        1 move      first half kick, drift, predicted velocity; walls follow their motions
        2 search    if bodies moved too far for the skin: sort bodies by cell, rebuild the candidate
-                   list, carry contact history over. When due: rebuild the pruned neighbour list
+                   list, carry contact history over
        3 touch     pairs to contacts: bodies, contact point, normal, overlap
-       4 respond   contacts to forces and torques, by the contact law
+       4 respond   contacts to forces and torques, by the contact law; with impulses all contacts
+                   are solved together (docs/impulses.md)
        5 gather    sum the forces on each body in a fixed order
        6 kick      second half kick; ledger, counters, time
-   Impulses replace 4: all contacts are solved together (docs/impulses.md has their order).
 
-   --- 12. Measuring ---
+   --- 11. Measuring, checking, reporting ---
 
        dem_body_get, dem_bodies_get          one body; arrays of all bodies
        dem_contacts_get, dem_contacts_each   contacts with forces; with their contact history
        dem_wall_loads_get                    force, torque, power, work on a wall
        dem_totals_get, dem_temperature_get   mass, momentum, energy; granular temperature
-       dem_field_add, dem_field_cell_get     solid fraction, velocity, stress on a grid
+       dem_field_add, dem_field_get,         solid fraction, velocity, stress on a grid; all cells,
+         dem_field_cell_get                  or one
        dem_repose_heap_get, _drum_get        angle of repose
        dem_ledger_get                        where the energy went
        dem_counters_get                      steps, lists, largest overlap, memory
        dem_world_hash_get                    a digest: equal runs have equal digests
 
-   --- 13. The report ---
-
-   dem_world_report prints, line by line:
-       dem.h                   version, precision, threads, domains, memory
-       bodies                  number and radii; inserted = present + removed + left
-       time                    simulated time, steps, dt, integrator
-       time step               (springs) t_c, t_c/dt, the limit, and the contact that limits dt:
-                               make that one softer or slower to get longer steps. A further line
-                               says why a chosen dt is shorter than t_c/50
-       search                  algorithm, skin, steps per rebuild, candidates and contacts per body
-       effects                 the laws in force and the size of their contact history; effects
-                               that you requested and that never happened: materials or walls that
-                               nothing touched. dem_effects_print lists all effects and, given a
-                               budget of wall time, what each costs
-       overlap                 the largest so far, in radii: beyond 0.05 the material is too soft
-       pair                    properties of each pair of materials after mixing
-       wall, joint             contacts, forces, torques, power
-       feed, outlet            grains and mass in and out
-       ledger                  (if switched on) energy in, stored and lost. The residual is the
-                               error of the time step; it falls with the third power of dt
-
-   --- 14. Checking a scene ---
+   dem_world_report prints settings, properties of pairs, counts of bodies, loads of walls and flows
+   of feeds and outlets. These lines need an explanation:
+       dem.h           version, precision, memory; `domains` are work groups (glossary)
+       time step       (springs) t_c, t_c/dt, the limit, and the contact that limits dt: make that
+                       one softer or slower to get longer steps. A further line says why a chosen dt
+                       is shorter than t_c/50
+       effects         the laws in force; effects that you requested and that never happened.
+                       dem_effects_print lists all effects and, given a budget of wall time, what
+                       each costs
+       overlap         the largest so far, in radii (section 6)
+       ledger          (if switched on) energy in, stored and lost, and the residual. That is the
+                       error of the time step, and falls at least with the square of dt: below 1e-3
+                       of the losses in an impact of 25 steps
 
    Call dem_world_check_print before the first run. It prints likely mistakes: wrong units, grains
    that overlap, a missing floor, walls out of reach, a time step that is too large.
 
        dem_world_check_print(world, stdout);               // returns the number of findings
 
-   If results look wrong after a run, read the report first, then use dem_trials_run (section 7).
+   If results look wrong after a run, read the report first, then use dem_trials_run (section 6).
 
-   --- 15. Outputs, replays, checkpoints ---
+   --- 12. Outputs, replays, checkpoints ---
 
        dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01);   // s; for ParaView
        dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, "run.checkpoint", 1);
@@ -406,18 +394,18 @@
    build the same scene again and call dem_checkpoint_read; the run goes on bit for bit, and
    scheduled outputs continue without gaps or repetitions.
 
-   --- 16. Lifetimes and ids ---
+   --- 13. Lifetimes, errors, threads ---
 
    dem.h copies descs, arrays, meshes and profiles during the call. Functions and user pointers must
    stay valid as long as the world. Pointers that dem.h returns stay valid:
        dem_bodies_get, dem_field_get    until the next call that steps or changes the world
        dem_world_error_get              until the next call that fails
-       dem_mesh_read and similar        until you free them, with the world that read them
+       dem_mesh_read and similar        until you free them (pass the world that read them)
    An id (dem_body, dem_wall, ...) stays valid until its object is removed. Ids are never reused: a
    new body in the same slot has another generation. All-zero ids name nothing. Indices into the
-   arrays of dem_bodies_get change whenever bodies are sorted; ids do not.
-
-   --- 17. Errors ---
+   arrays of dem_bodies_get change whenever bodies are sorted; ids do not. All memory comes from
+   desc.allocator. A step allocates nothing once a run is warm, unless more grains come together
+   than before.
 
    A function that can fail returns a dem_result, a null id or a null pointer, and stores one
    message:
@@ -431,34 +419,25 @@
    larger than a radius) stops at that step and says why. dem.h never exits or aborts, and it prints
    only where you call a function that prints.
 
-   --- 18. Functions that you hand over ---
-
    Laws, force fields, motions, regions, progress functions and observers may call every function
    that takes the world as const. Calls that change the world fail there and leave it as it is; make
    them after the call has returned. Progress functions, functions given to dem_contacts_each and
-   the values of a CSV output may also write files and replay frames. The function of an output of
-   kind DEM_OUTPUT_CALL may change the world, but not step or destroy it. Laws, force fields and
-   body_reals_fn are called from several threads.
+   functions that compute a value of a CSV output may also write files and replay frames. The
+   function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
+   Laws, force fields and body_reals_fn are called from several threads.
 
-   --- 19. Threads and reproducible bits ---
-
-   desc.threads sets the OpenMP threads of a world. The same program and input give the same bits
-   for any number of threads: the number of domains depends on the number of bodies only, and every
-   sum has a fixed order. Compile with -ffp-contract=off to get the same bits from other compilers,
-   systems and processors. Slabs (dem_slabs_create) distribute a scene to threads, or to processes
-   over MPI or any other transport: docs/parallel.md.
+   The same program and input give the same bits for any number of threads: bodies are divided into
+   work groups by their number only, and every sum has a fixed order. Compile with -ffp-contract=off
+   to get the same bits from other compilers, systems and processors. Slabs (dem_slabs_create)
+   distribute a scene to threads, or to processes over MPI or any other transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
-   read one world by functions that take it as const, while none changes it. These exceptions write
-   to it:
-       a call that fails                        stores its message
-       dem_world_error_get                      marks the message as read
-       dem_progress_print                       stores the progress it has printed
-       dem_world_report, dem_contacts_get       mark that your functions are being called
-       dem_repose_heap_get, dem_repose_drum_get allocate memory from the world for the call
-       dem_bodies_get, in a periodic world      wraps positions into the box
+   read one world by functions that take it as const, while none changes it. Exceptions, which write
+   to the world, are calls that fail, dem_world_error_get, dem_progress_print, dem_world_report,
+   dem_contacts_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
+   dem_bodies_get, which wraps positions into the box.
 
-   --- 20. Compile-time options ---
+   --- 14. Compile-time options, extensions ---
 
        DEM_IMPLEMENTATION   compiles the implementation into this file
        DEM_REAL             double (default) or float: type of the state. All files of a program
@@ -466,57 +445,46 @@
        DEM_STATIC           makes every function static; use it with DEM_IMPLEMENTATION
        DEM_LAW              name of your contact law, to have it inlined (docs/extending.md)
        DEM_NO_OPENMP        never uses OpenMP, even if the compiler offers it
-       DEM_NO_SPECIALIZE    no combined kernels for common sets of laws: slower, same bits
-       DEM_NO_CLONES        no second set of kernels for wider vectors: same bits
-       DEM_DOMAIN_BODIES    approximate number of bodies per domain (2048); changes the bits
-
-   --- 21. Memory ---
-
-   All memory comes from desc.allocator. A step allocates nothing once a run is warm; lists grow if
-   more grains come together than before. dem_counters_get returns the bytes held.
-
-   --- 22. Extending dem.h ---
+       DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits
+       DEM_NO_CLONES        gcc on x86-64 Linux: no second copy of the loops for AVX2: less code,
+                            slower unless compiled for AVX2, same bits
+       DEM_DOMAIN_BODIES    approximate number of bodies per work group (2048); changes the bits
 
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
    format (>>add-format), effect in the report (>>add-effect) or array with a value for each body
-   (>>add-array). docs/extending.md walks through most of them, and `make recipes` tests that page.
-   struct dem_world in >>layout says which part owns which data.
+   (>>add-array). docs/extending.md and its three sister pages walk through most of them, and
+   `make recipes` tests these pages. struct dem_world in >>layout says which part owns which data.
 
-   --- 23. Glossary ---
+   --- 15. Glossary ---
 
        body, grain         a rigid particle of any shape; both words mean the same
-       candidate           a pair of bodies, or a body and a wall element, nearer than the skin
-       cluster             a rigid body of overlapping or separate spheres, its member spheres
-       contact history     numbers that a contact carries from step to step, such as the stretch of
-                           a spring (`memory` in the signatures of laws)
-       contact point       where two bodies, or a body and a surface, touch. There may be several,
-                           each with a weight
+       candidate           two bodies, or a body and a wall element, with a gap below the skin
+       cluster             a rigid body of overlapping or separate spheres, its member spheres: a
+                           clump in YADE, a multisphere in LIGGGHTS, a body of fix rigid in LAMMPS.
+                           It never breaks; bonded spheres do (examples/laws/bond.h)
+       contact history     numbers that a contact keeps from step to step: `memory` of a law
+       contact point       where two bodies, or a body and a surface, touch; there may be several
        contact time, t_c   duration of a collision
        Coulomb's limit     the largest friction force, mu L
-       domain              some 2000 neighbouring bodies, the work of one thread at a time
+       domain              the box desc.domain; in the report and dem_counters a work group
        effect              a law or feature that a scene may or may not use
        facet               a triangle of a mesh or a segment of a profile
-       ghost               copy of a grain that belongs to the slab below
+       ghost               a slab's copy of a grain of its lower neighbour
        ledger              account of energy: supplied, stored, dissipated, and the residual
        part                a member sphere of a cluster, a piece of a union, or else the whole body
-       persistent contact  any contact other than sphere on sphere, for example with a wall. It is
-                           stored in a list of its own and followed from step to step
-       pruned neighbour list   the candidates that may touch within some steps; forces are computed
-                           for these only
-       reduced             of two bodies: R* = Ra Rb/(Ra + Rb), m* likewise, E* in series (Hertz)
+       reduced, effective  of two bodies: R* = Ra Rb/(Ra + Rb), m* likewise, E* in series (Hertz)
        skin                m: a candidate list holds all pairs with gaps below the skin, so that it
                            lasts until bodies have moved half as far
        slab                a slice of the scene between two parallel planes, computed separately
        slip                tangential velocity of one surface relative to the other at the contact
-       slot                the number of a body that stays the same while indices change
-       species             spheres with the same material, radius and mass, all fixed or all free
+       slot                the number of a body (dem_body.slot); indices change, slots do not
        spin                angular velocity, as in the literature on granular gases
        sweep               one pass of the iterative solver over all contacts
-       tile                some 32 or 64 pairs whose forces are computed together
        weight              the factor with which one contact point of a surface or cluster counts
+       work group          some 2000 neighbouring bodies, which one thread computes at a time
 
-   --- 24. References, by the keys used in this file ---
+   --- 16. References, by the keys used in this file ---
 
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
      [ALK07]   Alkhaldi, Contact Investigations of Granular Mechanical Media in a Tumbling Sorting
@@ -524,7 +492,8 @@
      [BAR96]   Baraff, SIGGRAPH (1996) 137: linear time for trees of joints
      [BER03]   van den Bergen, Collision Detection in Interactive 3D Environments (2003): expanding
                polytopes
-     [BER23]   Berry, Zhang & Haeri (2023): what clusters of spheres count twice
+     [BER23]   Berry, Zhang & Haeri, Powder Technol. 416 (2023) 118209: what clusters of spheres
+               count twice
      [BIR00]   Birgin, Martinez & Raydan, SIAM J. Optim. 10 (2000) 1196: spectral gradients
      [CS79]    Cundall & Strack, Geotechnique 29 (1979) 47
      [DIM04]   Di Maio & Di Renzo, Chem. Eng. Sci. 59 (2004) 3461: linear stiffness for a speed
@@ -546,11 +515,13 @@
      [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
      [MAZ11]   Mazhar, Heyn & Negrut, Multibody Syst. Dyn. 26 (2011) 37: collisions by bins
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
-     [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
+     [MIL]     a thesis on tumbling mills on a GPU (our copy has neither author nor year): laws by
+               the step, meshes, segments
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PAI95]   Painleve, C. R. Acad. Sci. Paris 121 (1895) 112: a rod that friction jams
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
-     [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo (2015): granular gas of ellipsoids on GPUs
+     [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo, Comput. Part. Mech. 2 (2015) 127: granular gas of
+               ellipsoids on GPUs
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
      [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps
@@ -730,7 +701,7 @@ typedef enum dem_rolling_law {
     DEM_ROLLING_AUTO = 0,
     /* no rolling resistance */
     DEM_ROLLING_NONE,
-    /* [MIL] section 4.5: mu_r R min(Fn, |w|), with the dimensions as printed there */
+    /* [MIL] section 4.5: mu_r R* min(Fn, |w|), with the dimensions as printed there */
     DEM_ROLLING_STEP,
     /* [ZHO99]: a moment mu_r R* Fn against the relative spin; at rest any moment up to that */
     DEM_ROLLING_CONSTANT,
@@ -1069,7 +1040,7 @@ DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_rea
 }
 /* The fraction of the step during which the two touched (were within the range): 1 unless the
    contact began in this step. The contact history grows by the displacement in this time.
-   Tests: tests/test_laws.c (second order of tangential and rolling springs). */
+   Tests: tests/test_laws.c (tangential and rolling springs are integrated to second order). */
 DEM_INLINE dem_real demi_law_share(const dem_contact *c) {
     const dem_real gone = c->closing_speed*c->dt;
     const dem_real in = c->range > 0 ? c->overlap + c->range : c->overlap;
@@ -1519,7 +1490,7 @@ typedef struct dem_material_desc {
     /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
        Fn until the contact slides, then mu Fn until the slip stops or reverses. */
     dem_real friction_static;
-    dem_real rolling_friction;     /* mu_r, >= 0, relative to the effective radius */
+    dem_real rolling_friction;     /* mu_r, >= 0: the moment is at most mu_r R* Fn */
     /* N/m, kn of the linear and hysteretic law; 0 means from young and impact_speed [DIM04] */
     dem_real stiffness;
     dem_real stiffness_ratio;      /* kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu) */
@@ -1556,7 +1527,7 @@ typedef struct dem_pair {
     /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
        materials leave it 0. */
     dem_real friction_static;
-    dem_real rolling_friction;     /* mu_r, relative to the effective radius */
+    dem_real rolling_friction;     /* mu_r: the moment is at most mu_r R* Fn */
     /* N/m, linear and hysteretic law; 0 means from E* and impact_speed for each pair of radii */
     dem_real stiffness;
     dem_real stiffness_ratio;      /* kt/kn, linear and hysteretic law */
@@ -2385,7 +2356,7 @@ typedef struct dem_counters {
     dem_real skin;              /* m, in use */
     dem_real dt;                /* s, in use */
     dem_search search;          /* in use */
-    int threads, domains;       /* OpenMP threads; domains (see the glossary) */
+    int threads, domains;       /* OpenMP threads; work groups (see the glossary) */
     int sweeps;                 /* impulses: sweeps of the last step */
     /* impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of
        the last step; compare desc.tolerance */
@@ -3390,6 +3361,15 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    The layout of the world, and the only places where memory comes from. Bodies live in flat arrays
    of four reals each, so that a gather touches one cache line and a drift is one long loop. Every
    array that grows is a field here; DEMI_GROW keeps what it holds, or leaves it alone and says so.
+
+   Words of the code, beside those of the glossary:
+       domain              a work group of some 2000 neighbouring bodies
+       persistent contact  any contact other than sphere on sphere, for example with a wall. It is
+                           stored in a list of its own and followed from step to step
+       pruned neighbour list   the candidates that may touch within some steps; forces are computed
+                           for these only
+       species             spheres with the same material, radius and mass, all fixed or all free
+       tile                some 32 or 64 pairs whose forces are computed together
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 1, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
