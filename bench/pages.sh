@@ -118,8 +118,13 @@ prices() {
         { cost[$1] = $(NF - 3); spread[$1] = $(NF - 2) }
         END { print "| effect | time of a step [without it = 1] | spread [%] |"; print "|---|---|---|"
             n = split("friction tangent.mindlin_rescaled rolling.epsd rolling.constant ledger one_unlike two_species all_unlike orientation periodicity feed", row, " ")
-            split("friction with a spring (Cundall-Strack)/rescaled Mindlin friction instead of that spring/rolling resistance (EPSD)/rolling resistance (constant torque)/energy ledger/one grain that differs from 20,000 equal ones/two sizes, half of the grains each/a different size for every grain/orientations of spheres/periodic box/feed, one bead every fourth step", word, "/")
-            for (i = 1; i <= n; i++) if (row[i] in cost) printf "| %s | %s | %s |\n", word[i], cost[row[i]], spread[row[i]] }' "$1"
+            split("friction with a spring (Cundall-Strack)/rescaled Mindlin friction instead of that spring/rolling resistance (EPSD)/rolling resistance (constant torque)/energy ledger/one grain that differs from 20,000 equal ones/two sizes, half of the grains each/a different size for every grain/orientations of spheres/periodic box/feed (one bead every fourth step)", word, "/")
+            for (i = 1; i <= n; i++) if (row[i] in cost) {
+                more = 100*(cost[row[i]] - 1); if (more < 0) more = -more
+                if (more > spread[row[i]]) printf "| %s | %s | %s |\n", word[i], cost[row[i]], spread[row[i]]
+                else hidden = hidden (hidden == "" ? "" : "; ") word[i]
+            }
+            if (hidden != "") printf "\nThese differ from 1 by less than their spread: %s.\n", hidden }' "$1"
 }
 # times of the glass screener beside the thesis's, for two stiffnesses, from their summaries
 screener_times() {
