@@ -8080,7 +8080,8 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
    the normal law. A ball about x, whose radius s grows from 0 to r, meets the surface S first in
    one place, perhaps then in others; as s grows on they join. Let chi(s) be Euler's number of what
    ball and surface have in common: pieces, less rings. The rule is
-       E(x) = integral of chi(s) dU(r - s),  s = 0 .. r          F = -dE/dx
+       E(x) = integral of chi(s) U'(r - s) ds,  s = 0 .. r       F = -dE/dx
+   For one place at distance d, chi is 1 from s = d on, and E = U(r - d).
    One place counts once; two that have joined count once, two that have not count twice. chi adds:
        chi(A or B) = chi(A) + chi(B) - chi(A and B)
    and it is 1 for whatever is convex. So, over the faces, edges and corners X of the surface, each
@@ -12352,7 +12353,7 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
 }
 /* --- rings. Where what a ball reaches of a surface closes to a ring, on the rim of a hole or in a
        funnel, Euler's number is 0 and nothing would push. A ring is one place, so there
-           E = integral of pieces(s) dU = U(facets) - U(links of a forest)
+           E = integral of pieces(s) U'(r - s) ds = U(facets) - U(links of a forest)
        pieces: chi and the rings that are open; a forest: of the sides and corners that join facets,
        nearest first, those that join what was not joined yet (Kruskal's). With U1 the nearest's,
        X the energy by >>facets and P that by pieces, D = P - X >= 0 is what rings took away, and
