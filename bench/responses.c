@@ -5,14 +5,14 @@
    build/responses --part pile|silo|hopper|drum|heap|sweeps --seeds N
 
    pile      a column of discs falls apart (lesson 2): angle of repose
-   silo      beads in a tube that is drawn up (lesson 5): what of their weight the floor bears
+   silo      beads in a tube that rises (lesson 5): load of the floor over the weight of the beads
    hopper    discs run out of a slot (lesson 6): rate of discharge
-   drum      discs in a turning drum with lips (lesson 8), Froude number .05: torque
+   drum      discs in a rotating drum with lips (lesson 8), Froude number 0.05: torque
    heap      10,000 spheres at rest at steps of 1 ms: sweeps, time of a step, of a contact and sweep
    sweeps    2,000 spheres: what is left after 30 to 1000 sweeps, cold, by each solver of convex cones
 
-   An error is the difference to the springs of the largest modulus, over that; bars are those of both means, over
-   seeds. All on one thread. */
+   Errors are relative differences from the springs of the largest modulus (the reference). Their bars are standard
+   errors over seeds. Every run uses one thread. */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
 #include "examples/study.h"
@@ -238,21 +238,26 @@ enum { SCENES = 4 };
 static struct { const char *name, *what, *unit; double mean[WAYS], bar[WAYS], time[WAYS]; } results[SCENES];
 static int result_count;
 
-/* The differences from the first way, and the times: a row for each way, a column for each scene. */
+/* The means of the first way; then the differences from it, and the times: a row for each way, a column for each scene. */
 static void page_results(void) {
     int i, k, which;
     if (!page || !result_count) return;
+    fprintf(page, "\nThe reference, springs of 2.5 GPa:\n\n| scene | quantity | mean | unit | standard error, %% |\n"
+            "|---|---|---|---|---|\n");
+    for (k = 0; k < result_count; k++)
+        fprintf(page, "| %s | %s | %.4g | %s | %.1f |\n", results[k].name, results[k].what, results[k].mean[0],
+                results[k].unit, results[k].bar[0]);
     for (which = 0; which < 2; which++) {
         fprintf(page, which ? "\nProcessor time, s per simulated s:\n\n| contacts |"
-                : "\nDifference from springs of 2.5 GPa, %% (\302\261 is the standard error of both means):\n\n| contacts |");
+                : "\nDifference from the reference, %% (\302\261 standard error of the difference):\n\n| contacts |");
         for (k = 0; k < result_count; k++)
             fprintf(page, which ? " %s |" : " %s: %s |", results[k].name, results[k].what);
         fprintf(page, "\n|---|");
         for (k = 0; k < result_count; k++) fprintf(page, "---|");
-        for (i = 0; i < WAYS; i++) {
+        for (i = which ? 0 : 1; i < WAYS; i++) {
             fprintf(page, "\n| %s |", ways[i].name);
             for (k = 0; k < result_count; k++)
-                if (results[k].mean[i] < 0) fprintf(page, " refused |");
+                if (results[k].mean[i] < 0) fprintf(page, " stopped |");
                 else if (which) fprintf(page, " %.3g |", results[k].time[i]);
                 else fprintf(page, " %+.1f \302\261 %.1f |", 100*(results[k].mean[i]/results[k].mean[0] - 1), results[k].bar[i]);
         }
@@ -380,7 +385,7 @@ static void heap_part(void) {
     }
     study_result("heap.contact_and_sweep", bench_median(times, 5), "ns");
     if (page) fprintf(page, "\nA heap of 10,000 spheres at rest, steps of 1 ms:\n\n| contacts within the range | sweeps in a "
-                      "step | time of a step, ms | time of a sweep and contact, ns |\n|---|---|---|---|\n"
+                      "step | time of a step, ms | sweeps alone: time per sweep and contact, ns |\n|---|---|---|---|\n"
                       "| %d | %.1f | %.1f | %.1f |\n", world->solver.count, swept/(5*STEPS), 1e3*all/(5*STEPS),
                       bench_median(times, 5));
     dem_world_destroy(world);
@@ -398,8 +403,8 @@ static void sweeps_part(void) {
     for (i = 0; i < count; i++) dem_body_get(world, dem_body_id_get(world, i), &all[i]);
     dem_world_destroy(world);
     for (cone = 0; cone < 2; cone++) {
-        if (page && !cone) fprintf(page, "\n2,000 spheres that begin to settle, one step from a cold start:\n\n| solver | cone | rms "
-                                   "residual after 30 sweeps, m/s | 100 sweeps | 300 sweeps | 1000 sweeps |\n"
+        if (page && !cone) fprintf(page, "\n2,000 spheres that begin to settle, one step from a cold start: rms residual, m/s\n\n"
+                                   "| solver | cone | after 30 sweeps | after 100 | after 300 | after 1000 |\n"
                                    "|---|---|---|---|---|---|\n");
         for (k = 0; k < DEMI_SOLVERS; k++) {
             if (page) fprintf(page, "| %s | %s |", demi_solvers[k].name, cone ? "convex" : "Coulomb");
