@@ -261,7 +261,7 @@ int main(int argc, char **argv) {
             desc.threads = 1 + (k == 1);
             world = dem_world_create(&desc);
             m = scene_material(world, 1e7, 0.5, 0.5, 0);
-            shell = dem_shell_add(world, m, at(0, 0, 1), DEM_R(0.5));
+            shell = dem_wall_shell_add(world, m, at(0, 0, 1), DEM_R(0.5));
             CHECK_EQ(shell.id, 1);
             ball = dem_sphere_add(world, m, DEM_R(0.01), at(length*sin(start), 0,
                                                             1 - length*cos(start)));
@@ -285,9 +285,9 @@ int main(int argc, char **argv) {
             two.positions = places;
             two.radius = DEM_R(0.005);
             m = scene_material(world, 1e6, 0.3, 0.5, 0.1);
-            CHECK_EQ(dem_shell_add(world, m, at(0, 0, 1), 0).id, 0);
-            CHECK_STR(dem_world_error_get(world), "dem_shell_add: radius is 0 m, must be > 0");
-            CHECK_EQ(dem_shell_add(world, m, at(0, 0, 1), DEM_R(0.05)).id, 1);
+            CHECK_EQ(dem_wall_shell_add(world, m, at(0, 0, 1), 0).id, 0);
+            CHECK_STR(dem_world_error_get(world), "dem_wall_shell_add: radius is 0 m, must be > 0");
+            CHECK_EQ(dem_wall_shell_add(world, m, at(0, 0, 1), DEM_R(0.05)).id, 1);
             pair = dem_shape_cluster_add(world, &two);
             ball = dem_body_add(world, m, pair, at(0.01, 0, 0.97), dem_quat_make(1, 0, 0, 0));
             CHECK_EQ(dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(1, 2, 3)),
