@@ -39,7 +39,7 @@ typedef struct row {
     int seeds, what;
     int variant;                     /* 1: other builds add points                                           */
     const char *unit;                /* of the observable                                                    */
-    const char *about;               /* for the page                                                         */
+    const char *about, *against;     /* for the page: scene and reference                                    */
 } row;
 
 #define COST "cost (the library's own setting = 1)"
@@ -47,70 +47,91 @@ typedef struct row {
 static const row rows[] = {
     {"restitution", "Head-on impact, restitution 0.66", IMPACT, "error of restitution", fill_restitution, 0, 0, 0,
      0, "1",
-     "A bead of 1.5 mm hits a plane at 1 m/s (Hertz). Root mean square over 16 instants of first contact within a "
-     "step."},
+     "bead of 1.5 mm on a plane at 1 m/s (Hertz), root mean square over 16 instants of first contact",
+     "restitution 0.66"},
     {"energy", "Head-on impact, elastic", IMPACT, "error of energy", fill_energy, 0, 0, 0, 0, "1",
-     "The same impact with restitution 1."},
+     "the same impact with restitution 1",
+     "energy before the impact"},
     {"oblique", "Oblique impacts: friction law and slider", IMPACT, "error of leaving velocity and spin",
      fill_oblique, 0, 0, 0, 0, "1",
-     "Aluminium oxide, 2.5 mm, 3.9 m/s, 5 to 60 degrees, e = 0.66, mu = 0.2, against the converged result of each "
-     "law."},
+     "aluminium oxide bead of 2.5 mm at 3.9 m/s, 5 to 60 degrees, e = 0.66, mu = 0.2",
+     "converged result of each law"},
     {"oblique_mfix", "Oblique impacts of MFiX DEM05", IMPACT, "error of leaving velocity and spin",
      fill_oblique_mfix, 0, 0, 0, 0, "1",
-     "Linear spring without damping, mu = 0.092. Dashed: the published figures of MFiX."},
+     "the same bead, linear spring without damping, mu = 0.092",
+     "converged result (dashed: published figures of MFiX)"},
     {"ball", "A ball that bounces for 10 s", COST, "largest change of height", fill_ball, 0, 0, 0, 1, "1",
-     "MFiX DEM02: falls 0.4 m, restitution 1, kn = 5e4 N/m."},
+     "MFiX DEM02: fall of 0.4 m, restitution 1, kn = 5e4 N/m",
+     "first height"},
     {"top", "A free top after 10 s", "cost (SPIRAL at 0.01 s = 1)", "error of orientation, rad", fill_top, 0, 0, 0,
      1, "1",
-     "Principal moments 1, 2, 3 and spin (1, 1, 1), against the exact solution in Jacobi's elliptic functions."},
+     "principal moments 1, 2, 3 and spin (1, 1, 1)",
+     "exact solution in Jacobi's elliptic functions"},
     {"gas_energy", "Elastic gas: energy", COST, "largest change of energy", fill_gas_energy, 0, 0, 0, 1, "1",
-     "400 smooth spheres, 10 % solid, some 40 collisions each."},
+     "400 smooth spheres, 10 % solid, some 40 collisions each",
+     "energy at the start"},
     {"gas_pressure", "Elastic gas: pressure", COST, "error of pressure", fill_gas_pressure, 0, 0, 0, 0, "1",
-     "The same gas: p V/(N T) from the virial, sampled five times per contact."},
+     "the same gas: p V/(N T) from the virial, sampled five times per contact",
+     "t_c/200"},
     {"bed_stress", "Settled bed: force on the floor", COST, "error of the floor's force", fill_bed_stress, 0, 0, 0,
      0, "1",
-     "399 spheres of three sizes fall into a periodic box six diameters wide. 0.8 s later, against their weight."},
+     "399 spheres of three sizes in a periodic box six diameters wide, 0.8 s after their release",
+     "weight of the spheres"},
     {"bed_porosity", "Settled bed: solid fraction", COST, "error of the solid fraction", fill_bed_porosity, 0, 0,
      0, 0, "1",
-     "The same bed: solid fraction of a column with the same centre of mass."},
+     "the same bed: solid fraction of a column with the same centre of mass",
+     "t_c/100"},
     {"bed_energy", "Settled bed: kinetic energy left", COST, "kinetic energy over m g d of one ball",
      fill_bed_energy, 0, 0, 0, 0, "1",
-     "The same bed."},
+     "the same bed",
+     "0"},
     {"pile", "Pile on a shelf: slope", COST, "error of the slope", fill_pile, 0, 0, 0, 0, "degrees",
-     "450 discs on a shelf whose front is removed. Slope of the triangle with the same centre of mass, 1.2 s later."},
+     "450 discs on a shelf, 1.2 s after its front is removed: slope of the triangle with the same centre of mass",
+     "t_c/100"},
     {"slow", "Slow drum: angle of repose", COST, "error of the angle", fill_slow, 0, 0, 0, 0, "degrees",
-     "210 discs in a drum with small bars, omega^2 R/g = 0.023. Mean angle of the centre of mass."},
+     "210 discs in a drum with small bars, omega^2 R/g = 0.023: mean angle of the centre of mass",
+     "t_c/100"},
     {"hopper", "Hopper: rate of discharge", COST, "error of the rate", fill_hopper, 0, 0, 0, 1, "grains/s",
-     "480 discs, a slot eight diameters wide, while the discharged fraction rises from 0.15 to 0.8."},
+     "480 discs, slot eight diameters wide, discharged fraction 0.15 to 0.8",
+     "t_c/100"},
     {"mill", "Mill: power", COST, "error of the power", fill_mill, 0, 0, 0, 0, "W",
-     "210 discs in a drum with eight bars at 70 % of the critical speed."},
+     "210 discs in a drum with eight bars at 70 % of the critical speed",
+     "t_c/100"},
     {"sieve", "Shaken sieve: passed fraction", COST, "error of the fraction", fill_sieve, 0, 0, 0, 0, "1",
-     "210 spheres of 0.5, 0.7 and 0.85 holes, against the plate with square holes. Spheres that have passed cost "
-     "less."},
+     "210 spheres with diameters of 0.5, 0.7 and 0.85 hole widths",
+     "plate with square holes, t_c/100"},
     {"ellipsoids", "Elastic gas of ellipsoids: kinds of overlap", COST, "largest change of energy", fill_spheroids,
      0, 0, 0, 0, "1",
-     "120 smooth ellipsoids 2 : 1 : 1, 5 % solid."},
+     "120 smooth ellipsoids 2 : 1 : 1, 5 % solid",
+     "energy at the start"},
     {"clusters", "An ellipsoid made of spheres: rebound", "cost of a bed (the ellipsoid itself = 1)",
      "error of the leaving velocity", fill_cluster_rebound, 0, 0, 0, 0, "1",
-     "n spheres inside an ellipsoid 2 : 1 : 1, with its mass. 16 tilts, against a rigid ellipsoid."},
+     "n spheres inside an ellipsoid 2 : 1 : 1, with its mass and inertia, 16 tilts",
+     "rigid ellipsoid"},
     {"cluster_packing", "An ellipsoid made of spheres: packing", "cost of a bed (the ellipsoid itself = 1)",
      "error of the solid fraction", fill_cluster_packing, 0, 0, 0, 0, "1",
-     "60 of these bodies fall into a box six widths wide."},
+     "60 of these bodies in a periodic box six widths wide",
+     "ellipsoid, t_c/100"},
     {"skin", "Cost of skin and search", "skin over radius", "time of a step (library's choice = 1)", fill_skin, 0,
      0, 0, 0, "1",
-     "18,000 beads in a drum: the contacts are the same for any skin."},
+     "18,000 beads in a drum",
+     "skin chosen by the library"},
     {"soft_angle", "Softening: angle of repose of the slow drum", "", "change of the angle, %", 0, scene_slow, 4,
      1, 0, "degrees",
-     "The slow drum above."},
+     "the slow drum above",
+     "grain of 1e9 Pa"},
     {"soft_hopper", "Softening: rate of discharge of the hopper", "", "change of the rate, %", 0, scene_hopper, 7,
      0, 0, "grains/s",
-     "The hopper above."},
+     "the hopper above",
+     "grain of 1e9 Pa"},
     {"soft_mill", "Softening: power of the mill", "", "change of the power, %", 0, scene_mill, 4, 0, 0, "W",
-     "The mill above."},
+     "the mill above",
+     "grain of 1e9 Pa"},
     {"soft_sizes", "Softening: segregation in a drum", "", "change of the segregation, %", 0, scene_sizes, 4, 2, 0,
      "1",
-     "45 large discs and 180 of half the size, 2.5 to 5 s after the start. Mean distance of the small ones from the "
-     "centre of the charge over that of the large ones."}};
+     "45 large discs and 180 of half the size, 2.5 to 5 s after the start: mean distance of the small ones from the "
+     "centre of the charge over that of the large ones",
+     "grain of 1e9 Pa"}};
 enum { ROWS = (int)(sizeof rows/sizeof *rows) };
 
 /* ---- the page: three tables, written after all diagrams ---- */
@@ -147,11 +168,11 @@ static void summary_point(FILE *page, const char *series, const point *q) {
 }
 static void summaries_write(FILE *page) {
     int i, k;
-    fprintf(page, "\n### Diagrams\n| diagram | name | vertical axis | scene |\n|---|---|---|---|\n");
+    fprintf(page, "\n### Diagrams\n| diagram | name | vertical axis | scene | reference |\n|---|---|---|---|---|\n");
     for (i = 0; i < ROWS; i++) {
         const row *r = summaries[i].of;
-        if (r) fprintf(page, "| [%s](images/accuracy_%s.png) | `%s` | %s | %s |\n", r->title, r->name, r->name, r->y_label,
-                       r->about);
+        if (r) fprintf(page, "| [%s](images/accuracy_%s.png) | `%s` | %s | %s | %s |\n", r->title, r->name, r->name, r->y_label,
+                       r->about, r->against);
     }
     fprintf(page, "\n### Efficient settings\n| diagram | cheapest setting | cost | error | standard error | most accurate "
             "setting | cost | error | standard error |\n|---|---|---|---|---|---|---|---|---|\n");
@@ -164,7 +185,7 @@ static void summaries_write(FILE *page) {
         else fprintf(page, " | | | |");
         fprintf(page, "\n");
     }
-    fprintf(page, "\n### Softening\n| diagram | E over that of the true grain | change [%%] | standard error [%%] | cost | "
+    fprintf(page, "\n### Softening\n| diagram | E over 1e9 Pa | change [%%] | standard error [%%] | cost [1e9 Pa = 1] | "
             "largest overlap [radii] |\n|---|---|---|---|---|---|\n");
     for (i = 0; i < ROWS; i++)
         for (k = 1; k < SOFTS && summaries[i].of && !summaries[i].of->fill; k++) {
@@ -173,7 +194,7 @@ static void summaries_write(FILE *page) {
             fprintf(page, "| `%s` | %g | %+.2f | %.2f | %.3f | %.3f |\n", summaries[i].of->name, softs[k], 100*s->change[k],
                     100*s->bar[k], s->cost[k], s->overlap[k]);
         }
-    fprintf(page, "\n| diagram | softness that changes it by 1 %% | largest overlap there [radii] |\n|---|---|---|\n");
+    fprintf(page, "\n| diagram | softness for a change of 1 %% [1e9 Pa/E] | largest overlap there [radii] |\n|---|---|---|\n");
     for (i = 0; i < ROWS; i++)
         if (summaries[i].of && !summaries[i].of->fill && summaries[i].soft.passes[0] > 0)
             fprintf(page, "| `%s` | %.0f | %.2g |\n", summaries[i].of->name, summaries[i].soft.passes[0], summaries[i].overlap);

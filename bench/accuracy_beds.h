@@ -153,8 +153,8 @@ static outcome scene_bed(const choice *c, int seed) {
     return o;
 }
 static const choice bed_choices[] = {
-    {.label = "t_c/100", .step = 0.5}, {"time step", "t_c/50", .step = 1},
-    {"time step", "t_c/20", .step = 2.5}, {"time step", "t_c/10", .step = 5},
+    {.label = "t_c/100", .step = 0.5}, {"default settings", "t_c/50", .step = 1},
+    {"default settings", "t_c/20", .step = 2.5}, {"default settings", "t_c/10", .step = 5},
     {"linear", "t_c/50", .normal = DEM_NORMAL_LINEAR}, {"linear", "t_c/20", .normal = DEM_NORMAL_LINEAR, .step = 2.5},
     {"hysteretic", "t_c/50", .normal = DEM_NORMAL_HYSTERETIC}, {"other E", "1e8 Pa", .soften = 0.1},
     {"other E", "1e6 Pa", .soften = 0.001}, {"other E", "1e5 Pa", .soften = 1e-4},

@@ -242,15 +242,15 @@ static void shot_series(points *p, const char *name, shot s, double converged[AN
 static void fill_oblique(points *p) {
     static const struct { const char *name; dem_tangent_law law; dem_slider slider; } laws[] = {
         {"spring", DEM_TANGENT_SPRING, DEM_SLIDER_PARALLEL},
-        {"spring; slider: spring", DEM_TANGENT_SPRING, DEM_SLIDER_SPRING},
-        {"spring; slider: rest", DEM_TANGENT_SPRING, DEM_SLIDER_REMAINDER},
+        {"spring, DEM_SLIDER_SPRING", DEM_TANGENT_SPRING, DEM_SLIDER_SPRING},
+        {"spring, DEM_SLIDER_REMAINDER", DEM_TANGENT_SPRING, DEM_SLIDER_REMAINDER},
         {"Mindlin", DEM_TANGENT_MINDLIN, DEM_SLIDER_PARALLEL},
-        {"Mindlin; slider: rest", DEM_TANGENT_MINDLIN, DEM_SLIDER_REMAINDER},
+        {"Mindlin, DEM_SLIDER_REMAINDER", DEM_TANGENT_MINDLIN, DEM_SLIDER_REMAINDER},
         {"Mindlin rescaled", DEM_TANGENT_MINDLIN_RESCALED, DEM_SLIDER_PARALLEL},
         {"step, without memory", DEM_TANGENT_STEP, DEM_SLIDER_PARALLEL},
         {"viscous, without memory", DEM_TANGENT_VISCOUS, DEM_SLIDER_PARALLEL}};
     double converged[8][ANGLES][2], apart;
-    char what[72];
+    char what[80];
     int k, i;
     for (k = 0; k < 8; k++) {
         shot s = {DEM_INTEGRATOR_VELOCITY_VERLET, laws[k].law, laws[k].slider, 0, 0, 0};

@@ -5,7 +5,7 @@
    errors below the diagram's level of chance count as equal: the cheapest of these settings is the efficient one.
 
        points_clear(&p, "hopper");
-       points_add(&p, "time step", "t_c/50", 1, 0.004, 0.006);     // series, label, cost, error, bar
+       points_add(&p, "default settings", "t_c/50", 1, 0.004, 0.006);     // series, label, cost, error, bar
        points_front(&p);
        points_draw(&p, "title", "cost", "error", "hopper.svg");
 
@@ -21,7 +21,7 @@ typedef struct point {
     int front;                      /* 1: efficient: nothing is both cheaper and more accurate               */
 } point;
 typedef struct number {              /* another result of a diagram, for accuracy_numbers.csv                 */
-    char what[72];
+    char what[80];
     const char *unit;
     double value, bar;              /* bar: standard error, 0 if there is none                               */
     int seeds;                      /* 0: results do not scatter                                             */

@@ -17,19 +17,20 @@ static void fill_scene(points *p, scene_fn scene, const choice *c, int count, in
 
 static void fill_pile(points *p) {
     static const choice c[] = {
-        {.label = "t_c/100", .step = 0.5}, {"time step", "t_c/50", .step = 1}, {"time step", "t_c/20", .step = 2.5},
-        {"time step", "t_c/10", .step = 5}, {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},
+        {.label = "t_c/100", .step = 0.5}, {"default settings", "t_c/50", .step = 1},
+        {"default settings", "t_c/20", .step = 2.5}, {"default settings", "t_c/10", .step = 5},
+        {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},
         {"without memory", "step", .tangent = DEM_TANGENT_STEP},
         {"friction", "Mindlin", .tangent = DEM_TANGENT_MINDLIN},
-        {"friction", "slider: rest", .slider = DEM_SLIDER_REMAINDER},
+        {"friction", "DEM_SLIDER_REMAINDER", .slider = DEM_SLIDER_REMAINDER},
         {"without rolling", "none", .rolling = DEM_ROLLING_NONE},
         {"rolling", "constant", .rolling = DEM_ROLLING_CONSTANT}, {"rolling", "step", .rolling = DEM_ROLLING_STEP}};
     fill_scene(p, scene_pile, c, CHOICES(c), 5, 0);
 }
 static void fill_slow(points *p) {
     static const choice c[] = {
-        {.label = "t_c/100", .step = 0.5}, {"time step", "t_c/50", .step = 1},
-        {"time step", "t_c/20", .step = 2.5}, {"time step", "t_c/10", .step = 5},
+        {.label = "t_c/100", .step = 0.5}, {"default settings", "t_c/50", .step = 1},
+        {"default settings", "t_c/20", .step = 2.5}, {"default settings", "t_c/10", .step = 5},
         {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},
         {"without memory", "step", .tangent = DEM_TANGENT_STEP},
         {"friction", "Mindlin", .tangent = DEM_TANGENT_MINDLIN},
@@ -39,8 +40,8 @@ static void fill_slow(points *p) {
 }
 static void fill_hopper(points *p) {
     static const choice c[] = {
-        {.label = "t_c/100", .step = 0.5}, {"time step", "t_c/50", .step = 1},
-        {"time step", "t_c/20", .step = 2.5}, {"time step", "t_c/10", .step = 5},
+        {.label = "t_c/100", .step = 0.5}, {"default settings", "t_c/50", .step = 1},
+        {"default settings", "t_c/20", .step = 2.5}, {"default settings", "t_c/10", .step = 5},
         {"skin", "0.1 R", .skin = 0.1}, {"skin", "1 R", .skin = 1},
         {"search", "linked list", .search = DEM_SEARCH_LINKED_LIST},
         {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},
@@ -50,8 +51,8 @@ static void fill_hopper(points *p) {
 }
 static void fill_mill(points *p) {
     static const choice c[] = {
-        {.label = "t_c/100", .step = 0.5}, {"time step", "t_c/50", .step = 1},
-        {"time step", "t_c/20", .step = 2.5}, {"time step", "t_c/10", .step = 5},
+        {.label = "t_c/100", .step = 0.5}, {"default settings", "t_c/50", .step = 1},
+        {"default settings", "t_c/20", .step = 2.5}, {"default settings", "t_c/10", .step = 5},
         {"integrator", "symplectic", .integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER},
         {"integrator", "forward", .integrator = DEM_INTEGRATOR_FORWARD_EULER},
         {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},

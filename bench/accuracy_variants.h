@@ -78,7 +78,7 @@ static double price_seconds;        /* s of processor time, a step of the librar
 /* What a step on the bed costs in each build. */
 static void variant_price(FILE *page) {
     static const char *const names[2] = {"single", "one_domain"};
-    static const char *const what[2] = {"single precision", "all bodies in one domain (no slots, no threads)"};
+    static const char *const what[2] = {"single precision", "all bodies in one domain, no threads"};
     note n;
     int k;
     if (variant_file) {

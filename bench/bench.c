@@ -148,7 +148,7 @@ static void measure(const bench_scene *s) {
 /* ---- the cost of an effect: time of a step with it over that without it, on the same scene in turns; and its cost where
    it is switched on but has no cause (no friction in any pair, a field that is over), which should be none ---- */
 
-typedef struct effect_row { const char *name, *scene, *buys; bench_choice with, without, absent; } effect_row;
+typedef struct effect_row { const char *name, *scene, *about, *against; bench_choice with, without, absent; } effect_row;
 #define NO_FRICTION {.tangent = DEM_TANGENT_NONE}
 static void bench_law_called(const dem_contact *c, dem_real *memory, dem_contact_force *f) { bench_law(c, memory, f); }
 static void bench_law_flows(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
@@ -158,50 +158,78 @@ static void bench_law_flows(const dem_contact *c, dem_real *memory, dem_contact_
     c->who.rate_b[0] -= flow;
 }
 static const effect_row effect_rows[] = {
-    {"friction", "bed", "a spring that holds grains at rest", {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
-    {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}, {0}, {0}},
-    {"tangent.step", "bed", "a spring of one step, as in [MIL]: heaps creep", {.tangent = DEM_TANGENT_STEP}, {0}, {0}},
-    {"tangent.mindlin", "bed", "stiffness that follows the overlap", {.tangent = DEM_TANGENT_MINDLIN}, {0}, {0}},
-    {"tangent.mindlin_rescaled", "bed", "the same, and unloading creates no energy",
+    {"friction", "bed", "spring friction, which holds grains at rest", "no friction",
+     {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
+    {"tangent.viscous", "bed", "viscous friction (heaps creep)", "spring friction",
+     {.tangent = DEM_TANGENT_VISCOUS}, {0}, {0}},
+    {"tangent.step", "bed", "spring of one step, as in [MIL] (heaps creep)", "spring friction",
+     {.tangent = DEM_TANGENT_STEP}, {0}, {0}},
+    {"tangent.mindlin", "bed", "Mindlin's friction, whose stiffness follows the overlap", "spring friction",
+     {.tangent = DEM_TANGENT_MINDLIN}, {0}, {0}},
+    {"tangent.mindlin_rescaled", "bed", "the same, rescaled (unloading creates no energy)", "spring friction",
      {.tangent = DEM_TANGENT_MINDLIN_RESCALED}, {0}, {0}},
-    {"normal.linear", "bed", "contact time independent of speed", {.normal = DEM_NORMAL_LINEAR}, {0}, {0}},
-    {"normal.hysteretic", "bed", "loading and unloading on two lines", {.adhesion = 1}, {.normal = DEM_NORMAL_LINEAR}, {0}},
-    {"adhesion", "bed", "grains that stick", {.adhesion = 2}, {.adhesion = 1}, {0}},
-    {"rolling.step", "bed", "rolling resistance as in [MIL]",
+    {"normal.linear", "bed", "linear spring: contact time independent of speed", "Hertz",
+     {.normal = DEM_NORMAL_LINEAR}, {0}, {0}},
+    {"normal.hysteretic", "bed", "hysteretic law: loading and unloading on two lines", "linear spring",
+     {.adhesion = 1}, {.normal = DEM_NORMAL_LINEAR}, {0}},
+    {"adhesion", "bed", "hysteretic law with adhesion", "hysteretic law",
+     {.adhesion = 2}, {.adhesion = 1}, {0}},
+    {"rolling.step", "bed", "rolling resistance as in [MIL]", "no rolling resistance",
      {.rolling = DEM_ROLLING_STEP, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_STEP}},
-    {"rolling.constant", "bed", "a constant rolling torque",
+    {"rolling.constant", "bed", "constant rolling torque", "no rolling resistance",
      {.rolling = DEM_ROLLING_CONSTANT, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_CONSTANT}},
-    {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope",
+    {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope", "no rolling resistance",
      {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_EPSD}},
-    {"own_law.inlined", "bed", "nothing: Hertz and a spring as a user-defined law, named by DEM_LAW", {.law = bench_law}, {0}, {0}},
-    {"own_law.called", "bed", "nothing: the same law by pointer", {.law = bench_law_called}, {0}, {0}},
-    {"own_law.who", "bed", "ids, radii, masses, position and time for a law by pointer",
+    {"own_law.inlined", "bed", "Hertz and spring friction as a user-defined law, named by DEM_LAW", "built-in laws",
+     {.law = bench_law}, {0}, {0}},
+    {"own_law.called", "bed", "the same law by pointer", "built-in laws",
+     {.law = bench_law_called}, {0}, {0}},
+    {"own_law.who", "bed", "ids, radii, masses, contact point and time for a law by pointer", "own_law.called",
      {.law = bench_law_called, .who = 1}, {.law = bench_law_called}, {0}},
-    {"body_reals", "bed", "a number on every grain, which a law exchanges between them",
+    {"body_reals", "bed", "a number on every grain, which a law exchanges between them", "own_law.who",
      {.law = bench_law_flows, .who = 1, .reals = 1}, {.law = bench_law_called, .who = 1},
      {.law = bench_law_called, .who = 1, .reals = 1}},
-    {"own_law.range", "bed", "a law called from 0.05 radii before contact", {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
-    {"ledger", "bed", "an energy balance, checked at every step", {.ledger = 1}, {0}, {0}},
-    {"one_unlike", "bed", "one grain unlike the others", {.mixed = 1}, {0}, {0}},
-    {"two_species", "bed", "two sizes (or materials), half of the grains each", {.mixed = 2}, {0}, {0}},
-    {"all_unlike", "bed", "a different size for every grain", {.mixed = 3}, {0}, {0}},
-    {"memory", "bed", "contact history: a spring in place of viscous friction", {0},
-     {.tangent = DEM_TANGENT_VISCOUS}, {0}},
-    {"ellipsoids", "bed", "nothing: beads as ellipsoids of three equal axes", {.shaped = 1}, {0}, {0}},
-    {"clusters", "bed", "nothing: beads as clusters of one sphere", {.shaped = 2}, {0}, {0}},
-    {"orientation", "bed", "orientations of spheres", {.orientations = 1}, {0}, {0}},
-    {"periodicity", "gas", "a box without walls", {0}, {.open = 1}, {0}},
-    {"field", "bed", "solid fraction and velocity on a grid, every 100 steps", {.field = 1}, {0}, {.field = 2}},
-    {"feed", "drum", "a bead fed every fourth step", {.feed = 50000}, {0}, {.feed = 1e-3}},
-    {"outlet", "drum", "removal of beads that fly through the middle", {.outlet = 1}, {0}, {.outlet = 2}},
-    {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_INTEGRATOR_LEAPFROG}, {0}, {0}},
-    {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_INTEGRATOR_POSITION_VERLET}, {0}, {0}},
-    {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER}, {0}, {0}},
-    {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_INTEGRATOR_FORWARD_EULER}, {0}, {0}},
-    {"skin0", "bed", "nothing: the list is rebuilt at every step", {.skin = -1}, {0}, {0}},
-    {"search.linked_list", "drum", "nothing here: for wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
-    {"search.bins", "drum", "nothing here: for bodies of very different extent [MAZ11]", {.search = DEM_SEARCH_BINS}, {0}, {0}},
-    {"search.all_pairs", "drum", "nothing: the reference of the tests",
+    {"own_law.range", "bed", "a law called from 0.05 radii before contact", "own_law.inlined",
+     {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
+    {"ledger", "bed", "energy balance, checked at every step", "no ledger",
+     {.ledger = 1}, {0}, {0}},
+    {"one_unlike", "bed", "one grain unlike the others", "equal grains",
+     {.mixed = 1}, {0}, {0}},
+    {"two_species", "bed", "two sizes (or materials), half of the grains each", "equal grains",
+     {.mixed = 2}, {0}, {0}},
+    {"all_unlike", "bed", "a different size for every grain", "equal grains",
+     {.mixed = 3}, {0}, {0}},
+    {"memory", "bed", "spring friction, which has a contact history", "viscous friction",
+     {0}, {.tangent = DEM_TANGENT_VISCOUS}, {0}},
+    {"ellipsoids", "bed", "beads as ellipsoids of three equal axes", "spheres",
+     {.shaped = 1}, {0}, {0}},
+    {"clusters", "bed", "beads as clusters of one sphere", "spheres",
+     {.shaped = 2}, {0}, {0}},
+    {"orientation", "bed", "orientations of spheres", "no orientations",
+     {.orientations = 1}, {0}, {0}},
+    {"periodicity", "gas", "periodic box", "open box",
+     {0}, {.open = 1}, {0}},
+    {"field", "bed", "solid fraction and velocity on a grid, every 100 steps", "no field",
+     {.field = 1}, {0}, {.field = 2}},
+    {"feed", "drum", "a bead fed every fourth step", "no feed",
+     {.feed = 50000}, {0}, {.feed = 1e-3}},
+    {"outlet", "drum", "removal of beads that fly through the middle", "no outlet",
+     {.outlet = 1}, {0}, {.outlet = 2}},
+    {"integrator.leapfrog", "bed", "the path of velocity Verlet", "velocity Verlet",
+     {.integrator = DEM_INTEGRATOR_LEAPFROG}, {0}, {0}},
+    {"integrator.position_verlet", "bed", "the path of velocity Verlet", "velocity Verlet",
+     {.integrator = DEM_INTEGRATOR_POSITION_VERLET}, {0}, {0}},
+    {"integrator.symplectic_euler", "bed", "first order, energy bounded", "velocity Verlet",
+     {.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER}, {0}, {0}},
+    {"integrator.forward_euler", "bed", "first order, gains energy", "velocity Verlet",
+     {.integrator = DEM_INTEGRATOR_FORWARD_EULER}, {0}, {0}},
+    {"skin0", "bed", "list rebuilt at every step", "chosen skin",
+     {.skin = -1}, {0}, {0}},
+    {"search.linked_list", "drum", "linked cells, for wide size ranges [ALK07]", "grid",
+     {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
+    {"search.bins", "drum", "bins, for bodies of very different extent [MAZ11]", "grid",
+     {.search = DEM_SEARCH_BINS}, {0}, {0}},
+    {"search.all_pairs", "drum", "all pairs, the reference of the tests", "grid",
      {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}, {.every = 18}, {0}}, /* of 1000 */
 };
 
@@ -231,9 +259,10 @@ static void effect(const effect_row *row, const bench_scene *s, FILE *page, FILE
     snprintf(unit, sizeof unit, "of the step without (%s, %d, +- %.0f %%)", s->name, many, spread);
     snprintf(name, sizeof name, "effect.%s.price", row->name);
     bench_result_short(name, price, unit);
-    if (data) fprintf(data, "%s,\"%s\",%s,%d,%.2f,%.0f,", row->name, row->buys, s->name, many, price, spread);
+    if (data) fprintf(data, "%s,\"%s\",%s,%s,%d,%.2f,%.0f,", row->name, row->about, row->against, s->name, many, price, spread);
     if (page && fabs(price - 1) > spread/100)
-        fprintf(page, "| `%s` | %s | %s | %.2f | %.0f |\n", row->name, row->buys, s->name, price, spread);
+        fprintf(page, "| `%s` | %s | %s | %s | %d | %.2f | %.0f |\n", row->name, row->about, row->against, s->name, many, price,
+                spread);
     else snprintf(hidden + strlen(hidden), room - strlen(hidden), "%s`%s`", *hidden ? ", " : "", row->name);
     if (memcmp(&row->absent, &none, sizeof none)) {
         absent = effect_ratio(row->name, s, &row->absent, &row->without, &spread);
@@ -249,8 +278,8 @@ static void effects(double load) {
     bench_scene scenes[3];
     char hidden[1000] = "";
     FILE *page = bench_page_open(), *data = bench_data_open("effects.csv", "make bench-pages PAGES=effects",
-        "effect,what it buys,scene,grains,time of a step [without = 1],spread [%],"
-        "time when on but without a cause [without = 1],spread [%]");
+        "effect,description,compared with,scene,grains,time of a step [compared with = 1],spread [%],"
+        "time when on but without a cause [compared with = 1],spread [%]");
     size_t i;
     int k;
     scenes[0] = bench_scene_read(data_folder, "bed");
@@ -258,8 +287,8 @@ static void effects(double load) {
     scenes[2] = bench_scene_read(data_folder, "gas");
     if (page) {
         bench_page_machine(page, load);
-        fprintf(page, "| effect or choice | what it buys | scene | time of a step [without = 1] | spread [%%] |\n"
-                "|---|---|---|---|---|\n");
+        fprintf(page, "| effect or choice | description | compared with | scene | grains | time of a step [compared with = 1] | "
+                "spread [%%] |\n|---|---|---|---|---|---|---|\n");
     }
     for (i = 0; i < sizeof effect_rows/sizeof *effect_rows; i++)
         for (k = 0; k < 3; k++)

@@ -76,7 +76,7 @@ rates() {
     cat build/out/bench/summary.txt build/out/bench_single/summary.txt build/out/bench_O2/summary.txt | awk '
         / = / && $1 ~ /^(bed|drum|gas)\.(double|single|double\.O2)\.rate$/ {
             split($1, part, "."); build = part[2] (part[3] == "O2" ? ".O2" : ""); rate[part[1], build] = 1e-6*$3 }
-        END { print "| scene | double | single | single : double | double, `-O2` without `-march=native` |"; print "|---|---|---|---|---|"
+        END { print "| scene | double | single | speed, single over double | double, `-O2` without `-march=native` |"; print "|---|---|---|---|---|"
             n = split("bed drum gas", scene, " ")
             for (i = 1; i <= n; i++) { d = rate[scene[i], "double"]; s = rate[scene[i], "single"]; o = rate[scene[i], "double.O2"]
                 printf "| %s | %.1f | %.1f | %.2f | %s |\n", scene[i], d, s, d ? s/d : 0, o ? sprintf("%.1f", o) : "" } }'
