@@ -66,7 +66,7 @@ endif
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
 
-run: build/mill ## the tumbling mill: a film for the browser, pictures and figures in build/out/mill
+run: build/mill ## the tumbling mill: a replay for the browser, pictures and figures in build/out/mill
 	@mkdir -p build/out/mill
 	GOMP_SPINCOUNT=1000 build/mill --replay --out build/out/mill
 
@@ -176,7 +176,7 @@ web: ## the browser lesson: build/web/lesson.html, dem.h in WebAssembly with sli
 viewer: ## put examples/replay/viewer.html into dem.h
 	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html dem.h > build/viewer.h && cp build/viewer.h dem.h
 
-browser: build/write_film ## play a film in a headless chromium: frames, pixels, no errors
+browser: build/write_replays ## play replays in a headless chromium: frames, pixels, no errors
 	@sh tests/browser.sh
 
 recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use what they add
@@ -217,14 +217,14 @@ $(LESSONS) $(SHOWS) $(STUDIES): build/%: examples/%.c $(HEADERS)
 $(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
-build/write_film: tests/write_film.c
+build/write_replays: tests/write_replays.c
 # -O3 takes three times as long to compile as -O2 and is for those that run long
 build/tests $(TESTS): LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
 build/tests $(TESTS) $(BENCHES): dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 build/dem.o build/dem_run.o: dem.c dem.h build/flags
 	$(COMPILE) $(LTO) $(OMP) -c -o $@ dem.c
-$(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_film: $(DEM_O)
+$(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_replays: $(DEM_O)
 	$(COMPILE) $(LTO) -o $@ $(filter %/$(@F).c,$^) $(DEM_O) $(LINK)
 build/readme_program: README.md tests/snippets.awk $(DEM_O)
 	@rm -rf build/readme && mkdir -p build/readme && awk -v out=build/readme -f tests/snippets.awk README.md

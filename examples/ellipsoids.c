@@ -58,7 +58,7 @@
    [RUB15] Rubio-Largo, Lind, Maza & Hidalgo (2015); [SON90] Song & Mason, Phys. Rev. A 41 (1990) 3121, eq 25. */
 #include "../dem.h"
 #include "study.h"
-#include "film.h"
+#include "study_replay.h"
 
 #define PI 3.14159265358979323846
 #define DENSITY 2000.0      /* kg/m3 */
@@ -94,7 +94,7 @@ static const study_option table[] = {
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "one case, of fewer collisions"},
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
-    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "a film of the first case, replay.html"},
+    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write a replay of the first case, replay.html"},
     {"all", STUDY_FLAG, &options.all, 0, 0, "", "Table 1's elongations at .90, .95, .98"},
     {"theory", STUDY_FLAG, &options.theory, 0, 0, "", "S_c, <D>_c, theta, zeta*, and no gas"},
     {"direct", STUDY_FLAG, &options.direct, 0, 0, "", "the theory by drawing collisions, no gas"},
@@ -237,7 +237,7 @@ typedef struct gas {
     sample *samples;
     double histogram[3][BINS], histogram_sum[3], fourth, fourth_sum;
     double ratio, zeta, ratio_theory, zeta_theory, tau_rate;
-    film film;
+    study_replay replay;
 } gas;
 
 static double uniform(gas *g) { /* 0 < u < 1, splitmix64 */
@@ -443,10 +443,10 @@ static int gas_run(gas *g, const char *what, double span, int window) {
         now.time = g->time;
         now.s = g->s;
         study_progress(what, fmin((g->s - from)/span, 1), work(g, begun));
-        if (g->s >= g->film.taken*g->film.interval) {      /* without a film: nothing */
-            film_value(&g->film, "log10 of T_tr (J)", log10(now.tr));
-            film_value(&g->film, "T_rot over T_tr", now.rot/now.tr);
-            film_frame(&g->film);
+        if (g->s >= g->replay.taken*g->replay.interval) {      /* without a replay: nothing */
+            study_replay_value(&g->replay, "log10 of T_tr (J)", log10(now.tr));
+            study_replay_value(&g->replay, "T_rot over T_tr", now.rot/now.tr);
+            study_replay_frame(&g->replay);
         }
         if (g->sample_count == g->sample_room) {
             sample *more;
@@ -604,7 +604,7 @@ static int gas_case(gas *g, double xi, double e) {
     g->samples = (sample *)study_alloc(256, sizeof *g->samples);
     g->sample_room = 256;
     g->samples[g->sample_count++] = gas_look(g);
-    g->film = film_open(g->world, options.replay ? 200 : 0, wait + options.collisions/g->t.d_root,
+    g->replay = study_replay_open(g->world, options.replay ? 200 : 0, wait + options.collisions/g->t.d_root,
                         "A granular gas of ellipsoids that cools: energies are doubled whenever half is lost");
     options.replay = 0;                         /* the first case */
     snprintf(what, sizeof what, "xi %.2f e %.2f settling", xi, e);
@@ -615,7 +615,7 @@ static int gas_case(gas *g, double xi, double e) {
         snprintf(what, sizeof what, "xi %.2f e %.2f half %d", xi, e, i + 1);
         if (gas_run(g, what, options.collisions/g->t.d_root/2, 2 + i)) return 1;
     }
-    film_close(&g->film);
+    study_replay_close(&g->replay);
     gas_measure(g, from, reduced_damping);
     gas_compare(g, reduced_damping);
     tell(g, "kurtosis", g->fourth/g->fourth_sum/3 - 1, "");

@@ -162,7 +162,7 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     for (k = 0; k < most; k++) {
         const dem_result result = dem_world_step(world, 1);
         const int near_by = exam_gap(world, one, other, e->radius) < e->range;
-        met |= near_by;                          /* the law is asked: a film or a charge may part them before they touch */
+        met |= near_by;                          /* the law is called: a liquid film or a charge may part them before they touch */
         if (result != DEM_OK || (met && !near_by && !e->made)) break;
     }
     after = dem_totals_get(world);

@@ -40,17 +40,17 @@
                           within 5 % of its mean
      grains_missing       inserted - present + those found outside the shell
      hash                 of the final state: the same for any number of threads
-   --replay: a film of the whole run. Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
+   --replay: a replay of the whole run. Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
    torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
 #include "../dem.h"
 #include "drum.h"
 #include "study.h"
-#include "film.h"
+#include "study_replay.h"
 
 #define PI 3.14159265358979323846
 #define GRAVITY 9.81
 #define CELLS 256          /* of the finest map; the others are sums of its cells */
-#define FILM_FRAMES 120
+#define REPLAY_FRAMES 120
 #define SAMPLES 240        /* of torque and energy, per revolution */
 
 static struct mill_options {
@@ -101,7 +101,7 @@ static const study_option table[] = {
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "a smaller mill, under 20 s on two cores"},
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
-    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "a film that a browser plays, replay.html"},
+    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"frames", STUDY_INT, &options.frames, 0, 100000, "",
         "VTP files of grains and mill over the run"},
     {"checkpoint", STUDY_TEXT, &options.checkpoint, 0, 0, "",
@@ -470,23 +470,23 @@ static int mill_step(mill *m, dem_slabs *slabs) {
     study_fail("%s", dem_slabs_error_get(slabs));
     return 1;
 }
-/* A frame of the film where one is due; torque and power are means since the last. */
-static void mill_film(const mill *m, film *f, int k, int *since) {
+/* Writes a frame of the replay if one is due; torque and power are means since the last frame. */
+static void mill_replay(const mill *m, study_replay *f, int k, int *since) {
     const sample *a = &m->samples[*since], *b = &m->samples[k];
     const double time = b->time - a->time;
-    if (!film_due(f)) return;
+    if (!study_replay_due(f)) return;
     if (time > 0) {
-        film_value(f, "torque (N m)", (b->impulse - a->impulse)/time);
-        film_value(f, "power (W)", (b->work - a->work)/time);
+        study_replay_value(f, "torque (N m)", (b->impulse - a->impulse)/time);
+        study_replay_value(f, "power (W)", (b->work - a->work)/time);
     }
-    film_value(f, "kinetic energy (J)", b->ledger.kinetic + b->ledger.rotational);
-    film_value(f, "ledger: residual (J)", b->ledger.residual);
-    film_frame(f);
+    study_replay_value(f, "kinetic energy (J)", b->ledger.kinetic + b->ledger.rotational);
+    study_replay_value(f, "ledger: residual (J)", b->ledger.residual);
+    study_replay_frame(f);
     *since = k;
 }
 static int mill_turn(mill *m) { /* the run itself */
     dem_slabs *slabs;
-    film f;
+    study_replay f;
     int bad = 0;
     int k = 0, first, total, count, since, frames = m->o.frames;
     double begun, work = (double)m->grains*m->sample_steps;
@@ -505,16 +505,16 @@ static int mill_turn(mill *m) { /* the run itself */
     snprintf(what, sizeof what, "mill: %d grains, %.3g revolutions", m->grains,
              total/(double)SAMPLES);
     study_progress(what, 0, 0);
-    f = film_open(m->world, m->o.replay ? FILM_FRAMES : 0, (total - k)*m->sample_steps*m->dt,
+    f = study_replay_open(m->world, m->o.replay ? REPLAY_FRAMES : 0, (total - k)*m->sample_steps*m->dt,
                   "A tumbling mill with lifters");
-    mill_film(m, &f, k, (since = k, &since));
+    mill_replay(m, &f, k, (since = k, &since));
     for (begun = study_clock(), first = k; k < total && !bad; k++) {
         if (frames && (int64_t)k*frames%total < frames)
             frame_write(m, (int)((int64_t)k*frames/total));
         bad = mill_step(m, slabs);
         if (bad) break;
         sample_take(m, &m->samples[k + 1]);
-        mill_film(m, &f, k + 1, &since);
+        mill_replay(m, &f, k + 1, &since);
         count = k + 2;
         if (m->o.checkpoint && !study.quiet && ((k + 1)%(SAMPLES/4) == 0 || k + 1 == total))
             bad = samples_file(m, m->o.checkpoint, 1, &count) ||
@@ -522,7 +522,7 @@ static int mill_turn(mill *m) { /* the run itself */
         study_progress(what, (k + 1 - first)/(double)(total - first), work*(k + 1 - first));
     }
     dem_slabs_destroy(slabs);
-    film_close(&f);
+    study_replay_close(&f);
     if (bad) return 1;
     study_result("rate", work*(k - first)/fmax(study_clock() - begun, 1e-3), "particle-steps/s");
     if (frames) frame_write(m, frames);

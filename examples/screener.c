@@ -42,7 +42,7 @@
 #include "../dem.h"
 #include "sorting.h"
 #include "study.h"
-#include "film.h"
+#include "study_replay.h"
 #include "tumbler.h"
 
 #define PI 3.14159265358979323846
@@ -94,7 +94,7 @@ static const study_option table[] = {
     {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "of each run of a sweep, with seeds on from that"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "fewer balls and less time, under 20 s"},
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT " and balls five times as dense"},
-    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "a film that a browser plays, replay.html"},
+    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"frames", STUDY_INT, &options.frames, 0, 100000, "", "VTP files of the balls over the run"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"study", STUDY_CHOICE, &options.study, 0, 0,
@@ -508,7 +508,7 @@ static int screener_step(screener *s, int steps) {
 static int screener_run(screener *s, const struct screener_options *o, const char *name) {
     dem_advice advice;
     const int counting = is(o->study, "hour");      /* balls, at every step */
-    film f;
+    study_replay f;
     double next = 0, begun, work = 0, unbalanced = 0;
     int i, frame = 0, drawn = 0, bad;
     memset(s, 0, sizeof *s);
@@ -521,7 +521,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     s->dt = s->dt_first = (double)advice.contact_time/s->o.steps;
     if (screener_create(s, s->dt)) return 1;
     dem_world_check_print(s->world, stderr);
-    f = film_open(s->world, o->replay ? 250 : 0, s->o.seconds, "A tumbling screening machine");
+    f = study_replay_open(s->world, o->replay ? 250 : 0, s->o.seconds, "A tumbling screening machine");
     begun = study_clock();
     while (!bad && dem_world_time_get(s->world) < s->o.seconds - s->dt/2) {
         const double left = (next - dem_world_time_get(s->world))/s->dt;
@@ -533,12 +533,12 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
             sample_take(s);
             next += s->o.seconds/(SAMPLES - 1);
         }
-        if (film_due(&f)) {
+        if (study_replay_due(&f)) {
             const int last = s->samples - 1;
-            film_value(&f, "balls in the machine", (double)dem_body_counts_get(s->world).present);
-            if (last >= 0) film_value(&f, "efficiency by number (%)", s->efficiency[last]);
-            if (last >= 0) film_value(&f, "gangue, share of mass (%)", s->gangue[last]);
-            film_frame(&f);
+            study_replay_value(&f, "balls in the machine", (double)dem_body_counts_get(s->world).present);
+            if (last >= 0) study_replay_value(&f, "efficiency by number (%)", s->efficiency[last]);
+            if (last >= 0) study_replay_value(&f, "gangue, share of mass (%)", s->gangue[last]);
+            study_replay_frame(&f);
         }
         if (!drawn && is(o->study, "run") && 2*dem_world_time_get(s->world) >= s->o.seconds) {
             picture_draw(s, 0, "Half way through, from the side", "side.svg");
@@ -550,7 +550,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
         study_progress(name, fmin(1, dem_world_time_get(s->world)/s->o.seconds), work);
     }
     s->compute = study_clock() - begun;
-    film_close(&f);
+    study_replay_close(&f);
     if (!bad) {
         sorting sorted;
         const dem_feed_state feed = fed(s);

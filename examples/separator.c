@@ -31,7 +31,7 @@
 #include "corona.h"
 #include "separator.h"
 #include "study.h"
-#include "film.h"
+#include "study_replay.h"
 
 enum { BINS = 200, SPLITTERS = 60, GROUPS = 3 + SEPARATOR_PARTS, VALUES = 8, REPEATS = 32 };
 static const double bin_first = -0.4, bin_wide = 0.005;      /* m */
@@ -142,7 +142,7 @@ static const study_option table[] = {
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "less time, under 20 s"},
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
     {"check", STUDY_FLAG, &options.check, 0, 0, "", "equal bits for 1, 2, 3, 4, 8 threads and after a restart"},
-    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "a film that a browser plays, replay.html"},
+    {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|speed|voltage|shape|settings|steps|choices",
         "what to run"},
@@ -466,7 +466,7 @@ static void picture_draw(const separator *s, const char *file) {
 static int separator_run(separator *s, const struct separator_options *o, const char *name, outcome *r,
     const char *picture) {
     separator_desc d;
-    film f;
+    study_replay f;
     const double all = o->seconds + (o->brief && is(o->setting, "springs") ? 0 : o->drain);
     double begun, work = 0, steps = 0;
     dem_result result;
@@ -475,7 +475,7 @@ static int separator_run(separator *s, const struct separator_options *o, const 
     memset(s, 0, sizeof *s);
     if (!desc_of(&d, o)) return 1;
     if (separator_create(s, &d) != DEM_OK) { study_fail("%s", s->error); return 1; }
-    f = film_open_by(s->world, o->replay ? 240 : 0, o->seconds, "A corona electrostatic separator", "charge_pC",
+    f = study_replay_open_by(s->world, o->replay ? 240 : 0, o->seconds, "A corona electrostatic separator", "charge_pC",
         grain_charge);
     begun = study_clock();
     for (;;) {
@@ -483,21 +483,21 @@ static int separator_run(separator *s, const struct separator_options *o, const 
         const int count = dem_bodies_get(s->world).count;
         if (now > all || (now > o->seconds && !separator_present(s))) break;
         result = separator_step(s);
-        if (result != DEM_OK) { study_fail("%s", s->error); film_close(&f); return 1; }
+        if (result != DEM_OK) { study_fail("%s", s->error); study_replay_close(&f); return 1; }
         work += count*((double)dem_counters_get(s->world).steps - steps);
         steps = (double)dem_counters_get(s->world).steps;
         if (!drawn && 2*now >= o->seconds) { picture_draw(s, picture); drawn = 1; }
-        if (film_due(&f)) {
-            film_value(&f, "grains present", count);
-            film_value(&f, "grains landed", s->landed_count);
-            film_frame(&f);
+        if (study_replay_due(&f)) {
+            study_replay_value(&f, "grains present", count);
+            study_replay_value(&f, "grains landed", s->landed_count);
+            study_replay_frame(&f);
         }
         study_progress(name, fmin(1, now/all), work);
     }
     study_progress(name, 1, work);
     r->compute = study_clock() - begun;
     r->grain_steps = work/fmax(r->compute, 1e-9);
-    film_close(&f);
+    study_replay_close(&f);
     outcome_take(s, o, r);
     return 0;
 }

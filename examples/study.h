@@ -45,7 +45,7 @@ typedef struct study_state {
     double begun, shown;          /* s, wall clock: of this progress line */
     int tenths, open;             /* tenths told; a line is open on the terminal */
     char told[64];                /* what the line is about */
-    char film[1024];              /* file of the film that is told of at the end; "": none */
+    char replay[1024];            /* file of the replay, printed by study_end; "": none */
 } study_state;
 static study_state study;
 
@@ -244,15 +244,15 @@ STUDY_FN void study_say(const char *sentence, ...) {
     va_end(arguments);
     fputc('\n', stderr);
 }
-STUDY_FN void study_film(void) {
-    if (study.film[0]) study_say("open %s in a browser: it plays the run", study.film);
-    study.film[0] = 0;
+STUDY_FN void study_replay_print(void) {
+    if (study.replay[0]) study_say("open %s in a browser: it plays the run", study.replay);
+    study.replay[0] = 0;
 }
-STUDY_FN int study_end(void) { /* exit code; the film is told of last, below all results */
+STUDY_FN int study_end(void) { /* returns the exit code; prints the file of the replay last, below all results */
     fflush(stdout);
     if (!study.quiet)
         fprintf(stderr, "%s: %d files in %s\n", study.program, study.files, study.root);
-    study_film();
+    study_replay_print();
     if (study.failures) fprintf(stderr, "%s: failures above: %d\n", study.program, study.failures);
     return study.failures ? 1 : 0;
 }

@@ -1,9 +1,9 @@
-# FILM=build/write_film sh tests/browser.sh: plays the films of that program in a headless chromium: all frames are read, a picture is drawn, there
-# is colour where a grain is and none in a corner, nothing is written to the console. Ends with "N passed, N failed".
+# REPLAYS=build/write_replays sh tests/browser.sh: plays the replays of that program in a headless chromium. All frames
+# must be read, a picture drawn, a grain coloured and a corner empty, and nothing written to the console. Ends with "N passed, N failed".
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
-[ -n "$browser" ] || { echo "SKIP: no chromium to play films in (Debian package chromium)"; exit 0; }
+[ -n "$browser" ] || { echo "SKIP: no chromium to play replays in (Debian package chromium)"; exit 0; }
 dir=build/out/browser
-mkdir -p $dir && "${FILM:-build/write_film}" $dir || exit 1
+mkdir -p $dir && "${REPLAYS:-build/write_replays}" $dir || exit 1
 head -c $(($(wc -c < $dir/shapes.html)*2/3)) $dir/shapes.html > $dir/cut.html      # as a run that was killed leaves it
 passed=0; failed=0
 play() {                                       # NAME FRAMES GRAINS WALLS PLOTS

@@ -190,7 +190,7 @@ if [ "$1" != short ]; then
         try "the browser lesson: the same digests in node, in a browser and native" "sh tests/web.sh \$bin.web; code=\$?; rm -rf \$bin.web; exit \$code"
     else skip "no compiler for WebAssembly, or no node (Debian packages clang, lld, wasi-libc, libclang-rt-14-dev-wasm32, nodejs)"; fi
     if found chromium; then
-        try "replays play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_film.c -o \$bin -lm && FILM=\$bin sh tests/browser.sh"
+        try "replays play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_replays.c -o \$bin -lm && REPLAYS=\$bin sh tests/browser.sh"
     else skip "chromium not found (Debian package chromium)"; fi
     emulator=$run32
     [ "$run32" = qemu-i386 ] && skip "gcc -m32: tests: this kernel runs no 32-bit programs, and in qemu-i386 they take hours"

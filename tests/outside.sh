@@ -12,7 +12,7 @@ sed -e 's/return 0;/return 0;/' -e 's/dem_world_destroy(world);/printf("hash %01
 cd "$dir"
 hash() { sed -n 's/^hash //p'; }
 cc -O2 -I"$top" -o one main.c "$top/dem.c" -lm && one=$(./one 2> /dev/null | hash)
-test -n "$one" && test -s "$dir/my.html" || { echo "no film"; exit 1; }
+test -n "$one" && test -s "$dir/my.html" || { echo "no replay"; exit 1; }
 if command -v pkg-config > /dev/null; then
     cc -O2 -o two main.c $(PKG_CONFIG_PATH=$dir/usr/lib/pkgconfig pkg-config --cflags --libs dem)
     test "$(./two 2> /dev/null | hash)" = "$one" || { echo "pkg-config: another hash"; exit 1; }

@@ -438,7 +438,7 @@ static double sticky(double d, double *D, double kn, double kun, double kad) {
 enum { FROM_EACH, FROM_BONDS, FROM_MOTION, FROM_FORCE, FROM_LAW, FROM_REALS, FROM_PROGRESS, FROM_NUMBER, FROM_FEED,
        FROM_FILL, FROM_PACK, FROM_VALUES, FROM_ALLOCATOR, FROM_ADVISE, FROM_REPORT, FROM_CONTACTS, FROM_SLABS, FROM_COUNT };
 static const char *const intruders[FROM_COUNT] = {
-    "contact function", "bond function", "motion", "force", "law", "rate of numbers", "progress function", "film's number",
+    "contact function", "bond function", "motion", "force", "law", "rate of numbers", "progress function", "replay's number",
     "feed's region", "filled region", "packed region", "output's values", "allocator", "law of a trial",
     "force in a report", "law in a look", "law in slabs"};
 /* One to change the world: 1 when it was refused by name and for that reason. The calls of a law are

@@ -1,4 +1,4 @@
-/* Films (dem_replay_open): what a reader of the format finds in them is what the world was. */
+/* Replays (dem_replay_open): a reader of the format finds the state of the world in them. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"

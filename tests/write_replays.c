@@ -1,5 +1,5 @@
-/* write_film FOLDER: two films for tests/browser.sh. shapes.html: beads, ellipsoids and clusters with a number of their
-   own, which come and go, on a mesh that turns in a drum. sieve.html: beads on a sieve that shakes, over a profile. */
+/* write_replays FOLDER: writes two replays for tests/browser.sh. shapes.html has beads, ellipsoids and clusters that carry
+   a number and come and go, on a mesh that rotates in a drum. sieve.html has beads on a shaken sieve above a profile. */
 #include "dem.h"
 #include <stdio.h>
 
@@ -19,8 +19,8 @@ static dem_world *world_of(const char *reals, dem_material *stuff) {
     stuff[1] = dem_material_add(w, &glass);
     return w;
 }
-/* Runs and films it; a body leaves and another comes on the way. */
-static int film(dem_world *w, const char *path, const char *title, dem_material stuff, int frames, dem_body gone) {
+/* Runs the world and writes its replay. Half way one body is removed and another added. */
+static int replay(dem_world *w, const char *path, const char *title, dem_material stuff, int frames, dem_body gone) {
     dem_replay_desc desc = DEM_REPLAY_DESC;
     dem_replay *r;
     int k;
@@ -73,7 +73,7 @@ static int shapes(const char *path) {
         warmth = 300 + k;
         dem_body_reals_set(w, dem_body_id_get(w, k), &warmth);
     }
-    return film(w, path, "shapes </script> & \"quotes\"", stuff[0], 40, gone);
+    return replay(w, path, "shapes </script> & \"quotes\"", stuff[0], 40, gone);
 }
 static int sieve(const char *path) {
     static dem_real line[8] = {DEM_R(-0.03), DEM_R(-0.03), DEM_R(-0.01), DEM_R(-0.04), DEM_R(0.01), DEM_R(-0.04),
@@ -99,7 +99,7 @@ static int sieve(const char *path) {
                      dem_region_make(dem_box_make(DEM_R(-0.015), DEM_R(0.005), DEM_R(-0.015), DEM_R(0.015), DEM_R(0.03), DEM_R(0.015))),
                      150, 1);
     gone = dem_sphere_add(w, stuff[1], DEM_R(0.003), dem_vec3_make(0, DEM_R(0.035), 0));
-    return film(w, path, "a sieve", stuff[0], 40, gone);
+    return replay(w, path, "a sieve", stuff[0], 40, gone);
 }
 int main(int argc, char **argv) {
     char path[2][400];
