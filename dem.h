@@ -4908,8 +4908,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
    what goes by the root of the mass m*: `root`, for normal and tangent, per sqrt(kg).
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
    between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff: the
-   standard one; stiff: kg, what a stiffness follows. Checked by "the thesis's eight coefficients".
-   */
+   standard one; stiff: kg, what a stiffness follows. Checked by "the eight coefficients". */
 static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_eff, double stiff,
                                      int wall, dem_real *out, dem_real *root) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;

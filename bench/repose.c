@@ -20,7 +20,7 @@
              --friction MU                0.5
              --rolling MU                 rolling friction of spheres: 0.05
              --seeds N, --seed K          so many runs, from this one on: 1, 1
-             --film                       writes repose_KIND.html
+             --replay                     writes repose_KIND.html
    One line for each run; after more than one seed a line of means and standard errors. */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
@@ -32,7 +32,7 @@
 
 static const double edge = 3e-3, degree = 3.14159265358979/180;             /* m, rad */
 static struct {
-    int tube, springs, count, seeds, seed, film;
+    int tube, springs, count, seeds, seed, replay;
     double step, friction, rolling;
     int sweeps;
 } asked = {0, 0, 2000, 1, 1, 0, 0, 0.5, 0.05, 0};
@@ -134,7 +134,7 @@ static int heap(const char *kind, int seed, struct told *told) {
         : dem_box_make(0, (dem_real)(-width/2), DEM_R(0.004), (dem_real)length, (dem_real)(width/2), (dem_real)tall);
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc gravel = DEM_MATERIAL_DESC;
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
     dem_outlet_desc over = DEM_OUTLET_DESC;
     dem_replay *replay = 0;
     dem_spheres_fit fit;
@@ -176,8 +176,8 @@ static int heap(const char *kind, int seed, struct told *told) {
     placed = round ? dem_spheres_fill(world, m, same, dem_region_make(box), count, (uint64_t)seed)
                    : dem_bodies_fill(world, m, shape, dem_region_make(box), count, (uint64_t)seed);
     snprintf(path, sizeof path, "repose_%s.html", kind);
-    film_desc.interval = 0.02;
-    if (asked.film) replay = dem_replay_open(world, path, &film_desc);
+    replay_desc.interval = 0.02;
+    if (asked.replay) replay = dem_replay_open(world, path, &replay_desc);
     spent = (double)clock();
     if (placed < count || dem_world_run(world, end, 0, 0) != DEM_OK) {
         printf("%s, seed %d, %g s: %s\n", kind, seed, dem_world_time_get(world), dem_world_error_get(world));
@@ -232,7 +232,7 @@ int main(int argc, char **argv) {
     int i, k, seed, good, known = 0, wrong = 0;
     for (i = 1; i < argc; i++) {
         const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : "";
-        if (!strcmp(option, "--film")) { asked.film = 1; continue; }
+        if (!strcmp(option, "--replay")) { asked.replay = 1; continue; }
         if (strncmp(option, "--", 2)) { only = option; continue; }
         i++;
         if (!strcmp(option, "--count")) asked.count = atoi(value);
@@ -251,7 +251,7 @@ int main(int argc, char **argv) {
     for (k = 0; k < 7; k++) known |= !only || !strcmp(only, kinds[k]);
     if (wrong || !known || asked.count < 10 || asked.count > 5000 || asked.seeds < 1 || asked.seeds > 100) {
         puts("repose [spheres|cubes|cubes4|cubes8|cubes27|cubes64|cubes100] [--heap shelf|tube] [--response impulses|springs]\n"
-             "       [--step S] [--sweeps N] [--count 10..5000] [--friction MU] [--rolling MU] [--seeds 1..100] [--seed K] [--film]");
+             "       [--step S] [--sweeps N] [--count 10..5000] [--friction MU] [--rolling MU] [--seeds 1..100] [--seed K] [--replay]");
         return strcmp(argv[argc - 1], "--help") ? 2 : 0;
     }
     for (k = 0; k < 7; k++) {
