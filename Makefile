@@ -166,6 +166,7 @@ readers: build/write_files ## write every file format and open it with VTK and A
 
 tags: ## every part named in dem.h's contents stands there once and in order; parts and functions keep their limits
 	@awk -f tests/tags.awk dem.h
+	@$(MAKE) --no-print-directory english
 
 english: ## sentences of pages, public comments, error messages and test names that need a second reading
 	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/hard/*.c

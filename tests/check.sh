@@ -18,6 +18,7 @@ try() {
 
 try "a lesson has less than 120 lines, of at most 120 columns" "awk 'length > 120 || FNR > 119 { print FILENAME \": \" FNR; bad = 1 } END { exit bad }' examples/[0-9][0-9]_*.c"
 try "parts of dem.h in order" "awk -f tests/tags.awk dem.h"
+try "no sentence of pages, public comments, error messages and test names needs a second reading" "make -s english"
 try "dem.h calls no function of libm that libraries round in their own way" "awk -f tests/libm.awk dem.h"
 try "tests/refused.h has a call of every public function of dem.h" "awk -f tests/refused.awk dem.h | cmp - tests/refused.h"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
