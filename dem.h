@@ -19715,8 +19715,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), had);
         closing = demi_dot(demi_impulse_before(w, c), o.normal);
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
+        hits = closing;
         beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);
-        if (pair->compliance > 0) hits = closing;
         beside->bounces = pair->restitution > 0 && hits < -rest && o.gap + closing*dt <= 0;
         if (beside->bounces) { c->bias = pair->restitution*closing; beside->turns = 0; }
         c->bias += beside->turns;
