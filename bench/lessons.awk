@@ -23,7 +23,7 @@ FNR == 1 {
     rows = 0; above = ""; below = 0
 }
 { sub(/[ \r]+$/, ""); expected = "" }
-/^ +measured +expected$/ { below = 1; next }
+/ measured +expected$/ { below = 1; next }
 match($0, within) || match($0, range) || (below && match($0, alone)) {
     expected = substr($0, RSTART, RLENGTH); sub(/^[ !]+/, "", expected)
     rest = substr($0, 1, RSTART - 1)

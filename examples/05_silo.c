@@ -1,20 +1,9 @@
 /* 05_silo.c - lesson 5: a silo. You learn: walls carry weight (Janssen); loads on walls; a fit with error bars.
 
+   Build:     cc -O2 -o 05_silo 05_silo.c ../dem.c -lm      (in the folder examples)
+   Run:       ./05_silo or, with a replay of the highest column and its loads, ./05_silo --replay
    Question:  A tube is filled with beads, up to three diameters high. Water that is twice as high presses twice as
-              hard on the floor. And beads? Draw the load on the floor against the height, then run.
-   Theory:    Janssen 1895. Beads rub against the wall, so each layer passes part of its weight to the wall. Let the
-              horizontal pressure be K times the vertical one, and let friction mu act in full. With the bulk density
-              rho_b and the diameter D the floor carries
-                  W = rho_b g (pi D^2/4) lambda (1 - exp(-H/lambda)),   lambda = D/(4 mu K):
-              never more than the weight of a column of height lambda. Friction points up only while beads move down
-              along the wall, so the tube moves up slowly during the whole run.
-   Build:     cc -O2 05_silo.c ../dem.c -lm
-   Run:       05_silo or, with a replay of the highest column and its loads, 05_silo --replay
-   Output:    loads on the floor at four heights, within 12 % of the formula with one fitted K between 0.3 and 1. The
-              floor of the highest column carries a third of the weight
-   Exercises: check an answer with 05_silo --check N VALUE
-   1  Wheat: D = 1 m, rho_b = 800 kg/m3, K = 0.5, mu = 0.3. Friction doubles. W of an infinitely high silo, in N?
-   2  At which H/D does the floor carry half of the weight, if mu = 0.4 and K = 0.5? */
+              hard on the floor. And beads? Draw the load on the floor against the height, then run. */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -56,7 +45,7 @@ static int fill(int count, int seed, int record, column *out) {
     dem_replay *replay = record ? dem_replay_open(world, "05_silo.html", &replay_desc) : 0;
     dem_wall_loads below, around;
     for (int i = 0; i < 70; i++) {                                  /* means after 0.25 s: all is at rest */
-        if (i == 50) { dem_wall_loads_reset(world, floor); dem_wall_loads_reset(world, tube); }
+        if (i == 50) dem_wall_loads_reset(world, floor), dem_wall_loads_reset(world, tube);
         if (i == 50) dem_overlap_max_reset(world);
         if (dem_world_run(world, 0.005, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_wall_loads_get(world, floor, &below);
@@ -111,6 +100,17 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    Janssen 1895. Beads rub against the wall, so each layer passes part of its weight to the wall. Let the
+              horizontal pressure be K times the vertical one, and let friction mu act in full. With the bulk density
+              rho_b and the diameter D the floor carries
+                  W = rho_b g (pi D^2/4) lambda (1 - exp(-H/lambda)),   lambda = D/(4 mu K):
+              never more than the weight of a column of height lambda. Friction points up only while beads move down
+              along the wall, so the tube moves up slowly during the whole run.
+   Output:    loads on the floor at four heights, within 12 % of the formula with one fitted K between 0.3 and 1
+   Exercises: check an answer with ./05_silo --check N VALUE
+   1  Wheat: D = 1 m, rho_b = 800 kg/m3, K = 0.5, mu doubled from 0.3 to 0.6: what is W of an endless column, in N?
+   2  At which H/D does the floor carry half of the weight, if mu = 0.4 and K = 0.5? */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     double s = 1;                                                   /* H/lambda: (1 - exp(-s))/s = 1/2 */

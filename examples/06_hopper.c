@@ -1,19 +1,9 @@
 /* 06_hopper.c - lesson 6: a hopper. You learn: flow through a hole (Beverloo), scaling laws, outlets.
 
+   Build:     cc -O2 -o 06_hopper 06_hopper.c ../dem.c -lm      (in the folder examples)
+   Run:       ./06_hopper or, with a replay of the middle hole and its flow, ./06_hopper --replay
    Question:  Water flows out with the speed sqrt(2 g h), so it becomes slower and slower. Does sand? Is the flow
-              doubled if the hole is twice as wide? Write down both answers, then run.
-   Theory:    Beverloo 1961. Grains fall freely below an arch over the hole, independent of the load above. In a plane
-              a hole of width B then passes a flow proportional to B sqrt(g B). Grains of diameter d cannot use a rim
-              of width k d in all, k about 1.4:
-                  W = C rho_b sqrt(g) (B - k d)^(3/2)       per depth; rho_b: bulk density
-              For a round hole in three dimensions the exponent is 5/2, and C is about 0.58.
-   Build:     cc -O2 06_hopper.c ../dem.c -lm
-   Run:       06_hopper or, with a replay of the middle hole and its flow, 06_hopper --replay
-   Output:    flows through three holes. With k = 1.4 the exponent is 1.5 within 15 %, and C of discs is 0.7 to 1.2. A
-              hopper that is half empty flows at 0.8 to 1.1 of its first rate; water would flow at 0.71
-   Exercises: check an answer with 06_hopper --check N VALUE
-   1  In this plane, with k = 1.4: by which factor is the flow through a hole of 16 d larger than through one of 8 d?
-   2  Round hole of 20 mm, grains of 2 mm, rho_b = 1500 kg/m3, C = 0.58, k = 1.4. What is the flow in kg/s? */
+              doubled if the hole is twice as wide? Write down both answers, then run. */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -111,6 +101,17 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    Beverloo 1961. Grains fall freely below an arch over the hole, independent of the load above. In a plane
+              a hole of width B then passes a flow proportional to B sqrt(g B). Grains of diameter d cannot use a rim
+              of width k d in all, k about 1.4:
+                  W = C rho_b sqrt(g) (B - k d)^(3/2)       per depth; rho_b: bulk density
+              For a round hole in three dimensions the exponent is 5/2, and C is about 0.58.
+   Output:    flows through three holes. With k = 1.4 the exponent is 1.5 within 15 %, and C of discs is 0.7 to 1.2. A
+              hopper that is half empty flows at 0.8 to 1.1 of its first rate; water would flow at 0.71
+   Exercises: check an answer with ./06_hopper --check N VALUE
+   1  In this plane, with k = 1.4: by which factor is the flow through a hole of 16 d larger than through one of 8 d?
+   2  Round hole of 20 mm, grains of 2 mm, rho_b = 1500 kg/m3, C = 0.58, k = 1.4. What is the flow in kg/s? */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     return exercise == 1 ? pow((16 - 1.4)/(8 - 1.4), 1.5) : 0.58*1500*sqrt(g)*pow(0.020 - 1.4*0.002, 2.5);

@@ -1,19 +1,9 @@
 /* 07_brazil_nut.c - lesson 7: segregation by shaking. You learn: a moving wall, impulse on a wall, chance.
 
+   Build:     cc -O2 -o 07_brazil_nut 07_brazil_nut.c ../dem.c -lm      (in the folder examples)
+   Run:       ./07_brazil_nut or, with a replay at Gamma = 3, ./07_brazil_nut --replay
    Question:  A large disc lies below small ones of the same density. The box is shaken up and down. Does the large
-              disc stay, sink or rise? Does the strength of shaking matter? Write down your answers, then run.
-   Theory:    The floor moves as A sin(w t). The heap leaves it only if Gamma = A w^2/g > 1, at sin(w t) = 1/Gamma,
-              when the floor accelerates downwards faster than free fall. During the flight small discs slip below
-              the large one, never the other way round (Rosato et al., PRL 58 (1987) 1038), and friction at the side
-              walls drives convection that carries the middle up. For Gamma < 1 no gap opens. With any shaking the mean
-              force of the box equals the weight: the impacts make up for the flights.
-   Build:     cc -O2 07_brazil_nut.c ../dem.c -lm
-   Run:       07_brazil_nut or, with a replay at Gamma = 3, 07_brazil_nut --replay
-   Output:    rise of the large disc in small diameters: 2 to 16 in 3.6 s at Gamma = 3 (mean of three fillings), below
-              0.01 at Gamma = 0.8. The mean force equals the weight within 0.2 %
-   Exercises: check an answer with 07_brazil_nut --check N VALUE
-   1  The amplitude is 3 mm. Up to which frequency, in Hz, does the heap never leave the floor?
-   2  Gamma = 3, 10 Hz. How long after passing its middle position upwards does the floor release the heap, in ms? */
+              disc stay, sink or rise? Does the strength of shaking matter? Write down your answers, then run. */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -107,6 +97,17 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    The floor moves as A sin(w t). The heap leaves it only if Gamma = A w^2/g > 1, at sin(w t) = 1/Gamma,
+              when the floor accelerates downwards faster than free fall. During the flight small discs slip below
+              the large one, never the other way round (Rosato et al., PRL 58 (1987) 1038), and friction at the side
+              walls drives convection that carries the middle up. For Gamma < 1 no gap opens. With any shaking the mean
+              force of the box equals the weight: the impacts make up for the flights.
+   Output:    rise of the large disc in small diameters: 2 to 16 in 3.6 s at Gamma = 3 (mean of three fillings), below
+              0.01 at Gamma = 0.8. The mean force equals the weight within 0.2 %
+   Exercises: check an answer with ./07_brazil_nut --check N VALUE
+   1  The amplitude is 3 mm. Up to which frequency, in Hz, does the heap never leave the floor?
+   2  Gamma = 3, 10 Hz. How long after passing its middle position upwards does the floor release the heap, in ms? */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     return exercise == 1 ? sqrt(g/0.003)/(2*pi) : 1e3*asin(1.0/3)/(2*pi*10);

@@ -1,20 +1,9 @@
 /* 08_drum.c - lesson 8: a rotating drum. You learn: torque and power; how to test a simulation by a theorem.
 
+   Build:     cc -O2 -o 08_drum 08_drum.c ../dem.c -lm      (in the folder examples)
+   Run:       ./08_drum or, with a replay at Fr = 0.05 and both torques, ./08_drum --replay
    Question:  Does friction determine the torque of a drum? Does a steeper charge need more torque? Above which speed
-              do grains stay on the shell and never fall? Write down three answers, then run.
-   Theory:    In the steady state the angular momentum of the charge is constant. The torque of the shell therefore
-              equals that of the weight, M g x with the horizontal position x of the centre of mass, for any friction.
-              The Froude number Fr = w^2 R/g describes the speed. At low Fr the charge rolls down a flat slope at
-              its angle of repose; above about 0.1 it cascades; at Fr = 1 gravity at the top provides just the
-              centripetal acceleration, and grains that rotate with the shell stay on it (centrifuging).
-   Build:     cc -O2 08_drum.c ../dem.c -lm
-   Run:       08_drum or, with a replay at Fr = 0.05 and both torques, 08_drum --replay
-   Output:    torque = M g x within 3 %; slope 20 to 40 degrees while the charge rolls, more at Fr = 0.3; half of the
-              grains are above the axis at Fr = 3
-   Exercises: check an answer with 08_drum --check N VALUE
-   1  At how many revolutions per minute does a drum of 1 m diameter begin to centrifuge?
-   2  2 kg fill half of a drum with a radius of 0.1 m; the slope is 30 degrees. What torque rotates the drum, in N m?
-      (The centre of mass of a half disc is 4 R/(3 pi) from its centre.) */
+              do grains stay on the shell and never fall? Write down three answers, then run. */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -36,7 +25,7 @@ static int turn(double froude, int record, turned *out) {
     dem_world *world = dem_world_create(&desc);
     dem_material_desc bead_desc = DEM_MATERIAL_DESC;
     bead_desc.density = 2500;                                       /* kg/m3 */
-    bead_desc.young = 1.5e7;                                         /* Pa, softened */
+    bead_desc.young = 1.5e7;                                        /* Pa, softened */
     bead_desc.poisson = 0.25;
     bead_desc.restitution = 0.5;
     bead_desc.friction = 0.5;
@@ -113,6 +102,17 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    In the steady state the angular momentum of the charge is constant. The torque of the shell therefore
+              equals that of the weight, M g x with the horizontal position x of the centre of mass, for any friction.
+              The Froude number Fr = w^2 R/g describes the speed. At low Fr the charge rolls down a flat slope at
+              its angle of repose; above about 0.1 it cascades; at Fr = 1 gravity at the top provides just the
+              centripetal acceleration, and grains that rotate with the shell stay on it (centrifuging).
+   Output:    torque = M g x (3 %); slope 20 to 40 degrees at low Fr, more at Fr = 0.3; half above the axis at Fr = 3
+   Exercises: check an answer with ./08_drum --check N VALUE
+   1  At how many revolutions per minute does a drum of 1 m diameter begin to centrifuge?
+   2  2 kg fill half of a drum with a radius of 0.1 m; the slope is 30 degrees. What torque rotates the drum, in N m?
+      (The centre of mass of a half disc is 4 R/(3 pi) from its centre.) */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     return exercise == 1 ? sqrt(g/0.5)*60/(2*pi) : 2*g*4*0.1/(3*pi)*sin(30*pi/180);

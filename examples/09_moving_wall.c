@@ -1,22 +1,12 @@
 /* 09_moving_wall.c - lesson 9: a conveyor belt. You learn: meshes from files, moving walls, the energy ledger.
 
+   Build:     cc -O2 -o 09_moving_wall 09_moving_wall.c ../dem.c -lm      (in the folder examples)
+   Run:       ./09_moving_wall or, with a replay on the mesh, ./09_moving_wall --replay; both write belt.stl
    Question:  A ball at rest is put on a belt that runs at V = 1 m/s. Is its final speed 1 m/s? What fraction of the
               belt's work becomes heat? Does the ball notice the edges of the belt's triangles? Write down three
               answers, then run.
-   Theory:    First the ball slides. It gains the speed mu g t and rotates against the belt (w). Sliding ends
-              when both surfaces move alike:
-                  v = 2/7 V,   R w = 5/7 V   at t = 2 V/(7 mu g)
-              The belt has then done the work 2/7 m V^2. Half of it is energy of the ball; the other half is heat.
    Note:      STL files contain no unit, and drawings are usually in mm; dem.h is in m. When it reads a mesh, it counts
-              defects and suggests a unit.
-   Build:     cc -O2 09_moving_wall.c ../dem.c -lm
-   Run:       09_moving_wall or, with a replay on the mesh, 09_moving_wall --replay; both write belt.stl
-   Output:    speeds, work and heat within 1 %; a ledger without loss; the same path on triangles and on a plane, to
-              1e-9 m; a mesh with 26 open edges, those of its rim
-   Exercises: check an answer with 09_moving_wall --check N VALUE
-   1  V = 2 m/s, mu = 0.25. How long does the ball slide, in s?
-   2  V = 1.5 m/s. What is the final speed of a cylinder that lies across the belt (planar = 1, gravity along y), in
-      m/s? */
+              defects and suggests a unit. */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -39,7 +29,7 @@ static int write_belt(const char *path) {
 int main(int argc, char **argv) {
     const int record = lesson_begin(argc, argv, "09_moving_wall", answer);
     const double V = 1, mu = 0.3, g = 9.81, radius = 0.01;          /* m/s, -, m/s2, m */
-    if (!write_belt("belt.stl")) { puts("cannot write belt.stl: may you write to this folder?"); return 1; }
+    if (!write_belt("belt.stl")) { puts("cannot write belt.stl: is this folder writable?"); return 1; }
     dem_world *worlds[2];
     dem_wall belt[2];
     dem_body ball[2];
@@ -112,5 +102,16 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    First the ball slides. It gains the speed mu g t and rotates against the belt (w). Sliding ends
+              when both surfaces move alike:
+                  v = 2/7 V,   R w = 5/7 V   at t = 2 V/(7 mu g)
+              The belt has then done the work 2/7 m V^2. Half of it is energy of the ball; the other half is heat.
+   Output:    speeds, work and heat within 1 %; a ledger without loss; the same path on triangles and on a plane, to
+              1e-9 m; a mesh with 26 open edges, those of its rim
+   Exercises: check an answer with ./09_moving_wall --check N VALUE
+   1  V = 2 m/s, mu = 0.25. How long does the ball slide, in s?
+   2  V = 1.5 m/s. What is the final speed of a cylinder that lies across the belt (planar = 1, gravity along y), in
+      m/s? */
 /* Marking. Stop here if you want to find the answers yourself. A body with inertia k m R^2 ends at V k/(1 + k). */
 static double answer(int exercise) { return exercise == 1 ? 2*2/(7*0.25*9.81) : 1.5*0.5/1.5; }

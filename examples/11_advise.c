@@ -1,20 +1,12 @@
 /* 11_advise.c - lesson 11: what accuracy costs. You learn: time step, stiffness and chance in your own scene.
 
+   Build:     cc -O2 -o 11_advise 11_advise.c ../dem.c -lm      (in the folder examples)
+   Run:       ./11_advise or, with a replay of the scene before the trials, ./11_advise --replay
    Question:  The power of a drum must be right within 10 %. How long may the time step be, and how soft the grains?
               Does a step become 10 times as long if grains are 10 times softer? Guess, then run.
-   Theory:    A step must resolve a collision, which by Hertz's law lasts 2.87 (m^2/(E^2 R v))^(1/5), with the reduced
-              mass m, modulus E, radius R and the speed v. This is proportional to E^(-2/5): grains that are 10 times
-              softer allow steps 2.5 times as long. The theorem of lesson 8 gives the power, too: w M g x.
    Method:    dem_trials_run continues copies of the scene with other steps, stiffnesses and laws. Each trial runs three
               times from positions that hardly differ, which shows whether a change is statistically significant. The
-              budget is in seconds of wall time: on a busy machine the trials simulate less.
-   Build:     cc -O2 11_advise.c ../dem.c -lm
-   Run:       11_advise or, with a replay of the scene before the trials, 11_advise --replay
-   Output:    the table of trials with advice; steps longer by 10^(2/5) = 2.51 (within 10 %); power = w M g x (5 %)
-   Exercises: check an answer with 11_advise --check N VALUE
-   1  By which factor does the step grow if the modulus is 100 times smaller?
-   2  Glass beads of 3 mm diameter (2500 kg/m3, 70 GPa, Poisson's ratio 0.23) collide at 1 m/s. How long do they
-      touch, in us? (Reduced: m/2, R/2, E/(2 (1 - nu^2)). dem_coefficients_get confirms it if impact_speed is 1.) */
+              budget is in seconds of wall time: on a busy machine the trials simulate less. */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -99,6 +91,15 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    A step must resolve a collision, which by Hertz's law lasts 2.87 (m^2/(E^2 R v))^(1/5), with the reduced
+              mass m, modulus E, radius R and the speed v. This is proportional to E^(-2/5): grains that are 10 times
+              softer allow steps 2.5 times as long. The theorem of lesson 8 gives the power, too: w M g x.
+   Output:    the table of trials with advice; steps longer by 10^(2/5) = 2.51 (within 10 %); power = w M g x (5 %)
+   Exercises: check an answer with ./11_advise --check N VALUE
+   1  By which factor does the step grow if the modulus is 100 times smaller?
+   2  Glass beads of 3 mm diameter (2500 kg/m3, 70 GPa, Poisson's ratio 0.23) collide at 1 m/s. How long do they
+      touch, in us? (Reduced: m/2, R/2, E/(2 (1 - nu^2)). dem_coefficients_get confirms it if impact_speed is 1.) */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     const double R = 1.5e-3, m = 4*3.14159265/3*R*R*R*2500, E = 70e9/(2*(1 - 0.23*0.23));

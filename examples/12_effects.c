@@ -1,21 +1,12 @@
 /* 12_effects.c - lesson 12: the cost of a step. You learn: only the effects of your scene cost time.
 
+   Build:     cc -O2 -o 12_effects 12_effects.c ../dem.c -lm      (in the folder examples)
+   Run:       ./12_effects or, with a replay of the bed with all effects, ./12_effects --replay
    Question:  Friction doubles the calculations in a contact. Does it double the time of a step? What does an energy
               ledger cost, and what a user-defined force field? Guess, then run.
-   Theory:    dem.h computes only what a scene contains, so each effect adds to the time of a step, and the time is the
-              product of the factors. In a bed at rest smooth beads need 3 contacts each, because a contact serves two
-              beads and three force components must balance. With friction 2 are enough.
    Method:    Six beds of beads in a periodic box, each with one effect more than the one before, take steps in turn;
               the table has medians, because other programs use the machine too. Then a steel lid is added to the last
-              bed. No bead touches it, and dem_effects_print lists it among what has not happened.
-   Build:     cc -O2 12_effects.c ../dem.c -lm
-   Run:       12_effects or, with a replay of the bed with all effects, 12_effects --replay
-   Output:    the cost of each effect. All five together make a step 1 to 8 times as long. Contacts per bead: 2.5 to
-              3.1 smooth, 1.8 to 2.6 with friction
-   Exercises: check an answer with 12_effects --check N VALUE
-   1  Friction makes a step 1.84 times as long, rolling friction another 1.34 times, the ledger another 1.12 times.
-      What is the factor of all three?
-   2  A glass bead (2500 kg/m3) of R = 20 um falls in the field `air`. What is its terminal speed, in m/s? */
+              bed. No bead touches it, and dem_effects_print lists it among what has not happened. */
 #include "../dem.h"
 #include "lesson.h"
 #include <time.h>
@@ -114,5 +105,15 @@ int main(int argc, char **argv) {
     return lesson_end();
 }
 
+/* STOP: answer the question before you read on.
+   Theory:    dem.h computes only what a scene contains, so each effect adds to the time of a step, and the time is the
+              product of the factors. In a bed at rest smooth beads need 3 contacts each, because a contact serves two
+              beads and three force components must balance. With friction 2 are enough.
+   Output:    the cost of each effect. All five together make a step 1 to 8 times as long. Contacts per bead: 2.5 to
+              3.1 smooth, 1.8 to 2.6 with friction
+   Exercises: check an answer with ./12_effects --check N VALUE
+   1  Friction makes a step 1.84 times as long, rolling friction another 1.34 times, the ledger another 1.12 times.
+      What is the factor of all three?
+   2  A glass bead (2500 kg/m3) of R = 20 um falls in the field `air`. What is its terminal speed, in m/s? */
 /* Marking. Stop here if you want to find the answers yourself. Drag equals weight: 6 pi eta R v = m g. */
 static double answer(int exercise) { return exercise == 1 ? 1.84*1.34*1.12 : 2*2500*9.81*20e-6*20e-6/(9*1.8e-5); }

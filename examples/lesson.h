@@ -45,7 +45,7 @@ static inline int lesson_begin(int argc, char **argv, const char *name, double (
     if (!strcmp(argv[1], "--help")) {
         printf("%s %s\n  --replay         runs the lesson and records %s.html, a replay for the browser\n"
                "  --check N VALUE  marks your answer to exercise N: it is right within 5 %%\n"
-               "The first comment of examples/%s.c has the question, the theory and the exercises.\n",
+               "examples/%s.c begins with the question and ends with the theory and the exercises.\n",
                name, usage, name, name);
         exit(0);
     }
@@ -79,7 +79,7 @@ static inline void lesson_print(const char *name, double value, double error, in
     char text[64];
     int decimals = error > 0 ? 1 - (int)floor(log10(error)) : 0;
     decimals = decimals < 0 ? 0 : decimals > 6 ? 6 : decimals;
-    if (!lesson.rows++) printf("\n%-46s %-18s  %s\n", "", "measured", "expected");
+    if (!lesson.rows++) printf("\n%-46s %-18s  %s\n", "(! marks a value outside of its limits)", "measured", "expected");
     if (error > 0) snprintf(text, sizeof text, "%.*f +- %.*f", decimals, value, decimals, error);
     else snprintf(text, sizeof text, "%.4g", value);
     printf("%-46s %-18s%s ", name, text, right ? " " : "!");
@@ -107,12 +107,12 @@ static inline void lesson_claim(const char *claim, int holds) {
 static inline int lesson_end(void) {
     if (*lesson.replay) {
         FILE *file = fopen(lesson.replay, "rb");
-        printf(file ? "open %s in a browser: it plays the run\n" : "cannot write %s: may you write to this folder?\n",
+        printf(file ? "open %s in a browser: it plays the run\n" : "cannot write %s: is this folder writable?\n",
                lesson.replay);
         if (!file) return 1;
         fclose(file);
     }
-    if (lesson.wrong) printf("%s: %d results are not as expected, see !\n", lesson.name, lesson.wrong);
+    if (lesson.wrong) printf("%s: %d results are not as expected: the rows with !\n", lesson.name, lesson.wrong);
     return lesson.wrong > 0 || lesson.rows == 0;
 }
 #endif

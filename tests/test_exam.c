@@ -184,10 +184,10 @@ int main(int argc, char **argv) {
         wrong(linear_spring, EXAM_SWAP, "law_vectors how many they are (0 now)", 0, 0);
         wrong(knows_axes, EXAM_FRAME, "seen from a frame that is turned", 0, 1);
         wrong(jumps, EXAM_ENDS, "the force jumps by", 0, 1);
-        wrong(pushes_out, EXAM_PRESS, "the way out must not lie above the way in", 0, 1);
+        wrong(pushes_out, EXAM_PRESS, "the way out must not lie above that on the way in", 0, 1);
         wrong(drives, EXAM_SHEAR, "friction must act against slip", 0, 1);
         wrong(rolls_on, EXAM_ROLL, "the moment must act against the spin", 0, 1);
-        wrong(kicks_when_fast, EXAM_IMPACT, "of the energy it began with", 0, 1);
+        wrong(kicks_when_fast, EXAM_IMPACT, "times the energy it began with", 0, 1);
         wrong(linear_spring, EXAM_STEP, "must be the stiffest the law gets", 1, 1);
         wrong(depends_on_dt, EXAM_ORDER, "does a force contain dt", 0, 1);
         wrong(dawdles, EXAM_COST, "times Hertz with a spring", 0, 1);
@@ -217,7 +217,7 @@ int main(int argc, char **argv) {
     TEST("a law that repels before contact passes the exam; one that creates energy there fails") {
         static const dem_law_fn law[4] = {film, cushion, film_drives, cushion_kicks_when_fast};
         static const int line[4] = {0, 0, EXAM_IMPACT + 1, EXAM_IMPACT + 1};
-        static const char *const says[4] = {"", "", "of the energy it began with", "of the energy it began with"};
+        static const char *const says[4] = {"", "", "times the energy it began with", "times the energy it began with"};
         int k, j, first;
         for (k = 0; k < 4; k++) {
             const int linear = k%2;
