@@ -59,7 +59,6 @@ function row(name, value, error, expected,   digits) {
     }
     if (expected ~ / to /) { split(expected, limit, " to "); if (limit[1] == limit[2]) expected = limit[1] }
     sub(/ within 0 %$/, "", expected)
-    sub(/ within /, " ± ", expected)
     gsub(/[|]/, "/", name)
     gsub(/\[/, "(", name); gsub(/\]/, ")", name)       # [N] would be a reference
     printf "| %s | %s | %s | %s |\n", title, name, value, expected
