@@ -32,7 +32,7 @@ static int fill(int count, int seed, int record, column *out) {
     dem_material glass = dem_material_add(world, &glass_desc);
     dem_vec3 origin = dem_vec3_make(0, 0, 0), up = dem_vec3_make(0, 0, 1);
     dem_wall floor = dem_wall_plane_add(world, glass, origin, up);
-    dem_wall tube = dem_wall_cylinder_add(world, glass, origin, up, D/2, 1);
+    dem_wall tube = dem_wall_cylinder_add(world, glass, origin, up, D/2, 1);    /* 1: beads are inside */
     dem_motion drawn = DEM_MOTION;
     drawn.kind = DEM_MOTION_TRANSLATING;
     drawn.velocity.z = 0.01;                                        /* m/s */

@@ -24,23 +24,22 @@ static int run_out(double hole, int seed, int record, outflow *f) {
     dem_world *world = dem_world_create(&desc);
     dem_material_desc bead_desc = DEM_MATERIAL_DESC;
     bead_desc.density = 2500;                                       /* kg/m3 */
-    bead_desc.young = 2.5e7;                                         /* Pa, softened */
+    bead_desc.young = 2.5e7;                                        /* Pa, softened */
     bead_desc.poisson = 0.25;
     bead_desc.restitution = 0.5;
     bead_desc.friction = 0.4;
     dem_material bead = dem_material_add(world, &bead_desc);
 
     dem_real x = half, b = hole/2, corners[] = {-x, 0.25, -x, 0, -b, 0, b, 0, x, 0, x, 0.25};
-    int32_t sides[] = {0, 1, 1, 2, 3, 4, 4, 5}, across[] = {2, 3};
-    dem_profile hopper = {6, 4, corners, sides}, lid = {6, 1, corners, across};
+    int32_t sides[] = {0, 1, 1, 2, 3, 4, 4, 5}, across[] = {2, 3};    /* from corner to corner */
+    dem_profile hopper = {6, 4, corners, sides}, lid = {6, 1, corners, across}; /* 6 corners; 4 sides, 1 side */
     dem_wall_profile_add(world, bead, &hopper, DEM_EDGE_RESOLVED);
     dem_wall closed = dem_wall_profile_add(world, bead, &lid, DEM_EDGE_RESOLVED);
     for (int i = 0; i < 2; i++)                                     /* two sizes, against regular packing */
         dem_spheres_fill(world, bead, (0.95 + 0.1*i)*R,
                          dem_region_make(dem_box_make(-x, 0, 0, x, 0.24, 0)), COUNT/2,
                          (uint64_t)(2*seed + i));
-    dem_outlet_desc below;
-    memset(&below, 0, sizeof below);
+    dem_outlet_desc below = DEM_OUTLET_DESC;                        /* removes discs below the hole and counts them */
     below.box = dem_box_make(-x, -0.2, -1, x, -0.02, 1);
     dem_outlet out = dem_outlet_add(world, &below);
 

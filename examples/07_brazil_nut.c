@@ -31,7 +31,7 @@ static int shake(double gamma, double frequency, int periods, int seed, int reco
 
     /* an open box with the large disc on its floor and small ones of two sizes above, at rest after 0.25 s */
     dem_real corners[] = {-half, 0.16, -half, 0, half, 0, half, 0.16};
-    int32_t sides[] = {0, 1, 1, 2, 2, 3};
+    int32_t sides[] = {0, 1, 1, 2, 2, 3};                           /* three sides, from corner to corner */
     dem_profile shape = {4, 3, corners, sides};
     dem_wall box = dem_wall_profile_add(world, bead, &shape, DEM_EDGE_RESOLVED);
     dem_body nut = dem_sphere_add(world, bead, big, dem_vec3_make(0, 1.01*big, 0));

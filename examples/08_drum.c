@@ -66,7 +66,7 @@ static int turn(double froude, int record, turned *out) {
         weight = t.mass*g;
         if (i < LATE) continue;
         dem_bodies grains = dem_bodies_get(world);
-        for (int k = 0; k < grains.count; k++) above += grains.positions[4*k + 1] > 0;
+        for (int k = 0; k < grains.count; k++) above += grains.positions[4*k + 1] > 0;   /* y */
         for (int k = 0; k < 2; k++) centre[k] += t.centre[k]/(FRAMES - LATE);
     }
     out->torque = loads.torque_impulse/loads.time;

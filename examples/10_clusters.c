@@ -39,7 +39,7 @@ static double heap(int tetrahedra, int seed, int record, double *inertia, double
     dem_material gravel = dem_material_add(world, &gravel_desc);
     const dem_vec3 origin = dem_vec3_make(0, 0, 0), up = dem_vec3_make(0, 0, 1);
     dem_wall_plane_add(world, gravel, origin, up);
-    dem_wall tube = dem_wall_cylinder_add(world, gravel, origin, up, 0.012, 1);
+    dem_wall tube = dem_wall_cylinder_add(world, gravel, origin, up, 0.012, 1);   /* m; 1: grains are inside */
 
     dem_region inside = dem_region_make(dem_box_make(-0.012, -0.012, 0, 0.012, 0.012, 0.045));
     int placed;
@@ -63,7 +63,7 @@ static double heap(int tetrahedra, int seed, int record, double *inertia, double
         const dem_bodies all = dem_bodies_get(world);
         double high = 0, far = 0;
         for (int k = 0; k < all.count; k++) {
-            high += all.positions[4*k + 2] - cbrt(4.0)*r;
+            high += all.positions[4*k + 2] - cbrt(4.0)*r;           /* x, y, z, radius of grain k */
             far += hypot(all.positions[4*k], all.positions[4*k + 1]);
         }
         slope = atan(4*high/(2*far))*180/pi;
