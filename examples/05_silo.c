@@ -1,4 +1,4 @@
-/* 05_silo.c - lesson 5: a silo. You learn: walls carry weight (Janssen); loads on walls; a fit with error bars.
+/* 05_silo.c - lesson 5: a silo. You learn: loads on walls; a fit with error bars.
 
    Build:     cc -O2 -o 05_silo 05_silo.c ../dem.c -lm      (in the folder examples)
    Run:       ./05_silo or, with a replay of the highest column and its loads, ./05_silo --replay
