@@ -9967,7 +9967,7 @@ DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_po
 static void demi_wall_forget(dem_world *w, int wall) {
     int d, k, left;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        demi_kept *c = demi_kept_of(w, d);
+        demi_kept *c = w->domains[d].kept ? demi_kept_of(w, d) : 0;
         for (k = left = 0; k < w->domains[d].kept; k++)
             if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
         w->domains[d].kept = left;
@@ -30948,11 +30948,11 @@ DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
     int i;
     if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_output_place(w, output.id);
-    o = w->look.outputs + i;
-    if (i == w->look.output_count || o->id != output.id)
+    if (i == w->look.output_count || w->look.outputs[i].id != output.id)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: output %d does not exist; it was removed "
                          "before or is of another world: give what dem_output_add returned", call,
                          (int)output.id);
+    o = w->look.outputs + i;
     demi_free(w, (char *)o->desc.path);
     demi_free(w, (char *)o->desc.columns);
     w->look.output_count--;
