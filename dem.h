@@ -29363,7 +29363,7 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 13 };
+enum { DEMI_CHECKPOINT_VERSION = 14 };
 
 /* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
    counts bytes. Hashes them where the sum is not 0 at the beginning. */
