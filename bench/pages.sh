@@ -99,7 +99,7 @@ blocks() {
         /middle sank/ { sank[p[1], p[2]] = $6 }
         / = / && $1 ~ /^(clumps|cubes)\./ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
         END {
-            print "| bed | code | time of a step and body, µs | contacts per body | the middle of the bed sank, µm | time over that of dem.h | ± % | time over that of dem.h with separate contacts | ± % |"
+            print "| bed | code | time of a step and body, µs | contacts per body | centre of mass sank by, µm | time over that of dem.h | ± % | time over that of dem.h with separate contacts | ± % |"
             print "|---|---|---|---|---|---|---|---|---|"
             about["clumps"] = "clumps of 8 spheres"; about["cubes"] = "cubes"
             name["double"] = "dem.h"; name["unshared"] = "dem.h, `DEM_CLUSTER_CONTACTS_SEPARATE`"; name["liggghts"] = "LIGGGHTS, multispheres"
