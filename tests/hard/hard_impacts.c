@@ -1,7 +1,7 @@
 /* Impacts by the hundred thousand: every built-in law with every other, on grains, walls of every
    kind, clusters and ellipsoids, at random angles, spins, sizes, masses, restitutions and frictions.
    None may leave with more energy than it came with, beyond the integrator's own error, which falls
-   as the step squared (LAMMPS had a law for granular walls that gained up to 34 % until 2026).
+   as the step squared.
    A world holds many lanes, far from each other, with one impact each. The environment variable
    TEST_LONG makes more than a million impacts of them, TEST_TABLES prints the worst of each. */
 #define DEM_IMPLEMENTATION
