@@ -187,7 +187,7 @@
        law, law_...             a user-defined law: section 5          built-in laws
        body_reals, ...          user-defined numbers on bodies, walls  none
        force, body_force        force fields                           none
-       integrator               scheme of time integration             velocity Verlet
+       integrator               time integration with springs          velocity Verlet
        dt                       time step, s                           chosen; impulses: required
        impact_speed             typical impact speed, m/s: for dt      estimated from the scene
                                 for a stiffness derived from young     1 m/s
@@ -218,7 +218,8 @@
 
    Sliding and rolling friction are 0 unless you set them. rolling_friction is mu_r in the largest
    moment, mu_r R* Fn. The effective radius R* is R/2 between two equal spheres and R at a wall:
-   between spheres, double a value that comes from a code with the limit mu_r R Fn.
+   between spheres, double a value that comes from a code with the limit mu_r R Fn. LIGGGHTS's model
+   epsd uses R*, as dem.h does: keep its values.
 
    --- 5. Choosing a contact law ---
 
@@ -230,14 +231,14 @@
                                  the contact may attract
    Friction (desc.tangent_law):
        DEM_TANGENT_SPRING        default: contacts hold at rest, so heaps stay
-       DEM_TANGENT_MINDLIN_RESCALED   with Hertz: pressing a sheared contact creates no energy.
-                                 With SPRING and MINDLIN it does, which matters if restitution is
-                                 near 1
+       DEM_TANGENT_MINDLIN_RESCALED   with Hertz: a change of the load of a sheared contact creates
+                                 no energy. SPRING creates some when the contact is pressed,
+                                 MINDLIN when it is released; this matters if restitution is near 1
        DEM_TANGENT_VISCOUS, _STEP     cheap, without contact history: heaps creep
    Rolling resistance (desc.rolling_law):
        DEM_ROLLING_EPSD          default: an elastic-plastic spring and a dashpot (EPSD, [AI11]);
                                  holds a grain on a slope
-       DEM_ROLLING_CONSTANT      a constant moment; holds a grain on a slope, too
+       DEM_ROLLING_CONSTANT      a constant torque; holds a grain on a slope, too
    The other choices reproduce published models; their comments in >>api say which. docs/theory.md
    derives the laws, docs/accuracy.md lists their costs.
 
@@ -258,9 +259,10 @@
    with. Other fields are law_stiffness (N/m, largest stiffness of the law, which limits dt; 0: that
    of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in c->who:
    ids, radii, masses, user-defined numbers) and law_rate, a function that returns how fast the law
-   changes such numbers, so that dem.h can limit dt. Laws see velocities of the full step, v(t),
-   because those of the half step, v(t - dt/2), give unphysical static friction at size ratios above
-   3 [VYA25]. The Verlet schemes and leapfrog predict v(t) with the force of the step before.
+   changes such numbers, so that dem.h can limit dt. Laws see the velocity at the time of the
+   positions. The Verlet schemes and leapfrog predict it from the half-step velocity with the force
+   of the step before. The half-step velocity itself gives unphysical static friction at size ratios
+   above 3 [VYA25].
 
    `make law` tests a law for mistakes (docs/laws.md). docs/own_law.md is a tutorial.
 
@@ -275,12 +277,14 @@
 
    Hertz's law has t_c = 2.87 (m*^2/(R* E*^2 v))^(1/5), v the impact speed: about 10 us for glass
    beads of 3 mm diameter at 1 m/s. Therefore Young's modulus is usually reduced. E smaller by 100
-   makes steps longer by 100^(2/5) = 6.3 and overlaps larger by the same factor.
+   makes steps longer by 100^(2/5) = 6.3. Overlaps grow by the same factor in impacts, and by
+   100^(2/3) = 22 under a given load, as in a bed at rest.
 
-   Keep the largest overlap near 0.01 radii, where results hardly depend on the stiffness, and in
-   any case below 0.05, above which the report warns. The program in section 1 reaches 0.047.
-   Angle of repose, discharge rate and mill power change by 1 % at 0.024 to 0.073 radii
-   (docs/accuracy.md). The speed of sound and adhesion depend on the true stiffness.
+   Keep the largest overlap near 0.01 radii, where results hardly depend on the stiffness. The
+   report warns above 0.05; the program in section 1 reaches 0.047. Some results need less: compared
+   with E = 1 GPa, the angle of repose changes by 1 % at a largest overlap of 0.024 radii, the
+   discharge rate at 0.065 and mill power at 0.073 (fits, docs/accuracy.md). The speed of sound and
+   adhesion depend on the true stiffness.
 
    Impulses need a given dt, in which the fastest grain moves by less than a tenth of its radius;
    1e-3 s is usual for slow grains of some millimetres.
@@ -304,8 +308,9 @@
    polyhedra or ellipsoids, and in planar worlds polygons. A body that dem_body_set makes `fixed`
    never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids have no contact with
    sieves, surfaces of revolution and profiles whose edges follow the rule of [MIL]
-   (DEM_EDGE_FRACTION); polyhedra have none with such profiles and with some sieves. dem.h refuses
-   such a pair when you add the second of the two.
+   (DEM_EDGE_FRACTION). Polyhedra have none with such profiles, with sieves cut out as a disc, with
+   DEM_SIEVE_REDUCED and, under springs, with plates without thickness. dem.h refuses such a pair
+   when you add the second of the two.
 
    --- 8. Walls and motions ---
 
@@ -326,8 +331,8 @@
    --- 9. Feeds and outlets ---
 
    A feed adds grains of given sizes at random places in a box, at a rate or all at once (the
-   program above). An outlet removes grains whose centre is in a box, or only counts them, by size
-   and mass:
+   program of section 1). An outlet removes grains whose centre is in a box, or only counts them, by
+   size and mass:
 
        dem_outlet_desc out = DEM_OUTLET_DESC;
        out.box = dem_box_make(-0.1, -0.1, -0.2, 0.1, 0.1, -0.1);
@@ -373,9 +378,9 @@
                        dem_effects_print lists all effects and, given a budget of wall time, what
                        each costs
        overlap         the largest so far, in radii (section 6)
-       ledger          (if switched on) energy in, stored and lost, and the residual. That is the
-                       error of the time step, and falls at least with the square of dt: below 1e-3
-                       of the losses in an impact of 25 steps
+       ledger          (if switched on) energy in, stored and lost, and the residual: the error of
+                       the time step. In oblique impacts it falls at least with the square of dt,
+                       and at 25 steps per contact it is below 1e-3 of the energy lost
 
    Call dem_world_check_print before the first run. It prints likely mistakes: wrong units, grains
    that overlap, a missing floor, walls out of reach, a time step that is too large.
@@ -467,7 +472,8 @@
        contact point       where two bodies, or a body and a surface, touch; there may be several
        contact time, t_c   duration of a collision
        Coulomb's limit     the largest friction force, mu L
-       domain              the box desc.domain; in the report and dem_counters a work group
+       domain              the box desc.domain. `domains` in the report and in dem_counters are
+                           work groups
        effect              a law or feature that a scene may or may not use
        facet               a triangle of a mesh or a segment of a profile
        ghost               a slab's copy of a grain of its lower neighbour
@@ -481,7 +487,8 @@
        slot                the number of a body (dem_body.slot); indices change, slots do not
        spin                angular velocity, as in the literature on granular gases
        sweep               one pass of the iterative solver over all contacts
-       weight              the factor with which one contact point of a surface or cluster counts
+       weight              factor on the force of a contact point, so that several points of one
+                           surface or cluster act as one contact
        work group          some 2000 neighbouring bodies, which one thread computes at a time
 
    --- 16. References, by the keys used in this file ---
@@ -525,11 +532,12 @@
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
      [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps
-     [TAS10]   Tasora & Anitescu, Int. J. Numer. Methods Eng. 81 (2010): impulses in convex cones
+     [TAS10]   Tasora & Anitescu, J. Comput. Nonlinear Dyn. 5(3) (2010) 1: impulses in convex cones
      [THO13]   Thornton, Cummins & Cleary, Powder Technol. 233 (2013) 30: rescaling on unloading
      [TON12]   Tonge et al., ACM Trans. Graph. 31 (2012) 105: Jacobi with split masses
      [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
-     [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025): law velocities at the full step
+     [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025) 109524: law velocities at the full
+               step
      [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
 */
 
@@ -759,6 +767,7 @@ typedef enum dem_convention {
     DEM_CONVENTION_MILL
 } dem_convention;
 
+/* The scheme of time integration with springs. Impulses have their own, of second order. */
 typedef enum dem_integrator {
     /* second order; the default */
     DEM_INTEGRATOR_VELOCITY_VERLET = 0,
@@ -778,9 +787,9 @@ typedef enum dem_response {
        a contact time. */
     DEM_RESPONSE_SPRINGS = 0,
     /* Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The
-       laws above do not act; restitution, friction, static friction and rolling friction of the
-       materials do. A time step is as long as the flow allows, 1e-3 s for grains of some
-       millimetres. */
+       laws above do not act; restitution, friction, static friction and, with Gauss-Seidel, rolling
+       friction of the materials do. A time step is as long as the flow allows, 1e-3 s for grains of
+       some millimetres. */
     DEM_RESPONSE_IMPULSES
 } dem_response;
 /* The friction law of impulses. */
@@ -1216,7 +1225,8 @@ DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_cont
 }
 /* Mindlin's friction, rescaled on unloading [THO13]: as dem_law_mindlin, but while kt falls the
    force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept.
-   Pressing a sheared contact then creates no energy. Contact history as for dem_law_mindlin.
+   A change of the load of a sheared contact then creates no energy. Contact history as for
+   dem_law_mindlin.
    Tests: tests/test_impacts.c, tests/test_exam.c. */
 DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
                                          dem_contact_force *f) {
@@ -1372,22 +1382,22 @@ typedef struct dem_world_desc {
     /* N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the
        built-in law. */
     dem_real law_stiffness;
-    /* m, and a factor; both >= 0. law is also called for two bodies that do not touch while their
-       gap is below law_range + law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with
-       radius 0, an ellipsoid with its bounding sphere. Built-in laws that it calls need overlap >
-       0. With both 0, law is called in contact only, at no extra cost. */
+    /* law_range: m, >= 0; law_range_radii: a factor, >= 0. law is also called for two bodies that
+       do not touch while their gap is below law_range + law_range_radii (Ra + Rb), with c->overlap
+       < 0. A wall counts with radius 0, an ellipsoid with its bounding sphere. Built-in laws that
+       it calls need overlap > 0. With both 0, law is called in contact only, at no extra cost. */
     dem_real law_range, law_range_radii;
     int law_who;                   /* 1 fills in c->who: ids, radii, masses, contact point, time */
     /* Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who
-       and body_reals. It is called before the first step and at least every eighth. A given dt
-       above the stable limit is an error; a chosen dt is at most half of it. Null: these rates do
-       not limit dt. */
+       and body_reals. It is called before the first step and at least once in eight steps. A given
+       dt above the stable limit is an error; a chosen dt is at most half of it. Null: these rates
+       do not limit dt. */
     dem_law_rate_fn law_rate;
 
     /* -- numbers on bodies -- */
     /* Names of numbers that every body and wall carries, such as "temperature charge": at most 8
        words of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With
-       law_who, law reads them and returns their rates (1/s). Null: no numbers. */
+       law_who, law reads them and returns their rates (per s). Null: no numbers. */
     const char *body_reals;
     /* Updates the numbers of a body after each step. Null: each grows by rate dt. Numbers of walls
        stay as set; dem_wall_loads sums what they would gain. */
@@ -1409,17 +1419,18 @@ typedef struct dem_world_desc {
     dem_real impact_speed;
 
     /* -- impulses -- */
-    /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null; the integrator is symplectic Euler
-       (integrator 0 or DEM_INTEGRATOR_SYMPLECTIC_EULER). law_range (m) is then the gap below which
-       contacts are solved; 0 means three times the distance that the fastest body moves in a step,
+    /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
+       (docs/impulses.md) for either value of integrator that it accepts, 0 and
+       DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
+       solved; 0 means three times the distance that the fastest body moves in a step,
        between 0.1 and 1 of the largest radius. The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
     dem_solver solver;
     int sweeps;                    /* most sweeps over all contacts in a step; default 200 */
     /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. Default: when
-       the root mean square change is below 1/20 of the speed that gravity adds in a step plus 1e-5
-       of the largest speed, and the largest change is below 30 times that. */
+       the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
+       largest change is below 30 times that. */
     dem_real tolerance;
     int cold_start;                /* 1 begins with zero impulses, not those of the last step */
     /* 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
@@ -1516,10 +1527,13 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
                                     dem_material_desc *desc);
 
 /* The contact properties of two materials. Unless dem_pair_set sets them, they are mixed from the
-   materials: restitution, the three friction coefficients and the stiffness of adhesion by the
-   geometric mean; moduli in series as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G;
-   given stiffnesses by the harmonic mean (one alone counts only without E*). Grains and walls
-   follow the same rule. */
+   materials, for walls as for grains:
+   - restitution, the three friction coefficients and stiffness_adhesion by the geometric mean: a
+     coefficient that is 0 in one of the two is 0 in the pair (friction_static 0 means friction);
+   - moduli in series as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G;
+   - stiffness by the mean 2 ka kb/(ka + kb) if both give one; otherwise it follows from E*, or is
+     the given one if E* is unknown because a material has no young;
+   - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
     dem_real young_eff;            /* E*, Pa */
     dem_real shear_eff;            /* G*, Pa */
@@ -1601,7 +1615,7 @@ DEM_INLINE dem_region dem_region_make(dem_box box) {
     region.box = box;
     return region;
 }
-/* Returns the region of the centres in a box for which inside(centre, radius, user) is nonzero. */
+/* Returns the region of a box in which inside(centre, radius, user) is nonzero. */
 DEM_INLINE dem_region dem_region_inside_make(dem_box box, dem_inside_fn inside, void *user) {
     dem_region region = dem_region_make(box);
     region.inside = inside;
@@ -1634,10 +1648,10 @@ enum { DEM_SIEVES = 32 };          /* largest number of sieves of a sieve curve 
 typedef struct dem_sizes {
     dem_sizes_kind kind;
     int by_count;                  /* 0: F is a fraction of the mass, 1: of the number */
-    /* m, 1e-15 <= min <= max < 1e15. 0 means a default. Log-normal: exp(-6 spread) and exp(6
-       spread) medians. Normal: 6 deviations from the median, min at least 1e-3 medians. Sieve
-       curve: its ends. Weibull and exponential: max where F = 1 - 1e-9, min required. Uniform: both
-       required. */
+    /* m, 1e-15 <= min <= max < 1e15. Defaults for 0: log-normal, the median times exp(-6 spread)
+       and exp(6 spread); normal, 6 deviations from the median, min at least 1e-3 of the median;
+       sieve curve, its ends; Weibull and exponential, max where F = 1 - 1e-9. The others are
+       required: min of Weibull and exponential, both of uniform. */
     dem_real min, max;
     dem_real median;               /* m, log-normal and normal, > 0 */
     double spread;                 /* log-normal, > 0 and < 10: standard deviation of ln r */
@@ -1728,7 +1742,7 @@ typedef struct dem_bodies {
     const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if all are */
     int real_count;                /* numbers per body (desc.body_reals) */
     const dem_real *reals;         /* count x real_count; null if there are none */
-    const dem_real *rates;         /* count x real_count [1/s], of the last step; null likewise */
+    const dem_real *rates;         /* count x real_count, per s, of the last step; null likewise */
 } dem_bodies;
 /* Returns the arrays of all bodies; zeros for a null world. */
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
@@ -1782,14 +1796,14 @@ static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = {0, 0, 0, 0, DEM_CLUSTER_U
 DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
 
 /* Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of
-   your choice. Points inside it or on its faces, to within 1e-10 of its size (single precision:
-   1e-6), are dropped; if it has more than DEM_POLYHEDRON_FACES faces then, to within as much as
-   1e-5. It is an error if it still has more, or if the points lie in a plane. Not in planar worlds.
-   Two polyhedra repel each other by the volume they share (>>polyhedra), a polyhedron and a sphere
-   or ellipsoid at the nearest point. dem_contacts_get reports a contact of two polyhedra, or of one
-   with a wall, as four points over which its force is spread; counters count it once. With impulses
-   it has up to four points, each with its own gap (>>gaps); counters count the points with a
-   repulsive force. */
+   your choice. Points inside the hull, or within 1e-10 of its size (single precision: 1e-6) of a
+   face, are dropped. If more than DEM_POLYHEDRON_FACES faces remain, this tolerance is raised up to
+   1e-5. It is an error if still more remain, or if the points lie in a plane. Not in planar worlds.
+   Two polyhedra repel each other by a pressure field in the volume they share ([ELA19],
+   >>polyhedra), a polyhedron and a sphere or ellipsoid at the nearest point. dem_contacts_get
+   reports a contact of two polyhedra, or of one with a wall, as four points over which its force is
+   spread; counters count it once. With impulses it has up to four points, each with its own gap
+   (>>gaps); counters count the points with a repulsive force. */
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if
@@ -1830,7 +1844,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 /* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
    orientation (any length but 0) from the frame in which the shape was given. It is an error if a
    wall has no contact with this shape: sieves, surfaces of revolution and DEM_EDGE_FRACTION
-   profiles have none with ellipsoids; such profiles and some sieves have none with polyhedra. */
+   profiles have none with ellipsoids; such profiles and some sieves (dem_sieve_kind) have none with
+   polyhedra. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:
@@ -1980,9 +1995,9 @@ typedef enum dem_sieve_kind {
     DEM_SIEVE_SQUARE,              /* a plate with square holes */
     DEM_SIEVE_ROUND,               /* a plate with round holes */
     DEM_SIEVE_SLOTS,               /* a plate with slots, longer along `along` */
-    /* [ALK07] 4.3.3: a plane through which a sphere falls without contact if its centre is above
-       the reduced part of a square hole. It is cheaper and never blinds, but the clearance decides
-       what passes. */
+    /* [ALK07] 4.3.3: a plane through which a sphere falls without contact if it is near enough to
+       the middle of a square hole (dem_sieve_desc.model). It is cheaper and never blinds, but the
+       clearance decides what passes. */
     DEM_SIEVE_REDUCED
 } dem_sieve_kind;
 /* A sieve: a plane with rows of holes, infinite or cut out as a disc. The cost per sphere does not
@@ -2003,9 +2018,11 @@ typedef struct dem_sieve_desc {
     dem_real lift;
     int staggered;                 /* 1 puts round holes in a triangular pattern */
     dem_real radius;               /* m, of the disc; 0 means an infinite sieve */
-    /* Reduced holes: 0 or 1, the whole sphere must be above one; 2, its centre only. */
+    /* Reduced holes. A sphere smaller than the hole falls if its centre is within (1 - clearance) b
+       of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or
+       aperture/2 (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end. */
     int model;
-    dem_real clearance;            /* reduced holes: zeta of eq 4.20 or 4.21, 0 open, 1 closed */
+    dem_real clearance;            /* reduced holes: 0 open, 1 closed; zeta of [ALK07] */
 } dem_sieve_desc;
 static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
                                                    0, 0, 0, 0, 0, 0, 0, 0, 0};
@@ -2041,7 +2058,8 @@ typedef struct dem_wall_loads {
     double torque_impulse;         /* N m s, of torque_axial */
     double work;                   /* J, from the wall to the grains */
     double time;                   /* s, over which these sums extend */
-    double rate[DEM_BODY_REALS];   /* 1/s, last step: gain of its numbers (desc.body_reals) */
+    /* per s, last step: what laws gave to its numbers (desc.body_reals), in their units */
+    double rate[DEM_BODY_REALS];
     double gained[DEM_BODY_REALS]; /* its sum over time */
 } dem_wall_loads;
 /* Writes the loads of a wall to loads. */
@@ -2051,10 +2069,11 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
 
 /* ---- joints ---- */
 /* Joints connect a body to another body, to a wall or to space. They need DEM_RESPONSE_IMPULSES and
-   DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints, trees and closed loops
-   alike, are solved together and exactly; the joined points and axes coincide at the end of each
-   step. Joints never add energy, for any number of sweeps (docs/impulses.md). Two bodies that are
-   joined have no contact with each other unless `collide` is 1. */
+   DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints are solved together by a
+   direct method; those of closed loops have a softness of 1e-6. The joined points and axes coincide
+   in the middle of the next step, where contacts are found, too. Impulses of joints never add
+   energy, for any number of sweeps (docs/impulses.md). Two bodies that are joined have no contact
+   with each other unless `collide` is 1. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
     DEM_JOINT_POINT,               /* a ball joint: keeps `point` of both together */
@@ -2091,7 +2110,8 @@ typedef struct dem_joint_state {
     dem_vec3 force, torque;
     dem_real motor_torque;         /* N m, on a about axis, of the last step */
     dem_real power;                /* W, from the motor to a and b; 0 without a motor */
-    dem_real gap, tilt;            /* m between the points; sine of the angle between the axes */
+    /* in the middle of the coming step: m between the points; sine of the angle of the axes */
+    dem_real gap, tilt;
     double turned;                 /* rad, of a against b about axis since the joint was added */
     double work;                   /* J, of the motor */
 } dem_joint_state;
@@ -2130,7 +2150,7 @@ typedef struct dem_feed_desc {
     /* s, time of the world. A feed that is added later catches up with what was due since start.
        end 0 means no end. */
     double start, end;
-    dem_box box;                   /* m, required: centres lie inside */
+    dem_box box;                   /* m, required: centres lie inside (dem_region: whole bodies) */
     int round;                     /* 1: only the vertical elliptic cylinder inscribed in the box */
     dem_vec3 velocity;             /* m/s */
     dem_real spread;               /* m/s, largest random change of each component of velocity */
@@ -2281,7 +2301,8 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
    message names that step; the steps before it are kept. The first step is not taken while the
    error message of a call that builds the scene is unread (dem_world_error_get). Errors:
        DEM_ERROR_TIME_STEP  the step is too large for the contacts, or a body or wall would move by
-                            more than the smallest radius
+                            more than the smallest radius (impulses: a body also by more than half
+                            the range below which contacts are solved)
        DEM_ERROR_UNSTABLE   a position, velocity or force is not finite, or two bodies overlap by
                             the smaller radius
        DEM_ERROR_STOPPED    an output stopped the run; or desc.unsolved_stops is 1 and the sweeps of
@@ -16805,9 +16826,9 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
    walls of its holes; together these are a closed surface, so that energy is conserved. For gaps a
    wire is a line with a radius; a corner of the body is told by the face, or wall of a hole, that
    it is over or nearest to, and the rims of holes by the points of the body that lie on them. Where
-   wires cross, what they share counts twice. Reduced holes, sieves cut from a disc, and to springs
-   sheets without thickness, which have no inside, know no polyhedra: demi_wall_why. Then the
-   table of who touches what.
+   wires cross, what they share counts twice. Reduced holes, sieves cut out as a disc, and to
+   springs sheets without thickness, which have no inside, know no polyhedra: demi_wall_why. Then
+   the table of who touches what.
    --------------------------------------------------------------------------------------------- */
 
 /* Holes of a plate: half sizes across x and y, and from hole to hole; along x without end: 0. */
