@@ -225,7 +225,7 @@ static const effect_row effect_rows[] = {
      {.integrator = DEM_INTEGRATOR_FORWARD_EULER}, {0}, {0}},
     {"skin0", "bed", "list rebuilt at every step", "chosen skin",
      {.skin = -1}, {0}, {0}},
-    {"search.linked_list", "drum", "linked cells, for wide size ranges [ALK07]", "grid",
+    {"search.linked_list", "drum", "linked linear list, sorted along each axis [ALK07]", "grid",
      {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
     {"search.bins", "drum", "bins, for bodies of very different extent [MAZ11]", "grid",
      {.search = DEM_SEARCH_BINS}, {0}, {0}},
