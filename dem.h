@@ -24342,12 +24342,12 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
             const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
             if (!(deep[k] > 0.05)) continue;
             demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
-                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s: "
-                      "below 0.01 with %s of %.2g %s", i + 1, r, deep[k], k ? "under a weight of "
-                      : "at ", k ? force : v, k ? "N each" : "m/s", w->materials[i].stiffness > 0
-                      ? "a stiffness" : "a Young's modulus", more*(double)
-                      (w->materials[i].stiffness > 0 ? w->materials[i].stiffness
-                                                     : w->materials[i].young),
+                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s; "
+                      "%s of %.2g %s would keep it below 0.01", i + 1, r, deep[k],
+                      k ? "under a weight of " : "at ", k ? force : v, k ? "N each" : "m/s",
+                      w->materials[i].stiffness > 0 ? "a stiffness" : "a Young's modulus",
+                      more*(double)(w->materials[i].stiffness > 0 ? w->materials[i].stiffness
+                                                                  : w->materials[i].young),
                       w->materials[i].stiffness > 0 ? "N/m" : "Pa");
         }
     }
