@@ -15,22 +15,22 @@ int main(int argc, char **argv) {
     const double restitution = 0.8, height = 0.5, radius = 0.01, g = 9.81;  /* -, m, m, m/s2: change them here */
     const double rest = sqrt(2*height/g)*(1 + restitution)/(1 - restitution);   /* s, expected end of the impacts */
 
-    /* the world: a field that stays zero is absent or chosen for you */
+    /* the world: where a field stays 0, dem.h chooses its value, or its effect is off */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -g;                                            /* m/s2 */
     desc.dt = 2e-6;                 /* s, time step: a contact lasts 150 steps. With 0 dem.h chooses 6e-6 s, which is
                                        enough for heaps; here rebounds would be off by up to 1.5 % */
     dem_world *world = dem_world_create(&desc);
 
-    /* the material of ball and floor. Glass has 7e10 Pa. A contact of a softer ball lasts longer, so that a longer step
-       still resolves it */
+    /* the material of ball and floor. Young's modulus of glass is 7e10 Pa; here it is 1e9 Pa. A contact of a softer
+       ball lasts longer, so a longer step is enough */
     dem_material_desc glass_desc = DEM_MATERIAL_DESC;
     glass_desc.density = 2500;                                      /* kg/m3 */
     glass_desc.young = 1e9;                                         /* Pa */
     glass_desc.poisson = 0.23;                                      /* -, Poisson's ratio */
     glass_desc.restitution = restitution;
     dem_material glass = dem_material_add(world, &glass_desc);
-    dem_vec3 point = dem_vec3_make(0, 0, 0), normal = dem_vec3_make(0, 0, 1);   /* m, of the floor; towards the ball */
+    dem_vec3 point = dem_vec3_make(0, 0, 0), normal = dem_vec3_make(0, 0, 1);   /* normal: from floor to ball */
     dem_wall_plane_add(world, glass, point, normal);
     dem_body ball = dem_sphere_add(world, glass, radius, dem_vec3_make(0, 0, radius + height));
     dem_world_check_print(world, stdout);                           /* prints likely mistakes: here none */
@@ -66,12 +66,13 @@ int main(int argc, char **argv) {
 }
 
 /* STOP: answer the question before you read on.
-   Theory:    A fall from height h ends with speed v = sqrt(2 g h). Rebound n therefore reaches h e^(2n). Each flight
-              lasts e times as long as the flight before. The flight times form a geometric series with a finite sum,
-              so infinitely many impacts end at the time t = sqrt(2 h/g) (1 + e)/(1 - e).
+   Theory:    A fall from height h ends with speed v = sqrt(2 g h). After n impacts the speed is v e^n, so rebound n
+              reaches h e^(2n). Each flight lasts e times as long as the flight before. The flight times form a
+              geometric series with a finite sum, so infinitely many impacts end at the time
+                  t = sqrt(2 h/g) (1 + e)/(1 - e)
    Output:    the heights of five rebounds (within 1 %) and the time at which the ball lies still (within 2 %). Impacts
               do not begin exactly at a step, hence small errors of either sign. The ball counts as still when it rises
-              more slowly than 0.02 m/s, so the measured time is a little short
+              more slowly than 0.02 m/s, so the measured time is a little short.
    Exercises: check an answer with ./01_bounce --check N VALUE
    1  A ball with e = 0.7 falls from 2 m. How high is its fifth rebound, in m?
    2  A ball falls from 1 m and lies still after 3 s. What is its restitution? To confirm it, set `restitution` and

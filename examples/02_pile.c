@@ -23,8 +23,8 @@ static dem_world *yard(double friction, double rolling, dem_material *wood) {
     wood_desc.poisson = 0.3;
     wood_desc.restitution = 0.3;
     wood_desc.friction = friction;
-    wood_desc.rolling_friction = rolling;                           /* moment <= this x force x R (R/2 between logs) */
-    *wood = dem_material_add(world, &wood_desc);
+    wood_desc.rolling_friction = rolling;                           /* moment <= this x force x R*, R/2 between logs */
+    *wood = dem_material_add(world, &wood_desc);                    /* 1/R* = 1/R1 + 1/R2; 1/R = 0 for a floor */
     dem_wall_plane_add(world, *wood, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
     return world;
 }
@@ -36,13 +36,12 @@ static double slope(double rolling, int seed, int record, double *overlap) {
     dem_real corners[8] = {-half, 0, -half, 0.23, half, 0, half, 0.23}; /* x, y of four corners, m */
     int32_t sides[4] = {0, 1, 2, 3};                                /* two sides, from corner 0 to 1 and from 2 to 3 */
     dem_profile walls = {4, 2, corners, sides};                     /* 4 corners, 2 sides */
-    dem_wall column = dem_wall_profile_add(world, wood, &walls, DEM_EDGE_RESOLVED);
-    for (int i = 0; i < 2; i++)                                     /* two sizes, against regular packing */
+    dem_wall column = dem_wall_profile_add(world, wood, &walls, DEM_EDGE_RESOLVED);     /* one surface */
+    for (int i = 0; i < 2; i++)                                     /* 55 discs of each size: no regular packing */
         dem_spheres_fill(world, wood, i ? 0.8*R : R,
                          dem_region_make(dem_box_make(-half, 0, 0, half, 0.22, 0)), 55, (uint64_t)(2*seed + i));
     dem_motion up = DEM_MOTION;
-    up.kind = DEM_MOTION_TRANSLATING;
-    up.velocity.y = 0.4;                                            /* m/s */
+    up.kind = DEM_MOTION_TRANSLATING; up.velocity.y = 0.4;          /* m/s */
     up.start = 0.25;                                                /* s: when all have fallen */
     dem_wall_motion_set(world, column, &up);
     dem_replay_desc replay_desc = DEM_REPLAY_DESC;
@@ -54,8 +53,8 @@ static double slope(double rolling, int seed, int record, double *overlap) {
         dem_bodies discs = dem_bodies_get(world);
         double height = 0, distance = 0;
         for (int k = 0; k < discs.count; k++) {
-            height += discs.positions[4*k + 1] - R;                 /* x, y, z, radius of disc k; R: about */
-            distance += fabs(discs.positions[4*k]);
+            height += discs.positions[4*k + 1] - R;                 /* y, above a large disc on the floor */
+            distance += fabs(discs.positions[4*k]);                 /* x; four numbers: x, y, z, radius */
         }
         degrees = atan(height/distance)*180/3.14159265;
         dem_replay_value_set(replay, "slope (degrees)", degrees);
@@ -105,11 +104,12 @@ int main(int argc, char **argv) {
    Theory:    A wedge of height H and half width L has the mean height H/3 and the mean distance L/3 from its middle
               (the centroid of a triangle), so tan(slope) is the ratio of the two means.
               Three logs of weight W: the torques of floor and upper log on a lower log balance, so both friction
-              forces have the same size T. Let N be the normal force of two logs, 30 degrees from the vertical. Then
+              forces have the same size T. Let N be the normal force of the upper log, 30 degrees from the vertical.
+              The lower logs touch but are about to part, so they exert no force on each other. Then
                   horizontally, lower log: T + T cos 30 = N sin 30, so T/N = tan 15 degrees = 0.268 <= mu
                   vertically: N = W/2 between two logs, and 3/2 W on the floor below each lower log
-   Output:    slopes (mean and standard error of three runs), which must grow with rolling friction by 2 and 1 degrees
-              or more; the smallest mu (within 3 %), found by bisection: its +- is half of the last interval
+   Output:    slopes (mean and standard error of three runs): the second exceeds the first by 2 degrees, the third the
+              second by 1, or more; the smallest mu (within 3 %), by bisection: its +- is half of the last interval
    Exercises: check an answer with ./02_pile --check N VALUE
    1  The logs do not slide on each other. How much friction must the floor have for three logs to stay?
    2  Between the lower logs is a gap of one radius. How much friction between logs holds the upper one now? */

@@ -1,7 +1,8 @@
 /* 03_incline.c - lesson 3: a ball on an inclined plane. You learn: friction is a limit; rolling and sliding.
 
    Build:     cc -O2 -o 03_incline 03_incline.c ../dem.c -lm      (in the folder examples)
-   Run:       ./03_incline or, with a replay at 40 degrees, ./03_incline --replay: the curves of v and R w separate
+   Run:       ./03_incline or, with a replay at 40 degrees, ./03_incline --replay: the curves of the speed v
+              and of R w (radius times angular velocity) separate
    Question:  A steel ball with mu = 0.2 lies on a plane that becomes steeper. A block would slide above atan(mu) =
               11.3 degrees. Above which angle does the ball slide? Does it stop rolling then? Guess, then run. */
 #include "../dem.h"
@@ -42,7 +43,7 @@ int main(int argc, char **argv) {
         replay_desc.interval = 0.01;                                /* s */
         dem_replay *replay = record && angle == 40 ? dem_replay_open(world, "03_incline.html", &replay_desc) : 0;
         dem_body_state state;
-        double speed = 0, turning = 0, first_speed = 0, first_turning = 0, start = 0;   /* m/s, m/s: R w, s */
+        double speed = 0, turning = 0, first_speed = 0, first_turning = 0, start = 0;   /* m/s, turning: R w; s */
         for (int i = 0; i < 60; i++) {
             if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
             dem_body_get(world, ball, &state);
@@ -77,8 +78,10 @@ int main(int argc, char **argv) {
    Exercises: check an answer with ./03_incline --check N VALUE
    1  Above which angle, in degrees, does a ball with mu = 0.1 slide?
    2  Above which angle does a cylinder with mu = 0.2 slide? To confirm it, set `planar` at the top of main to 1: a
-      planar world contains discs in the x-y plane, which rotate about z. Which row tells ball and cylinder apart? */
-/* Marking. Stop here if you want to find the answers yourself. */
+      planar world contains discs in the x-y plane, which rotate about z. Which rows are the same for ball and
+      cylinder, and why? */
+/* Marking. Stop here if you want to find the answers yourself. Exercise 2: a at 40 and 50 degrees is the same,
+   because a does not depend on k while the body slides. All other rows depend on k. */
 static double answer(int exercise) {
     const double k = exercise == 1 ? 0.4 : 0.5, mu = exercise == 1 ? 0.1 : 0.2;
     return atan(mu*(1 + 1/k))*180/3.14159265358979324;

@@ -2,9 +2,10 @@
 
    Build:     cc -O2 -o 04_own_law 04_own_law.c ../dem.c -lm      (in the folder examples)
    Run:       ./04_own_law or, with a replay of an impact at k2 = 4 k1, ./04_own_law --replay
-   Question:  A spring is stiffer on unloading (k2) than on loading (k1). The area between the two lines is the energy
-              lost. Let k2 = 4 k1: is the restitution 1/2, is it 1/4, or does it depend on the speed? The law `hasty`
-              below seems to do the same. Why is it wrong? Write down your answers, then run. */
+   Question:  A spring is stiffer on unloading (k2) than on loading (k1). Plot the force over the overlap: the
+              area between the lines of loading and unloading is the energy lost. Let k2 = 4 k1: is the restitution
+              1/2, is it 1/4, or does it depend on the speed? The law `hasty` below seems to do the same. Why is it
+              wrong? Write down your answers, then run. */
 #include "../dem.h"
 #include "exam.h"
 #include "lesson.h"
@@ -31,7 +32,7 @@ static void hasty(const dem_contact *c, dem_real *memory, dem_contact_force *for
 }
 static exam_sheet examine(const char *name, dem_law_fn law, springs *k) {
     exam_sheet sheet;
-    exam e = exam_of(name, law, k, 1, 0, k->k2);    /* 1 number of history, of which 0 are vectors; largest stiffness */
+    exam e = exam_of(name, law, k, 1, 0, k->k2);    /* 1 number of history; 0 vectors (3 numbers each); stiffness */
     exam_take(&e, &sheet);
     exam_print(&sheet, stdout);
     return sheet;
@@ -107,7 +108,7 @@ int main(int argc, char **argv) {
    Exercises: check an answer with ./04_own_law --check N VALUE
    1  Which k2/k1 gives a restitution of 0.3?
    2  A law has e = 0.6. What fraction of the largest overlap remains as a dent?
-   3  Not marked: remove the history (set `most` to c->overlap). The law still passes the exam, and the rows below
-      show e = 1 for every k2. Why? (On which line do its forces lie?) */
+   3  Not marked: remove the history (set `most` to c->overlap). The law still passes the exam, and the rows that
+      the program prints after it show e = 1 for every k2. Why? (On which line do its forces lie?) */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) { return exercise == 1 ? 1/(0.3*0.3) : 1 - 0.6*0.6; }

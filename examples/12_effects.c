@@ -109,8 +109,8 @@ int main(int argc, char **argv) {
    Theory:    dem.h computes only what a scene contains, so each effect adds to the time of a step, and the time is the
               product of the factors. In a bed at rest smooth beads need 3 contacts each, because a contact serves two
               beads and three force components must balance. With friction 2 are enough.
-   Output:    the cost of each effect. All five together make a step 1 to 8 times as long. Contacts per bead: 2.5 to
-              3.1 smooth (some are open while the bed vibrates), 1.8 to 2.6 with friction
+   Output:    the cost of each effect. All five together make a step 1 to 8 times as long. Contacts over beads, each
+              contact counted once: 2.5 to 3.1 smooth (some are open while the bed vibrates), 1.8 to 2.6 with friction
    Exercises: check an answer with ./12_effects --check N VALUE
    1  Friction makes a step 1.84 times as long, rolling friction another 1.34 times, the ledger another 1.12 times.
       What is the factor of all three?
