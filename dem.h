@@ -31994,6 +31994,11 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (!demi_names(d->body_reals, DEM_BODY_REALS) && d->body_reals_fn)
         return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
             "them, or leave both 0";
+#ifdef __TINYC__
+    if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 evaluates some expressions of float "
+        "wrongly, and contacts would gain energy; compile with gcc or clang, or leave DEM_REAL at "
+        "double";
+#endif
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
         "choose, below 0 means no skin";
     if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64, "

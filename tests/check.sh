@@ -68,7 +68,10 @@ for cc in gcc clang tcc; do
     echo 'int main(void) { return omp_get_max_threads() < 1; }' > $dir/probe.c
     if $cc -include omp.h $dir/probe.c -o $dir/probe -fopenmp 2>/dev/null; then openmp=-fopenmp
     else skip "$cc has no OpenMP$hint"; fi
+    # tcc evaluates closing + couple*dot(a, b) of floats wrongly: dem.h refuses to run
+    [ $cc = tcc ] && try "tcc float: a world is refused" "tcc -I. $float $one_file -o \$bin -lm && { \$bin; test \$? -eq 1; }"
     for real in "" $float; do
+        [ $cc = tcc ] && [ "$real" ] && continue
         try "$cc${real:+ float}: one file"                 "$cc -I. $real $one_file -o \$bin -lm && \$bin"
         try "$cc${real:+ float}: two files linked"         "$cc -I. $real -c dem.c -o \$bin.o && $cc -I. $real $user \$bin.o -o \$bin -lm && \$bin"
         try "$cc${real:+ float}: after windows.h's near and far" \
