@@ -31995,9 +31995,8 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
         return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
             "them, or leave both 0";
 #ifdef __TINYC__
-    if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 evaluates some expressions of float "
-        "wrongly, and contacts would gain energy; compile with gcc or clang, or leave DEM_REAL at "
-        "double";
+    if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 computes some float expressions "
+        "wrongly; compile with gcc or clang, or leave DEM_REAL at double";
 #endif
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
         "choose, below 0 means no skin";
