@@ -9498,7 +9498,8 @@ static int demi_wall_vacant(const dem_world *w) {
 /* The id of the next wall in this place. */
 static dem_wall demi_wall_next(const dem_world *w, int place) {
     dem_wall id;
-    id.id = place < w->wall_count ? w->walls[place].id + DEMI_WALLS_MOST : place + 1;
+    id.id = place < w->wall_count && w->walls[place].id ? w->walls[place].id + DEMI_WALLS_MOST
+                                                        : place + 1;
     return id;
 }
 /* Takes over a prepared wall (its arrays included) or frees it. */
@@ -22086,29 +22087,28 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
     to->user = from->user;
     return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
 }
-/* The place that three numbers from 0 to 1 name. 0: not of the region. */
-static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
+/* True if the centre x, whose place in the box is u (0 to 1 on each axis), is in the region. */
+static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, dem_real radius) {
     double round = 0;
     int k;
     for (k = 0; k < 3; k++)
         if (g->cylinder && g->cylinder != 1 + k) round += (2*u[k] - 1)*(2*u[k] - 1);
-    if (round > 1) return 0;
+    return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
+}
+/* The place that three numbers from 0 to 1 name. 0: not of the region. */
+static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
     *x = demi_v(g->lo.x + (dem_real)(g->size[0]*u[0]), g->lo.y + (dem_real)(g->size[1]*u[1]),
                 g->lo.z + (dem_real)(g->size[2]*u[2]));
-    return !g->inside || g->inside(*x, radius, g->user);
+    return demi_region_keeps(g, u, *x, radius);
 }
-/* True if the centre x, which is in the box, is in the region. */
+/* The same for a centre that is in the box. */
 static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
-    double round = 0, at[3];
+    const dem_vec3 off = demi_sub(x, g->lo);
+    const double at[3] = {(double)off.x, (double)off.y, (double)off.z};
+    double u[3];
     int k;
-    at[0] = (double)(x.x - g->lo.x);
-    at[1] = (double)(x.y - g->lo.y);
-    at[2] = (double)(x.z - g->lo.z);
-    for (k = 0; k < 3; k++) {
-        const double half = g->size[k]/2, off = half > 0 ? (at[k] - half)/half : 0;
-        if (g->cylinder && g->cylinder != 1 + k) round += off*off;
-    }
-    return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
+    for (k = 0; k < 3; k++) u[k] = g->size[k] > 0 ? at[k]/g->size[k] : 0.5;
+    return demi_region_keeps(g, u, x, radius);
 }
 
 /* Begins a crowd with the bodies that spheres of this radius in the region could overlap; one look
@@ -22264,11 +22264,19 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
     }
     return count;
 }
-static int demi_cylinder_refuse(dem_world *w, const char *call, const dem_region *region) {
-    if (!region->cylinder || (region->cylinder >= 'x' && region->cylinder <= 'z')) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z' (the "
-              "axis of the cylinder), or 0 for the whole box", call, region->cylinder);
-    return 1;
+/* Where centres of spheres of this radius may be. 0 with an error message for a cylinder along no
+   axis, and for a box that is not finite or too small. */
+static int demi_region_check(dem_world *w, const char *call, const dem_region *region,
+                             dem_real radius, demi_region *g) {
+    if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z'))
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
+                  "axis of the cylinder, or 0 for the whole box", call, region->cylinder);
+    else if (!demi_place(region->box.lo) || !demi_place(region->box.hi) ||
+             !demi_region_make(w, region, (double)radius, g))
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
+                  "give lo below hi by at least a diameter", call, (double)radius);
+    else return 1;
+    return 0;
 }
 /* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
    radius; or with spheres of these radii, the largest first. */
@@ -22289,13 +22297,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
                  : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
                    demi_walls_strange(w, call, shape)) return 0;
-    if (demi_cylinder_refuse(w, call, region)) return 0;
-    if (!demi_place(region->box.lo) || !demi_place(region->box.hi) ||
-        !demi_region_make(w, region, (double)radius, &g)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
-                  "give lo below hi by at least a diameter", call, (double)radius);
-        return 0;
-    }
+    if (!demi_region_check(w, call, region, radius, &g)) return 0;
     /* centres of the smallest are anywhere in there */
     if (radii) demi_region_make(w, region, count ? (double)radii[count - 1] : 0, &g);
     done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
@@ -22402,9 +22404,9 @@ static double demi_lattice_places(const dem_world *w, const demi_lattice *g) {
     const double rows = g->size[1]/(g->r*sqrt(3.0)) + 1, layers = g->size[2]/(g->r*1.633) + 1;
     return (g->size[0]/(2*g->r) + 1)*rows*(w->desc.planar ? 1 : layers);
 }
-/* A lattice in a box. 0: not one place. */
-static int demi_lattice_make(const dem_world *w, const dem_region *region, dem_real radius,
-                             dem_real padding, demi_region *room, demi_lattice *g) {
+/* A lattice in the room that centres have. 0: a period is shorter than its pitch. */
+static int demi_lattice_make(const dem_world *w, const demi_region *room, dem_real radius,
+                             dem_real padding, demi_lattice *g) {
     const demi_periods p = demi_periods_of(w);
     dem_real lo[3];
     int k;
@@ -22412,7 +22414,6 @@ static int demi_lattice_make(const dem_world *w, const dem_region *region, dem_r
     g->r = (double)radius + (double)padding/2;
     g->radius = radius;
     g->room = room;
-    if (!demi_region_make(w, region, (double)radius, room)) return 0;
     demi_put(lo, room->lo);
     for (k = 0; k < 3; k++) {                   /* round a period, the last keeps off the first */
         const int full = p.period[k] > 0 && room->size[k] >= (double)p.period[k];
@@ -22434,16 +22435,18 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
         return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
-        count < 0 || !demi_place(region.box.lo) || !demi_place(region.box.hi)) {
+        count < 0) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m, padding is %g m, count is %d; the "
-                  "radius must be > 0, padding and count >= 0, and the box finite", call,
-                  (double)radius, (double)padding, count);
+                  "radius must be > 0, padding and count >= 0", call, (double)radius,
+                  (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, call, m, radius, 0) || demi_cylinder_refuse(w, call, &region)) return 0;
-    if (!demi_lattice_make(w, &region, radius, padding, &room, &g)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
-                  "give lo below hi by at least a diameter", call, (double)radius);
+    if (demi_mass_refuse(w, call, m, radius, 0) ||
+        !demi_region_check(w, call, &region, radius, &room)) return 0;
+    if (!demi_lattice_make(w, &room, radius, padding, &g)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a period is shorter than one sphere of radius %g m "
+                  "with its padding of %g m; lengthen the domain", call, (double)radius,
+                  (double)padding);
         return 0;
     }
     g.count = count;
@@ -30057,8 +30060,16 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                                          "exists there; read before you remove it", path,
                                          (int)w->walls[i].id);
                 }
-                if (part == DEMI_PART_WALLS && k == 1 && gone)
-                    memcpy(&twin->walls[i].id, there, sizeof twin->walls[i].id);
+                if (part == DEMI_PART_WALLS && k == 1 && gone) {
+                    dem_wall last;                      /* ids go on from the later of the two */
+                    memcpy(&last.id, there, sizeof last.id);
+                    if (last.id < 1 || demi_wall_place(last) != i)
+                        return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: the "
+                                         "removed wall in place %d has the id %d, which names "
+                                         "another place; the file is damaged: use another copy or "
+                                         "an older checkpoint", path, i + 1, (int)last.id);
+                    twin->walls[i].id = DEMI_MAX(last.id, w->walls[i].id);
+                }
                 if (gone || !memcmp(here, there, r->size)) continue;
                 if (part == DEMI_PART_PAIRS)
                     snprintf(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
@@ -32147,10 +32158,14 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     if (demi_impulsive(w)) {
         fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
                 "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
-                "tolerance, in the last of them %d contacts were at their friction limit\n",
+                "tolerance",
                 w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
                 w->margin.reach, w->booked.sweeps, w->booked.residual,
-                (unsigned long long)w->booked.unsolved, w->solver.limited);
+                (unsigned long long)w->booked.unsolved);
+        if (w->solver.limited)
+            fprintf(out, "; in the last of them %d contacts were at their friction limit",
+                    w->solver.limited);
+        fputc('\n', out);
         return;
     }
     if (w->desc.law) {

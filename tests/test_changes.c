@@ -745,6 +745,27 @@ int main(int argc, char **argv) {
         remove(saved);
         remove(page);
     }
+    TEST("ids of walls go on from the later of checkpoint and world, and an id of another place is rejected") {
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_material m;
+            dem_body ball;
+            dem_world *world = slid_world(0, &m, &ball, 0), *other;
+            dem_wall late;
+            dem_wall_remove(world, dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1)));
+            if (k) world->walls[0].id = 7;
+            CHECK_EQ(dem_checkpoint_write(world, saved), DEM_OK);
+            other = slid_world(0, &m, &ball, 0);
+            dem_wall_remove(other, dem_wall_plane_add(other, m, at(0, 0, 0), at(0, 0, 1)));
+            late = dem_wall_plane_add(other, m, at(0, 0, 0), at(0, 0, 1));
+            CHECK_EQ(dem_checkpoint_read(other, saved), k ? DEM_ERROR_FORMAT : DEM_OK);
+            if (k) CHECK_STR(dem_world_error_get(other), "place 1 has the id 7");
+            else CHECK(dem_wall_plane_add(other, m, at(0, 0, 0), at(0, 0, 1)).id > late.id);
+            dem_world_destroy(other);
+            dem_world_destroy(world);
+        }
+        remove(saved);
+    }
     TEST("a user function (law, field, motion, region) that changes the world gets an error and changes no bit") {
         int from, response;
         for (response = 0; response < 2; response++)
