@@ -11739,10 +11739,25 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int 
             *sticks |= p->friction_static > p->friction;
         }
 }
-/* m: the farthest that a law is asked about any two, the largest of this radius. */
+/* Do impulses choose how far they look ahead? Their reach follows the speeds, so that no scene may
+   be refused because of it. */
+static int demi_reach_free(const dem_world *w) {
+    return demi_impulsive(w) && !(w->desc.law_range > 0);
+}
+/* m: the farthest that a law is asked about any two, the largest of this radius. Impulses look
+   ahead three steps of the fastest body, at most a radius, and no farther than a short period
+   has room for: there they see a fast partner later. */
 static double demi_reach_of(const dem_world *w, double radius) {
-    if (demi_impulsive(w) && !(w->desc.law_range > 0))
-        return DEMI_MAX(0.1*radius, DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius));
+    if (demi_reach_free(w)) {
+        const demi_periods p = demi_periods_of(w);
+        double seen = DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius);
+        int k;
+        for (k = 0; k < 3; k++) {
+            const double room = (double)p.period[k]/2 - 2*radius - DEMI_MAX((double)w->desc.skin, 0);
+            if (p.period[k] > 0) seen = DEMI_MIN(seen, 0.8*room);
+        }
+        return DEMI_MAX(0.1*radius, seen);
+    }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
@@ -11873,7 +11888,8 @@ static int demi_crowd_refuse(dem_world *w) {
    says so when one ends too near. */
 static int demi_walls_end(dem_world *w, const char *call) {
     const demi_periods p = demi_periods_of(w);
-    const dem_real need = w->effects.radius_max*DEM_R(0.999) + (dem_real)w->margin.reach;
+    const double reach = demi_reach_free(w) ? 0 : w->margin.reach;
+    const dem_real need = w->effects.radius_max*DEM_R(0.999) + (dem_real)reach;
     int j, k;
     for (j = 0; j < w->wall_count; j++)
         for (k = 0; k < 3; k++) {
@@ -11887,8 +11903,8 @@ static int demi_walls_end(dem_world *w, const char *call) {
                       "repeat; extend it by %g m (the largest radius%s) beyond the faces at %g "
                       "and %g m, or make it no longer than the period", call, (int)wall->id,
                       (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
-                      (double)w->effects.radius_max + w->margin.reach, w->margin.reach > 0
-                      ? " and the law's range" : "", (double)lo, (double)hi);
+                      (double)w->effects.radius_max + reach, reach > 0 ? " and the law's range"
+                      : "", (double)lo, (double)hi);
             return 1;
         }
     return 0;
@@ -24037,10 +24053,13 @@ typedef struct demi_probe {
     double x[3];                   /* m, where the surface was when its motion began */
     int odd, turn;                 /* crossings: is their number odd; sum of their directions */
     int feed;                      /* 0: a grain; else a place of this feed's region */
+    int owner;                     /* its images have the same */
 } demi_probe;
 typedef struct demi_probes {
     demi_probe *at;                /* in the order of y: those near the surface */
     int count, grains, places;     /* of these; of grains that can move and feeds' places in all */
+    int owners;
+    char *seen;                    /* for each owner: has an image of it been counted */
 } demi_probes;
 enum { DEMI_FEED_PLACES = 64 };    /* places by which a feed's region is known */
 
@@ -24078,8 +24097,14 @@ static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi
         memcpy(to->x, c, sizeof c);
         to->odd = to->turn = 0;
         to->feed = feed;
+        to->owner = p->owners;
     }
+    p->owners++;
     return 1;
+}
+static void demi_probes_free(dem_world *w, demi_probes *p) {
+    demi_free(w, p->at);
+    demi_free(w, p->seen);
 }
 /* Grains and places of feeds that may be inside a surface in this box. 0 when memory ran out. */
 static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
@@ -24106,16 +24131,19 @@ static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
             ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
         }
     }
-    if (ok && p->count) qsort(p->at, (size_t)p->count, sizeof *p->at, demi_probe_compare);
-    return ok;
+    if (!ok || !p->count) return ok;
+    qsort(p->at, (size_t)p->count, sizeof *p->at, demi_probe_compare);
+    p->seen = (char *)demi_alloc(w, (size_t)p->owners, 1);
+    return p->seen != 0;
 }
 /* Are there probes on both sides? wall: a number; normals: 1 where its facets have any. */
 static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_probes *p, int wall,
                               int normals) {
     const char *name = demi_wall_kinds[w->walls[wall].kind].name, *way = "";
     int i, grains = 0, places = 0, feed = 0, turn = 0;
+    if (p->count) memset(p->seen, 0, (size_t)p->owners);
     for (i = 0; i < p->count; i++) {
-        if (!p->at[i].odd) continue;
+        if (!p->at[i].odd || p->seen[p->at[i].owner]++) continue;
         turn += p->at[i].turn > 0 ? 1 : -1;
         if (p->at[i].feed) { places++; feed = p->at[i].feed; } else grains++;
     }
@@ -24233,7 +24261,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
         }
     }
     demi_free(w, root);
-    demi_free(w, p.at);
+    demi_probes_free(w, &p);
     demi_join_free(w, &j);
 }
 /* A surface of revolution is closed where it ends on its axis, or where it began. */
@@ -24265,7 +24293,7 @@ static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
         }
         demi_probes_judge(w, f, &p, wall, 0);
     }
-    demi_free(w, p.at);
+    demi_probes_free(w, &p);
 }
 static void demi_check_enclosed(dem_world *w, demi_findings *f) {
     int i, k, per;
