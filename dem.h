@@ -11753,7 +11753,8 @@ static double demi_reach_of(const dem_world *w, double radius) {
         double seen = DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius);
         int k;
         for (k = 0; k < 3; k++) {
-            const double room = (double)p.period[k]/2 - 2*radius - DEMI_MAX((double)w->desc.skin, 0);
+            const double skin = DEMI_MAX((double)w->desc.skin, 0);
+            const double room = (double)p.period[k]/2 - 2*radius - skin;
             if (p.period[k] > 0) seen = DEMI_MIN(seen, 0.8*room);
         }
         return DEMI_MAX(0.1*radius, seen);
