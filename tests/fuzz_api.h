@@ -42,7 +42,7 @@ typedef struct fuzz_avoid {
 static fuzz_avoid fuzz_avoids = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 static const char *fuzz_folder = "build/tmp";  /* for files */
 
-enum { FUZZ_CALLS = 64, FUZZ_BYTES = 4*(FUZZ_CALLS + 1), FUZZ_CONTACTS = 4096 };
+enum { FUZZ_CALLS = 64, FUZZ_WALLS = 32, FUZZ_BYTES = 4*(FUZZ_CALLS + 1), FUZZ_CONTACTS = 4096 };
 
 /* ---- memory that counts and can refuse ---- */
 typedef struct fuzz_memory {
@@ -78,7 +78,8 @@ typedef struct fuzz_machine {
     fuzz_memory *memory;
     char name;                        /* 'A', 'B'; 'F': the fresh one */
     uint32_t desc_seed;
-    int materials, walls, shapes, feeds, outlets, fields, joints;  /* ids run from 1 */
+    int materials, shapes, feeds, outlets, fields, joints;         /* ids run from 1 */
+    int walls, wall[FUZZ_WALLS];                                   /* the last ids given */
     int impulses;                     /* contacts answer by them */
     int scene, bodies_gone, pairs_new;   /* scene: its version; what changed since the last step */
     int saved, saved_scene;           /* a file is there; the version it was written from */
@@ -136,7 +137,7 @@ static dem_material fuzz_material(fuzz_machine *m) {
 }
 static dem_wall fuzz_wall(fuzz_machine *m) {
     dem_wall id;
-    id.id = m->walls ? 1 + fuzz_below(m, m->walls) : 1;
+    id.id = m->walls ? m->wall[fuzz_below(m, m->walls)] : 1;
     return id;
 }
 static dem_body fuzz_body(fuzz_machine *m) {
@@ -493,7 +494,9 @@ static void fuzz_polygon(fuzz_machine *m) {
 
 /* ---- calls: walls ---- */
 static void fuzz_wall_new(fuzz_machine *m, dem_wall id) {
-    if (fuzz_id(m, id.id)) m->walls = id.id > m->walls ? id.id : m->walls;
+    if (!fuzz_id(m, id.id)) return;
+    if (m->walls == FUZZ_WALLS) memmove(m->wall, m->wall + 1, (size_t)--m->walls*sizeof *m->wall);
+    m->wall[m->walls++] = id.id;
 }
 static void fuzz_plane(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
@@ -1047,11 +1050,11 @@ static void fuzz_look_walls(fuzz_machine *m) {
         fuzz_note_int(m, (int)dem_joint_get(m->world, id, &s));
         fuzz_note(m, &s, sizeof s);
     }
-    for (i = 1; i <= m->walls; i++) {
+    for (i = 0; i < m->walls; i++) {
         dem_wall id;
         dem_wall_loads c;
         dem_pose p;
-        id.id = i;
+        id.id = m->wall[i];
         memset(&c, 0, sizeof c);
         memset(&p, 0, sizeof p);
         fuzz_note_int(m, (int)dem_wall_loads_get(m->world, id, &c));
