@@ -3394,7 +3394,9 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 1, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
-      DEMI_TILE = 4*DEMI_LANES,                 /* pairs under work at a time */
+      DEMI_TILE = 4*DEMI_LANES,                 /* pairs computed at a time */
+      DEMI_ROOM = DEMI_TILE + 16,                /* of a column of a tile: columns a power of two
+                                                   apart would compete for the same cache lines */
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
@@ -4679,28 +4681,28 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     const int two_k = demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0;
     struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
     int i;
-#define DEMI_ROW(k, field, good, text) \
+#define DEMI_GOOD(k, field, good, text) \
     rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
-    DEMI_ROW(0, density, d->density > 0, "> 0 kg/m3 (required)");
-    DEMI_ROW(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) &&
+    DEMI_GOOD(0, density, d->density > 0, "> 0 kg/m3 (required)");
+    DEMI_GOOD(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) &&
                                         DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
-    DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
-    DEMI_ROW(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
+    DEMI_GOOD(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
+    DEMI_GOOD(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
                                         DEMI_ABS(d->restitution) <= 0)) &&
              d->restitution <= 1, "> 0 and <= 1 (required; impulses: >= 0)");
-    DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
-    DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
+    DEMI_GOOD(4, friction, d->friction >= 0, ">= 0");
+    DEMI_GOOD(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
              d->friction_static >= d->friction,
              "0, or at least the sliding friction");
-    DEMI_ROW(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
-    DEMI_ROW(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
-    DEMI_ROW(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
-    DEMI_ROW(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
+    DEMI_GOOD(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
+    DEMI_GOOD(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
+    DEMI_GOOD(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
+    DEMI_GOOD(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
              (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
              "0, or at least the stiffness of loading, which must then be set (N/m)");
-    DEMI_ROW(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (the magnitude of the "
+    DEMI_GOOD(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (the magnitude of the "
              "slope)");
-#undef DEMI_ROW
+#undef DEMI_GOOD
     for (i = 0; i < 11; i++) {
         const double most = (i >= 4 && i <= 6) || i == 8 ? DEMI_MOST_RATIO : DEMI_MOST;
         if (!rows[i].ok || !((double)rows[i].value <= most))
@@ -13074,16 +13076,14 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
    are done, in the order of the list. So every body's sum has one order whatever the number of
    threads.
    --------------------------------------------------------------------------------------------- */
-/* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
-   room to spare so that rows do not lie a power of two apart, which caches take badly. */
-enum { DEMI_ROW = DEMI_TILE + 16 };
+/* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. */
 /* What is copied one by one. For gcc with x and y side by side, which one instruction moves (5 % of
    a step in single precision, 2 in double); clang takes such rows apart badly. */
 #if defined(__GNUC__) && !defined(__clang__)
-typedef struct demi_rows { dem_real xy[DEMI_ROW][2], z[DEMI_ROW]; } demi_rows;
+typedef struct demi_rows { dem_real xy[DEMI_ROOM][2], z[DEMI_ROOM]; } demi_rows;
 #define DEMI_XY(rows, e, q) (rows)->xy[q][e]
 #else
-typedef struct demi_rows { dem_real xy[2][DEMI_ROW], z[DEMI_ROW]; } demi_rows;
+typedef struct demi_rows { dem_real xy[2][DEMI_ROOM], z[DEMI_ROOM]; } demi_rows;
 #define DEMI_XY(rows, e, q) (rows)->xy[e][q]
 #endif
 typedef struct demi_tile {
@@ -13093,25 +13093,25 @@ typedef struct demi_tile {
     demi_rows late;                /* m/s, difference of what predictions fell short by: ledger */
     demi_rows around, turned;      /* rad/s, sum of spins: the same */
     demi_rows apart, parted;       /* rad/s, difference of spins: the same */
-    dem_real radius[2][DEMI_ROW];
-    dem_real memory[DEMI_MEMORY + 1][DEMI_ROW];           /* the last: where sliding is not kept */
-    dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
+    dem_real radius[2][DEMI_ROOM];
+    dem_real memory[DEMI_MEMORY + 1][DEMI_ROOM];           /* the last: where sliding is not kept */
+    dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROOM];
     /* touch and motion */
-    dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
-    dem_real touch[DEMI_ROW];      /* 1 where the two touch, or are within a law's range; else 0 */
-    dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
-    dem_real slip[3][DEMI_ROW], slip_step[3][DEMI_ROW];   /* m/s */
-    dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
-    dem_real closing[DEMI_ROW], twist[DEMI_ROW];
+    dem_real length[DEMI_ROOM], over_d[DEMI_ROOM], overlap[DEMI_ROOM], deep[DEMI_ROOM];
+    dem_real touch[DEMI_ROOM];      /* 1 where the two touch, or are within a law's range; else 0 */
+    dem_real normal[3][DEMI_ROOM], turn[3][DEMI_ROOM];      /* unit, 1/s */
+    dem_real slip[3][DEMI_ROOM], slip_step[3][DEMI_ROOM];   /* m/s */
+    dem_real lean[DEMI_ROOM];       /* m, from the middle to the contact, towards b */
+    dem_real closing[DEMI_ROOM], twist[DEMI_ROOM];
     /* laws: what each leaves for the next (see dem_contact_force), what does not touch included */
-    dem_real repulsion[DEMI_ROW], load[DEMI_ROW], slope[2][DEMI_ROW], kt[2][DEMI_ROW];
-    dem_real ct[DEMI_ROW], tangent[3][DEMI_ROW], moment[3][DEMI_ROW];
-    dem_real part[7][DEMI_ROW];                           /* energies */
+    dem_real repulsion[DEMI_ROOM], load[DEMI_ROOM], slope[2][DEMI_ROOM], kt[2][DEMI_ROOM];
+    dem_real ct[DEMI_ROOM], tangent[3][DEMI_ROOM], moment[3][DEMI_ROOM];
+    dem_real part[7][DEMI_ROOM];                           /* energies */
     /* answer */
-    dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* torque on a, on b */
+    dem_real force[3][DEMI_ROOM], torque[2][3][DEMI_ROOM];  /* torque on a, on b */
     /* the last, so that rows begin on cache lines (3 % of a step) */
     int row;                       /* of species_coef: all of coef holds it; -1: no row does */
-    dem_real gains[DEMI_ROW][2*DEM_BODY_REALS];   /* 1/s, of the user's numbers */
+    dem_real gains[DEMI_ROOM][2*DEM_BODY_REALS];   /* 1/s, of the user's numbers */
 } demi_tile;
 /* Where the pairs of a tile stand in the near list. */
 typedef struct demi_span {
@@ -13148,10 +13148,10 @@ static void demi_span_coefs(const dem_world *w, const demi_span *s, int q, dem_r
             : w->species_coef[DEMI_PAIR_COLUMNS*row + e];
 }
 
-DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
+DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROOM], int q) {
     return demi_v(rows[0][q], rows[1][q], rows[2][q]);
 }
-DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROW], int q, dem_vec3 v) {
+DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROOM], int q, dem_vec3 v) {
     rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
 }
 /* count: whole groups */
@@ -18322,13 +18322,13 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rate
 typedef struct demi_kept_tile {
     demi_rows arm[2], mid[2];      /* m, of a and b: now, in the middle of the step */
     demi_rows spin[2], spun[2];    /* rad/s, of a and b: the same */
-    dem_real share[DEMI_ROW], grip[DEMI_ROW], lift[DEMI_ROW];      /* lift: less share */
-    dem_real still[DEMI_ROW];      /* N, the elastic force, where any is lifted */
-    dem_real couple[DEMI_ROW], outset[DEMI_ROW];                   /* outset: 1 less inset */
-    dem_real root[2][DEMI_ROW];
+    dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: less share */
+    dem_real still[DEMI_ROOM];      /* N, the elastic force, where any is lifted */
+    dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 less inset */
+    dem_real root[2][DEMI_ROOM];
     /* where bodies are no spheres: of a and b, what follows from them for 1/m_eff */
     demi_rows felt[2];             /* m; 0: nothing turns */
-    dem_real q[2][4][DEMI_ROW], I[2][3][DEMI_ROW], inv[2][DEMI_ROW];
+    dem_real q[2][4][DEMI_ROOM], I[2][3][DEMI_ROOM], inv[2][DEMI_ROOM];
     /* the others: here, so that all rows begin on cache lines */
     demi_tile rows;
     demi_kept *contact[DEMI_TILE];
@@ -18439,7 +18439,7 @@ static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     for (k = 0; k < (int)(sizeof rows/sizeof *rows); k++)
         for (e = 0; e < counts[k]; e++)
             for (q = last + 1; q < full; q++)
-                rows[k][e*DEMI_ROW + q] = rows[k][e*DEMI_ROW + last];
+                rows[k][e*DEMI_ROOM + q] = rows[k][e*DEMI_ROOM + last];
     for (k = 0; k < (int)(sizeof triples/sizeof *triples) - (t->shaped ? 0 : 2); k++)
         for (q = last + 1; q < full; q++)
             demi_rows_put(triples[k], q, demi_rows_at(triples[k], last));
@@ -19133,10 +19133,10 @@ DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
 
 /* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
 typedef struct demi_turning {
-    dem_real q[4][DEMI_ROW], L[3][DEMI_ROW], T[3][DEMI_ROW], I[4][DEMI_ROW];
-    dem_real half[3][DEMI_ROW], spin[3][DEMI_ROW];
-    dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the moment_arm's end */
-    dem_real rate2[DEMI_ROW];                            /* (rad/s)^2 */
+    dem_real q[4][DEMI_ROOM], L[3][DEMI_ROOM], T[3][DEMI_ROOM], I[4][DEMI_ROOM];
+    dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
+    dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the moment_arm's end */
+    dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
 } demi_turning;
 /* One body of the tile: kicks L by T kick, flies for dt, and says what a law will see, with L + T
    after, and how fast it was. */
