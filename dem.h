@@ -409,7 +409,7 @@
    An id (dem_body, dem_wall, ...) stays valid until its object is removed. Ids are never reused: a
    new body in the same slot has another generation. All-zero ids name nothing. Indices into the
    arrays of dem_bodies_get change whenever bodies are sorted; ids do not. All memory comes from
-   desc.allocator. A step allocates nothing once a run is warm, unless more grains come together
+   desc.allocator. After its first steps a run allocates nothing, unless more grains come together
    than before.
 
    A function that can fail returns a dem_result, a null id or a null pointer, and stores one
@@ -426,10 +426,10 @@
 
    Laws, force fields, motions, regions, progress functions and observers may call every function
    that takes the world as const. Calls that change the world fail there and leave it as it is; make
-   them after the call has returned. Progress functions, functions given to dem_contacts_each and
-   functions that compute a value of a CSV output may also write files and replay frames. The
-   function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
-   Laws, force fields and body_reals_fn are called from several threads.
+   them between runs. Progress functions, functions given to dem_contacts_each and functions that
+   compute a value of a CSV output may also write files and replay frames. The function of an output
+   of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it. Laws, force fields and
+   body_reals_fn are called from several threads.
 
    The same program and input give the same bits for any number of threads: bodies are divided into
    work groups by their number only, and every sum has a fixed order. Compile with -ffp-contract=off
@@ -830,7 +830,8 @@ typedef enum dem_overlap {
     /* l (1 - W0), where l is the sum of the radii of spheres of equal volume. The force is the
        gradient of an energy, so built-in laws conserve energy. */
     DEM_OVERLAP_CONSERVATIVE = 0,
-    /* [RUB15] section 3.2: the length of the line V2 V3 inside both ellipsoids */
+    /* [RUB15] section 3.2: the length inside both ellipsoids of a line through the contact point,
+       there V2 V3 (docs/theory_surfaces.md) */
     DEM_OVERLAP_CHORD,
     /* (hA + hB)(1 - W0), along the normal */
     DEM_OVERLAP_NORMAL
@@ -1031,9 +1032,9 @@ DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
    tests/test_laws.c checks all of them: springs are of second order in the time step, user-defined
    laws that call built-in laws get the same bits, and every accepted time step is stable. */
 
-/* Computes the load for friction and removes a dashpot's attraction, for normal laws: they set
-   f->elastic and f->normal first. Without tension (CLIPPED, COMPENSATED) f->normal is raised to 0,
-   or to the elastic force if that attracts. The load is that of c->friction_load, at least 0;
+/* Computes the load for friction and removes a dashpot's attraction. A normal law calls it after it
+   has set f->elastic and f->normal. Without tension (CLIPPED, COMPENSATED) f->normal is raised to
+   0, or to the elastic force if that attracts. The load is that of c->friction_load, at least 0;
    without tension it is always the whole normal force.
    hold: N, >= 0, adhesion that adds to the load (not with DEM_LOAD_MAGNITUDE); 0: none. */
 DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_real hold) {
@@ -1354,7 +1355,8 @@ typedef struct dem_world_desc {
     /* -- gravity and domain -- */
     dem_vec3 gravity;              /* m/s2 */
     /* m. Required on axes whose boundary is periodic or outflow, not needed on open axes. A
-       periodic axis must be at least as long as four of the largest radii and two skins. */
+       periodic axis must be at least as long as four of the largest radii, two skins and two
+       ranges of the law. */
     dem_box domain;
     dem_boundary boundary[3];      /* of the axes x, y and z */
     /* 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0
@@ -1422,8 +1424,9 @@ typedef struct dem_world_desc {
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved; 0 means three times the distance that the fastest body moves in a step,
-       between 0.1 and 1 of the largest radius. The fields that follow apply to impulses only. */
+       solved; 0 means three times the distance that the fastest body moves in a step, or less
+       where a short period leaves no room, but always between 0.1 and 1 of the largest radius.
+       The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
     dem_solver solver;
@@ -1913,7 +1916,7 @@ typedef struct dem_motion {
     dem_vec3 point, axis;
     dem_real speed;                /* rad/s */
     dem_real amplitude, frequency, phase;  /* m, Hz, rad */
-    /* s. Before it rotating and translating walls are at rest. A time in the past means now. */
+    /* s. Until then rotating and translating walls are at rest. A time in the past means now. */
     double start;
     dem_motion_fn function;        /* DEM_MOTION_USER */
     void *user;                    /* passed to function */
@@ -2070,10 +2073,10 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
 /* ---- joints ---- */
 /* Joints connect a body to another body, to a wall or to space. They need DEM_RESPONSE_IMPULSES and
    DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints are solved together by a
-   direct method; those of closed loops have a softness of 1e-6. The joined points and axes coincide
-   in the middle of the next step, where contacts are found, too. Impulses of joints never add
-   energy, for any number of sweeps (docs/impulses.md). Two bodies that are joined have no contact
-   with each other unless `collide` is 1. */
+   direct method; those of closed loops have a softness of 1e-6 of the inverse effective mass. The
+   joined points and axes coincide in the middle of the next step, where contacts are found, too.
+   Impulses of joints never add energy, for any number of sweeps (docs/impulses.md). Two bodies that
+   are joined have no contact with each other unless `collide` is 1. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
     DEM_JOINT_POINT,               /* a ball joint: keeps `point` of both together */
@@ -2137,7 +2140,7 @@ typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* 
 /* A feed adds grains while the world runs, at random free positions in a region (free as in
    dem_spheres_fill), at a rate or all at once. A grain for which there is no room waits; none is
    lost. Most grains join the present neighbour list. The list is rebuilt for the first grain of a
-   radius or material, and for every grain if the world has bodies that are not spheres. */
+   new radius or material, and for every grain if the world has bodies that are not spheres. */
 typedef struct dem_feed_desc {
     dem_material material;         /* required */
     int class_count;               /* required, 1 to 16: size classes */
@@ -2301,8 +2304,8 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
    message names that step; the steps before it are kept. The first step is not taken while the
    error message of a call that builds the scene is unread (dem_world_error_get). Errors:
        DEM_ERROR_TIME_STEP  the step is too large for the contacts, or a body or wall would move by
-                            more than the smallest radius (impulses: a body also by more than half
-                            the range below which contacts are solved)
+                            more than the smallest radius (a body under impulses: by more than this
+                            and more than half the range below which contacts are solved)
        DEM_ERROR_UNSTABLE   a position, velocity or force is not finite, or two bodies overlap by
                             the smaller radius
        DEM_ERROR_STOPPED    an output stopped the run; or desc.unsolved_stops is 1 and the sweeps of
