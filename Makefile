@@ -19,11 +19,11 @@ DESTDIR      ?=
 JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
 # ---- what there is ----
+ROOMS    := src/dem.h $(wildcard src/*/*.h)
+FOLDERS  := $(filter-out api,$(shell sed -n 's/^\#include "\([a-z]*\)\/.*/\1/p' src/dem.h | uniq))
 HARD     := $(patsubst tests/hard/%.c,build/%,$(wildcard tests/hard/hard_*.c))
-TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c)) $(HARD)
-# these set macros of dem.h before they include it; all others are compiled as one program
-ALONE    := $(addprefix build/,test_api test_feed test_own_law)
-TOGETHER := $(filter-out $(ALONE),$(TESTS))
+TEST_C   := $(wildcard tests/*/test_*.c)
+TESTS    := $(patsubst %.c,build/%,$(notdir $(TEST_C))) $(HARD)
 LESSONS  := $(patsubst examples/%.c,build/%,$(wildcard examples/[0-9][0-9]_*.c))
 # examples of shipped laws and of files: they run without options and check themselves
 SHOWS    := $(addprefix build/,wet_sand heat rock hopper)
@@ -36,8 +36,8 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
-ifneq ($(filter-out help new clean tags english pages-check parts recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
-$(shell mkdir -p build/tmp)
+ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+$(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
         $(CC) $$f build/probe.c -o build/probe >build/probe.log 2>&1 && test ! -s build/probe.log && echo $$f; done)
@@ -60,7 +60,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english pages-check parts recipes snippets clean
+.PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -79,12 +79,22 @@ new: ## NAME=my puts a small program with comments into my.c, and says how to bu
 install: ## dem.h, a library of dem.c, and files for pkg-config and CMake into PREFIX (/usr/local)
 	@sh tests/install.sh "$(DESTDIR)$(PREFIX)" "$(PREFIX)" "$(CC)" "$(OMP)"
 
-test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sentences that contain them
-	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(TOGETHER:build/%=build/tests@%) $(ALONE)
+dem.h: $(ROOMS) src/join.awk ## join the rooms in src/ to dem.h, in the order of src/dem.h, if they compile
+	@mkdir -p build
+	@if test -f build/joined.h && test -f $@ && ! cmp -s build/joined.h $@; then awk -f src/join.awk src/dem.h | cmp -s - $@ || { \
+	    echo "dem.h was changed itself: make rooms puts the change into src/; rm build/joined.h gives it up"; exit 1; }; fi
+	@! command -v $(CC) >/dev/null || $(CC) $(CPPFLAGS) -DDEM_IMPLEMENTATION -x c -fsyntax-only src/dem.h
+	@awk -f src/join.awk src/dem.h > build/joined.new && mv build/joined.new build/joined.h
+	@cmp -s build/joined.h $@ || cp build/joined.h $@; touch $@
 
-hard: build/tests ## the long form of the hard cases, over an hour: counts cases and impacts; FILTER=words as in test
-	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $(HARD:build/%=build/tests@%) build/tests@test_facets \
-	    build/tests@test_sieve build/tests@test_bonds > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
+rooms: ## put a change that was made in dem.h itself into the rooms in src/
+	@awk -v to=src -f src/split.awk src/dem.h dem.h
+
+test: $(TESTS) ## build and run all tests; FILTER=words runs the sentences that contain them, OF=contact those in tests/contact
+	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(if $(OF),$(patsubst %.c,build/%,$(notdir $(wildcard tests/$(OF)/*.c))),$(TESTS))
+
+hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## the long form of the hard cases, over an hour: counts cases and impacts; FILTER=words as in test
+	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $^ > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
 
 law: $(if $(LAW),build/dem.o,build/exam) ## the exam of a contact law, LAW=path/to/my_law.h, with a page of its curves; without LAW of the built-in ones
 	@mkdir -p build/out/exam
@@ -120,7 +130,7 @@ mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, whe
 	        grep '^hash' build/mill_mpi.$$n; done; cmp build/out/mill_mpi_1/grains.svg build/out/mill_mpi_2/grains.svg; \
 	    test "$$(grep '^hash' build/mill_mpi.1)" = "$$(grep '^hash' build/mill_mpi.2)"; fi
 
-all: $(STUDIES) $(LESSONS) $(SHOWS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
+all: $(STUDIES) $(LESSONS) $(SHOWS) $(TESTS) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
 
 check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
@@ -164,7 +174,8 @@ readers: build/write_files ## write every file format and open it with VTK and A
 	@$(PYTHON) tests/read_vtk.py build/out/readers
 	@$(PYTHON) tests/read_xyz.py build/out/readers
 
-tags: ## every part named in dem.h's contents stands there once and in order; parts and functions keep their limits
+tags: ## dem.h is what src/ says; every part of its contents is in its place; parts and functions keep their limits
+	@awk -f src/join.awk src/dem.h | cmp - dem.h
 	@awk -f tests/tags.awk dem.h
 	@$(MAKE) --no-print-directory english
 
@@ -174,17 +185,14 @@ english: ## sentences of pages, public comments, error messages and test names t
 web: ## the browser lesson: build/web/lesson.html, dem.h in WebAssembly with sliders, and the same as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77
 
-viewer: ## put examples/replay/viewer.html into dem.h
-	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html dem.h > build/viewer.h && cp build/viewer.h dem.h
+viewer: ## put examples/replay/viewer.html into src/replay/viewer.h
+	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html src/replay/viewer.h > build/viewer.h && cp build/viewer.h src/replay/viewer.h
 
 browser: build/write_replays ## play replays in a headless chromium: frames, pixels, no errors
 	@sh tests/browser.sh
 
 recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use what they add
 	@CC="$(CC)" sh tests/recipes.sh
-
-parts: ## cut dem.h into its parts, for reading: build/parts/01-manual.h ...
-	@rm -rf build/parts && mkdir -p build/parts && awk -v out=build/parts -f tests/tags.awk dem.h && ls build/parts
 
 snippets: build/dem.o ## compile the programs in dem.h's manual and in the pages; run those of docs/how_to*.md and compare what they print
 	@rm -rf build/snippets && mkdir -p build/snippets/examples/data && cp examples/data/hopper.stl build/snippets/examples/data
@@ -200,30 +208,43 @@ snippets: build/dem.o ## compile the programs in dem.h's manual and in the pages
 clean: ## remove build/
 	rm -rf build
 
-# ---- how a program is built: tests and benches with dem.h in them, whose inside they look at; all others
-# with dem.c, which is compiled once ----
+# ---- how a program is built: programs with dem.c, which is compiled once; benches, which look inside, with dem.h in
+# them; tests with the rooms of dem.h as separate objects, all of whose functions are visible (src/open.sh), so that
+# after an edit only its folder is compiled again ----
 # examples/*.h are companions of dem.h (moldyn.h, tumbler.h, ...), which tests and benches include, too
 HEADERS := $(wildcard examples/*.h)
-$(filter-out $(HARD),$(TESTS)): build/%: tests/%.c $(wildcard tests/*.h) $(HEADERS)
-$(HARD): build/%: tests/hard/%.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)
-SOURCES := $(patsubst build/%,tests/%.c,$(filter-out $(HARD),$(TOGETHER))) $(wildcard tests/hard/hard_*.c)
+ROOMS_O := $(FOLDERS:%=build/rooms/%.o)
+# -O3 takes three times as long to compile as -O2 and is for those that run long
+LEVEL    = $(if $(filter file,$(origin CFLAGS)),-O2)
+build/rooms/made: $(ROOMS) src/open.awk src/open.sh
+	@sh src/open.sh build/rooms && touch $@
+build/rooms/private.h $(FOLDERS:%=build/rooms/%.c): build/rooms/made ;
+$(ROOMS_O): build/rooms/%.o: build/rooms/%.c build/flags
+	$(COMPILE) $(LEVEL) $(OMP) -c -o $@ $<
+# two tests want many domains of few bodies
+build/rooms/small_%.o: build/rooms/%.c build/flags
+	$(COMPILE) $(LEVEL) $(OMP) -DDEM_DOMAIN_BODIES=16 -c -o $@ $<
+SMALL_O := $(patsubst %/search.o,%/small_search.o,$(patsubst %/file.o,%/small_file.o,$(ROOMS_O)))
 # a call of every public function, each argument bad in turn: made anew when dem.h is another
 tests/refused.h: tests/refused.awk dem.h
 	awk -f tests/refused.awk dem.h > $@
-build/tests build/test_refused: tests/refused.h
-
-build/tests.c: tests/together.awk $(SOURCES)
-	awk -f tests/together.awk $(SOURCES) > $@
-build/tests: build/tests.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)
+build/obj/test_refused.o: tests/refused.h
+OPEN = -include build/rooms/private.h
+build/obj/test_own_law.o: OPEN =                       # which has a law compiled into dem.h
+define TEST
+build/obj/$(2).o: $(1) $(wildcard tests/*.h) $(HEADERS) build/rooms/private.h build/flags
+	$$(COMPILE) $$(LEVEL) $$(OMP) $$(OPEN) -c -o $$@ $(1)
+build/$(2): build/obj/$(2).o $(if $(filter test_own_law,$(2)),,$(if $(filter test_api test_feed,$(2)),$(SMALL_O),$(ROOMS_O)))
+	$$(CC) -o $$@ $$^ $$(LINK)
+endef
+$(foreach t,$(TEST_C) $(wildcard tests/hard/hard_*.c),$(eval $(call TEST,$(t),$(basename $(notdir $(t))))))
 $(LESSONS) $(SHOWS) $(STUDIES): build/%: examples/%.c $(HEADERS)
 $(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
 build/write_replays: tests/write_replays.c
-# -O3 takes three times as long to compile as -O2 and is for those that run long
-build/tests $(TESTS): LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
-build/tests $(TESTS) $(BENCHES): dem.h build/flags
-	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
+$(BENCHES): dem.h build/flags
+	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 build/dem.o build/dem_run.o: dem.c dem.h build/flags
 	$(COMPILE) $(LTO) $(OMP) -c -o $@ dem.c
 $(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_replays: $(DEM_O)

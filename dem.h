@@ -11,31 +11,39 @@
        cc -O2 -c dem.c                        (add -fopenmp for threads)
        cc -O2 program.c dem.o -lm
 
-   Contents. Jump to a part by searching for its tag:
+   Contents. Search for a tag to jump to its part.
+     api/ - the public half: what programs include
        >>manual            guide: a complete program, the concepts in order, glossary, references
        >>api               results, vectors, ids, choices, contacts, the built-in contact laws
        >>scene             building a scene: worlds, materials, bodies, walls, joints, feeds
        >>run               running it: steps, measuring, files, replays, slabs, the report
-       >>implementation    private code from here on; users need not read it
+     >>implementation - private code from here on; users need not read it
+     core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
        >>maths             vectors, poses, random numbers
        >>layout            data structures of the world
        >>memory            arrays of each body, errors, allocation
+     law/ - contact laws and materials
        >>laws              table of the built-in contact laws and their coefficients
        >>materials         materials, the pair table, damping from restitution
+     body/ - shapes of grains, the grains, and how they move
        >>shapes            ellipsoids and clusters of spheres: mass properties, support points
        >>closed            inside and outside of a mesh: shells, open edges, flipped triangles
        >>hulls             convex polyhedra: hull of points, faces, mass properties
        >>unions            several shapes as one body; polygons of planar worlds
        >>bodies            grains: slots, arrays, insertion, removal
+       >>integrators       kick, drift and prediction; rotation
+     surface/ - walls
        >>facets            weights of the faces, edges and corners of a surface
        >>sheets            connected facets of a surface, their orientation and open edges
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+     search/ - which bodies may touch: from candidates to the pruned neighbour list
        >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
        >>lists             candidates on walls; persistent contacts carried over to new lists
        >>near              the pruned neighbour list that forces use
        >>rebuild           rebuilding lists: effects in force, skin, order of bodies, domains
+     contact/ - contacts and their forces, by shapes
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           sphere on sphere: contacts to forces and torques, by the law in force
        >>polyhedra         overlap of two polyhedra, or of one and a wall
@@ -47,21 +55,23 @@
        >>meets             contacts of two bodies, by their shapes
        >>kept              contacts other than sphere on sphere: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
-       >>integrators       kick, drift and prediction; rotation
+     impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
        >>joints            hinges, ball joints, motors
        >>joints-solved     all joints at once: trees, loops, the bound on their energy
        >>solvers           iterative solvers for impulses
        >>impulses-told     solved impulses to forces, contact history and energy losses
-       >>ledger            account of energy
+     scene/ - filling a scene: size distributions, fills, feeds
        >>sizes             size distributions: sieve curves, drawing of radii, classes
        >>placing           room for new grains: regions, random fills, packings
        >>feed              feeds and outlets
+     run/ - the step and what is measured in it
        >>advice            the time step: what is chosen and what is too large
-       >>check             likely mistakes in a scene, found before it runs
+       >>ledger            account of energy
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>step              one step after another
        >>measure           counters, contacts, angle of repose, the digest
+     file/ - reading and writing
        >>outlines          polygons with many corners cut into triangles
        >>read              reading meshes and profiles
        >>decompose         clusters of spheres that approximate a mesh
@@ -71,14 +81,18 @@
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>output            files and calls on a schedule
+     report/ - what a scene costs, what is wrong with it, what it did
+       >>check             likely mistakes in a scene, found before it runs
        >>trials            cost and accuracy of other choices, tried on copies of a scene
        >>effects           which effects are active, which never happened, what each costs
        >>world             creating and destroying a world; the report
+     slab/ - one scene on several threads or processes
        >>slabs             one scene on several threads or processes: data and messages
        >>slabs-step        one step of all slabs
        >>slabs-time        one time step for all slabs
        >>slabs-run         feeds into slabs; one step after another
        >>deal              distributing a world to slabs and collecting it again
+     replay/ - replays in a browser
        >>viewer            the page that plays a replay, from examples/replay/viewer.html
        >>replay            writing a replay, frame by frame
 */
@@ -541,14 +555,14 @@
      [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
 */
 
+#ifndef DEM_H
+#define DEM_H
+
 /* ---------------------------------------------------------------------------------------------
    >>api
    Types and constants that all other declarations use, and everything that a contact law needs: the
    contact it sees, the force it returns, and the built-in laws, which it may call.
    --------------------------------------------------------------------------------------------- */
-#ifndef DEM_H
-#define DEM_H
-
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -1029,7 +1043,7 @@ DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
    comments give its size (vectors first). Coefficients (kn, cn, kt, ct, ...) come with the contact.
    No law has a branch that depends on the contact, so that compilers can vectorise loops over
    contacts. docs/theory.md has the coefficients.
-   tests/test_laws.c checks all of them: springs are of second order in the time step, user-defined
+   tests/law/test_laws.c checks all of them: springs are of second order in the time step, user-defined
    laws that call built-in laws get the same bits, and every accepted time step is stable. */
 
 /* Computes the load for friction and removes a dashpot's attraction. A normal law calls it after it
@@ -1050,7 +1064,7 @@ DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_rea
 }
 /* The fraction of the step during which the two touched (were within the range): 1 unless the
    contact began in this step. The contact history grows by the displacement in this time.
-   Tests: tests/test_laws.c (tangential and rolling springs are integrated to second order). */
+   Tests: tests/law/test_laws.c (tangential and rolling springs are integrated to second order). */
 DEM_INLINE dem_real demi_law_share(const dem_contact *c) {
     const dem_real gone = c->closing_speed*c->dt;
     const dem_real in = c->range > 0 ? c->overlap + c->range : c->overlap;
@@ -1067,7 +1081,7 @@ DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
 /* The normal force of elastic spheres with a dashpot:
        F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92],  d: overlap, v: closing speed.
    The tangential coefficients are kt d^(1/2) [N/m] and ct d^(1/4) [N s/m]. No contact history.
-   Tests: tests/test_impacts.c, tests/test_analytic.c. */
+   Tests: tests/contact/test_impacts.c, tests/run/test_analytic.c. */
 DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real root = DEMI_SQRT(c->overlap), fourth = DEMI_SQRT(root);
     const dem_real middle = DEMI_SQRT(demi_law_middle(c));
@@ -1083,7 +1097,7 @@ DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_contac
     f->energy.elastic = f->elastic*c->overlap*2/5;
 }
 /* The normal force of a linear spring and dashpot: F = kn d + cn v. No contact history.
-   Tests: tests/test_impacts.c, tests/test_analytic.c. */
+   Tests: tests/contact/test_impacts.c, tests/run/test_analytic.c. */
 DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     f->elastic = c->kn*c->overlap;
@@ -1109,7 +1123,7 @@ DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_conta
    Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
    exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest
    oscillates there unless the pair has normal_damping (cn).
-   Contact history: 1 real, D [m]. Tests: tests/test_hysteresis.c. */
+   Contact history: 1 real, D [m]. Tests: tests/law/test_hysteresis.c. */
 DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real kn = c->kn, kun = c->kun, kad = c->kad, soft = kun - kn, before = memory[0];
     const dem_real loaded = c->overlap > before ? c->overlap : before;
@@ -1134,7 +1148,7 @@ DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_c
    if there is none) no longer opposes the slip.
    Returns the fraction of t that remains. Without the state of sliding the mean force of a slow
    slide would depend on dt: (friction + friction_static)/2 times the load as dt tends to 0.
-   Tests: tests/test_friction.c (steady slide). */
+   Tests: tests/law/test_friction.c (steady slide). */
 DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem_vec3 t,
                                  dem_vec3 spring) {
     const dem_real size = DEMI_SQRT(demi_dot(t, t)), cap = f->load*c->friction;
@@ -1154,14 +1168,14 @@ DEM_INLINE void demi_law_dashpot(const dem_contact *c, dem_contact_force *f, dem
     f->energy.slide = cut < 1 ? f->energy.shear_work : 0;
 }
 /* Friction of a dashpot: -ct v_t, limited by Coulomb's law; [MIL] 4.3. No contact history, so that
-   contacts creep under a tangential load. Tests: tests/test_friction.c. */
+   contacts creep under a tangential load. Tests: tests/law/test_friction.c. */
 DEM_INLINE void dem_law_viscous(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     demi_law_dashpot(c, f, f->ct);
 }
 /* Friction of a spring that is stretched for one step only, and a dashpot: -kt (v_t dt) - ct v_t,
-   limited by Coulomb's law; [MIL] 4.2. No contact history. Tests: tests/test_friction.c,
-   tests/test_analytic.c. */
+   limited by Coulomb's law; [MIL] 4.2. No contact history. Tests: tests/law/test_friction.c,
+   tests/run/test_analytic.c. */
 DEM_INLINE void dem_law_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     demi_law_dashpot(c, f, f->kt*c->dt + f->ct);
@@ -1187,7 +1201,7 @@ DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_contact_force *f, de
 /* Friction of a spring and a dashpot [CS79]: -kt s - ct v_t, limited by Coulomb's law, where s is
    the tangential displacement since the contact began, rotated with the contact plane. With Hertz's
    law kt follows the present overlap. Contact history: 3 reals, the vector s [m].
-   Tests: tests/test_impacts.c (oblique impacts), tests/test_friction.c, tests/test_laws.c. */
+   Tests: tests/contact/test_impacts.c (oblique impacts), tests/law/test_friction.c, tests/law/test_laws.c. */
 DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 v = c->slip;
     const dem_real kt = f->kt, ct = f->ct;
@@ -1220,7 +1234,7 @@ DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_c
    changes by -kt ds in a step. Differs from [DIR05] in kt: it is that of the overlap in the middle
    of the step, which makes the law of second order in dt.
    Contact history: 4 reals, the vector s [N] and kt of the last step [N/m].
-   Tests: tests/test_impacts.c, tests/test_laws.c (impacts of [THO13]). */
+   Tests: tests/contact/test_impacts.c, tests/law/test_laws.c (impacts of [THO13]). */
 DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     demi_law_increment(c, memory, f, f->kt_step, 1);
 }
@@ -1228,7 +1242,7 @@ DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_cont
    force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept.
    A change of the load of a sheared contact then creates no energy. Contact history as for
    dem_law_mindlin.
-   Tests: tests/test_impacts.c, tests/test_exam.c. */
+   Tests: tests/contact/test_impacts.c, tests/examples/test_exam.c. */
 DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
                                          dem_contact_force *f) {
     const dem_real kt = f->kt, before = memory[3];
@@ -1249,7 +1263,7 @@ DEM_INLINE dem_real demi_law_left(dem_real size, dem_real most) {
 }
 /* Rolling resistance of [MIL] 4.5: a moment mu_r R* min(F, |w|) against the relative spin w, with F
    in N and w in rad/s compared as printed there. It also acts on spin about the normal, and holds
-   nothing at rest. No contact history. Tests: tests/test_laws.c, tests/hard/hard_impacts.c. */
+   nothing at rest. No contact history. Tests: tests/law/test_laws.c, tests/hard/hard_impacts.c. */
 DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real size = demi_length(c->spin), least = f->load < size ? f->load : size;
     (void)memory;
@@ -1261,7 +1275,7 @@ DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_co
    moment is undefined: a spring acts in parallel with a dashpot behind the limit. It is as stiff as
    a step can resolve, kr = (0.3/dt)^2 I with I = 2/5 m* R*^2, and critically damped. It yields in
    proportion to dt^2 and does not creep. Contact history: 3 reals, the vector of its moment [N m].
-   Tests: tests/test_laws.c (a sphere at rest on a slope). */
+   Tests: tests/law/test_laws.c (a sphere at rest on a slope). */
 DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
                                       dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
@@ -1280,7 +1294,7 @@ DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
    and its moment is limited to mu_r R* F. Below the limit a dashpot acts with 0.3 times the
    critical damping of I = 7/5 m* R*^2. Contact history: 3 reals, the vector of the spring's
    moment [N m].
-   Tests: tests/test_laws.c (a sphere at rest on a slope, order, time step). */
+   Tests: tests/law/test_laws.c (a sphere at rest on a slope, order, time step). */
 DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
     const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;
@@ -3048,6 +3062,7 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #ifdef __cplusplus
 }
 #endif
+
 #endif /* DEM_H */
 
 /* ================================================================================================
@@ -4113,6 +4128,7 @@ static int demi_wall_there(const dem_world *w, dem_wall wall) {
     return wall.id > 0 && place < w->wall_count && w->walls[place].id == wall.id &&
         w->walls[place].kind != DEMI_WALL_NONE;
 }
+
 /* ---------------------------------------------------------------------------------------------
    >>memory
    What each body has, told once; names; sentences of what went wrong; allocation, and arrays that
@@ -5982,7 +5998,7 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
    edges join) relative to its first, whatever their order of corners. A body is bounded by shells
    without open edges. An outer shell faces out. A shell within a shell is a cavity if it was
    written to face the opposite way of the shell around it; if not, the mesh is refused.
-   Tests: tests/test_decompose.c.
+   Tests: tests/file/test_decompose.c.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };
 typedef struct demi_closed {
@@ -7246,7 +7262,7 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
        apart. Between two rebuilds bodies may stand up to half a skin outside the box (pairs note
        which image of a partner is nearest, so nobody is moved while a list is in use). Whoever
        asks where a body is, or how far from another, asks here: searches, fills, feeds, outlets,
-       fields, getters, writers. Tests: tests/test_periodic.c. --- */
+       fields, getters, writers. Tests: tests/search/test_periodic.c. --- */
 /* lo: m, where the box begins; period: m, 0 where an axis is not periodic, and half then huge. */
 typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
 /* The same numbers for every axis, periodic or not, so that loops need not ask: an axis that is not
@@ -8095,6 +8111,526 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
     return w ? w->bodies.balance : none;
 }
 
+/* ---------------------------------------------------------------------------------------------
+   >>integrators
+   Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same
+   time t_n; half_vel is the mean velocity of the step that led there, v(t_n - dt/2). Each scheme
+   is one function over a range of bodies; `synced` = 0 says the step before was not finished, so
+   that its last half kick is still due (it is merged with the first one of this step: same
+   arithmetic). Rotation runs along in the same scheme (position Verlet: leapfrog).
+   >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
+   --------------------------------------------------------------------------------------------- */
+typedef struct demi_lane {           /* one body's translation or rotation */
+    dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each */
+    dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
+} demi_lane;
+
+/* v(t + dt/2) = v(t - dt/2) + a dt, and what a law will see: v(t + dt), a taken as constant. */
+DEM_INLINE void demi_kick_leapfrog(const demi_lane *b, dem_real h) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_real kick = (b->f[k]*b->inv + b->g[k])*h;
+        const dem_real half = b->half[k] + 2*kick;
+        b->half[k] = half;
+        b->v[k] = half + kick;
+    }
+}
+DEM_INLINE void demi_finish_half(const demi_lane *b, dem_real h) {
+    int k;
+    for (k = 0; k < 3; k++) b->v[k] = b->half[k] + (b->f[k]*b->inv + b->g[k])*h;
+}
+
+/* A body as the schemes see it, its motion and its spin alike: what does not move has 1/mass 0, and
+   no weight. */
+DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
+    demi_lane b;
+    b.v = w->bodies.vel + 4*i; b.half = w->bodies.half_vel + 4*i; b.f = w->bodies.force + 4*i;
+    b.inv = w->bodies.inv_mass[i];
+    b.g[0] = b.inv > 0 ? w->desc.gravity.x : 0;
+    b.g[1] = b.inv > 0 ? w->desc.gravity.y : 0;
+    b.g[2] = b.inv > 0 ? w->desc.gravity.z : 0;
+    return b;
+}
+DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
+    demi_lane b;
+    b.v = w->bodies.spin + 4*i; b.half = w->bodies.half_spin + 4*i; b.f = w->bodies.torque + 4*i;
+    b.inv = w->bodies.inv_inertia[i];
+    b.g[0] = b.g[1] = b.g[2] = 0;
+    return b;
+}
+
+/* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half. By rows of four, the
+   last of which stays zero (in pos: the radius, which zero does not move): rows make vectors. */
+static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
+    const int synced = w->stage.synced;
+    dem_real *DEMI_RESTRICT x = w->bodies.pos, *DEMI_RESTRICT v = w->bodies.vel,
+        *DEMI_RESTRICT u = w->bodies.half_vel;
+    const dem_real *DEMI_RESTRICT f = w->bodies.force, *DEMI_RESTRICT inv = w->bodies.inv_mass;
+    dem_real g[4];
+    int i, k;
+    g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
+    for (i = begin; i < end; i++) {
+        const dem_real m = inv[i], free_fall = m > 0 ? DEM_R(1) : DEM_R(0);
+        for (k = 4*i; k < 4*i + 4; k++) {
+            const dem_real kick = (f[k]*m + g[k - 4*i]*free_fall)*h;
+            const dem_real half = (synced ? v[k] : u[k] + kick) + kick;
+            u[k] = half;
+            v[k] = half + kick;
+            x[k] += half*dt;
+        }
+    }
+    if (!turning) return;
+    v = w->bodies.spin; u = w->bodies.half_spin; f = w->bodies.torque; inv = w->bodies.inv_inertia;
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 4; k++) {
+            const dem_real kick = f[k]*inv[i]*h, half = (synced ? v[k] : u[k] + kick) + kick;
+            u[k] = half;
+            v[k] = half + kick;
+        }
+}
+/* v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
+static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i);
+        demi_kick_leapfrog(&b, h);
+        for (k = 0; k < 3; k++) w->bodies.pos[4*i + k] += b.half[k]*dt;
+    }
+    if (!turning) return;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_turn(w, i);
+        demi_kick_leapfrog(&b, h);
+    }
+}
+/* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [ALK07] eq 2.3; v from differences, predicted with a */
+static void demi_move_position_verlet(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i);
+        for (k = 0; k < 3; k++) {
+            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->bodies.pos[4*i + k];
+            const dem_real next = 2*x - w->bodies.last_pos[4*i + k] + a*dt*dt;
+            b.half[k] = (next - x)/dt;
+            b.v[k] = b.half[k] + a*h;
+            w->bodies.last_pos[4*i + k] = x;
+            w->bodies.pos[4*i + k] = next;
+        }
+    }
+    if (!turning) return;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_turn(w, i);
+        demi_kick_leapfrog(&b, h);
+    }
+}
+/* v(t+dt) = v + a dt, x(t+dt) = x + v(t+dt) dt */
+static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        for (k = 0; k < 3; k++) {
+            b.half[k] = b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
+            w->bodies.pos[4*i + k] += b.v[k]*dt;
+            if (turning) s.half[k] = s.v[k] += s.f[k]*s.inv*dt;
+        }
+    }
+}
+/* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
+static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        for (k = 0; k < 3; k++) {
+            b.half[k] = b.v[k];
+            w->bodies.pos[4*i + k] += b.v[k]*dt;
+            b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
+            s.half[k] = s.v[k];
+            if (turning) s.v[k] += s.f[k]*s.inv*dt;
+        }
+    }
+}
+/* x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt: impulses, found at x + v dt/2.
+   A velocity that somebody has set may go into a wall, or part a joint: there they are found at x,
+   and take it off before the body goes. */
+static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    demi_move_velocity_verlet(w, begin, end, turning);
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 3 && !w->bodies.went[i]; k++) {
+            w->bodies.pos[k] += (w->bodies.vel[k] - w->bodies.half_vel[k])*dt;
+            w->bodies.half_vel[k] = w->bodies.vel[k];
+            w->bodies.half_spin[k] = w->bodies.spin[k];
+        }
+}
+static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
+    (void)end; }
+/* Velocities of the present time, for schemes that stand at the half step. */
+static void demi_finish_halves(dem_world *w, int begin, int end) {
+    const dem_real h = (dem_real)w->clock.half_kick;
+    int i;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        demi_finish_half(&b, h);
+        demi_finish_half(&s, h);
+    }
+}
+/* For the ledger: by how much the velocities that laws have seen fell short of the derivative of
+   the path. With x''' = j the prediction falls short by j dt^2/2, and the step's end velocity,
+   which is the central difference of three places, is ahead by j dt^2/6: two thirds of the way from
+   one to the other the errors of second order are gone, of dashpots' losses and of the work of
+   springs alike. */
+static void demi_late_note(dem_world *w, int begin, int end) {
+    const dem_real h = (dem_real)w->clock.half_kick, part = DEM_R(2.0)/3;
+    const dem_real *DEMI_RESTRICT v = w->bodies.vel, *DEMI_RESTRICT u = w->bodies.half_vel;
+    const dem_real *DEMI_RESTRICT f = w->bodies.force, *DEMI_RESTRICT inv = w->bodies.inv_mass;
+    dem_real *DEMI_RESTRICT late = w->bodies.late, g[4];
+    int i, k;
+    g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
+    for (i = begin; i < end; i++) {
+        const dem_real m = inv[i], free_fall = m > 0 ? DEM_R(1) : DEM_R(0);
+        for (k = 4*i; k < 4*i + 4; k++)
+            late[k] = (u[k] - v[k] + (f[k]*m + g[k - 4*i]*free_fall)*h)*part;
+    }
+}
+/* What half_vel and half_spin must be before the first step from a state at t. */
+static void demi_prime_body(dem_world *w, int i) {
+    const dem_real dt = w->clock.dt, h = dt/2;
+    const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_real a = b.f[k]*b.inv + b.g[k];
+        b.half[k] = b.v[k] - a*h;
+        if (w->bodies.backward) w->bodies.last_pos[4*i + k] = w->bodies.pos[4*i + k] - b.half[k]*dt;
+        s.half[k] = s.v[k] - s.f[k]*s.inv*h;
+    }
+    if (w->bodies.shaped && w->bodies.shape[i])
+        demi_put(w->bodies.angular + 4*i,
+                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i),
+                                                            demi_impulsive(w) ? 0 : h)));
+}
+static void demi_prime(dem_world *w) {
+    int i;
+    for (i = 0; i < w->bodies.count; i++) demi_prime_body(w, i);
+    w->stage.primed = 1;
+}
+/* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
+       somebody asked for it, follows. A body that is not a sphere keeps its angular momentum in the
+       world's frame, L(t - dt/2), which torques kick: L(t + dt/2) = L(t - dt/2) + T(t) dt. In
+       between it flies free: from q(t) with L to q(t + dt), by one of the functions below; free
+       flight leaves L as it is, to the bit. What a law sees: half_spin, the mean over the flight,
+       and spin, predicted with the last torque. All are of second order under torques. Checked by
+       tests of rotation (free flight against elliptic functions, order, tops). --- */
+
+/* The rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
+DEM_INLINE dem_quat demi_quat_exp(dem_vec3 v) {
+    const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
+    /* cos and half of sin x/x; products with constants, which quotients would not become */
+    const dem_real c = 1 + x*(DEM_R(-1.0/2) + x*(DEM_R(1.0/24) + x*(DEM_R(-1.0/720) +
+        x*(DEM_R(1.0/40320) + x*(DEM_R(-1.0/3628800) + x*DEM_R(1.0/479001600))))));
+    const dem_real s = DEM_R(0.5) + x*(DEM_R(-1.0/12) + x*(DEM_R(1.0/240) + x*(DEM_R(-1.0/10080) +
+        x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
+    return dem_quat_make(c, s*v.x, s*v.y, s*v.z);
+}
+/* As demi_quat_unit, for what is nearly one, in kernels. */
+DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
+    const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
+    return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
+}
+/* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a
+   third order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little
+   every step. Here the torque is in the kick alone, and the flight is that of a free body: Taylor's
+   series of w to third order, w' = I^-1 (I w x w), give its mean and its end,
+       mean = w + h w'/2 + h^2 w''/6 + h^3 w'''/24,   end = w + h w' + h^2 w''/2 + h^3 w'''/6;
+   q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
+   puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight:
+   order 3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
+   (docs/shapes.md). I, inv: principal moments, their inverses; answers the mean, in the body's
+   frame. */
+DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                       dem_real h) {
+    const dem_vec3 m = dem_quat_unrotate(*q, L);
+    const dem_vec3 w = demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z);
+    const dem_vec3 a = demi_v((I.y - I.z)*inv.x, (I.z - I.x)*inv.y, (I.x - I.y)*inv.z);
+    const dem_vec3 w1 = demi_v(a.x*w.y*w.z, a.y*w.z*w.x, a.z*w.x*w.y);
+    const dem_vec3 w2 = demi_v(a.x*(w1.y*w.z + w.y*w1.z), a.y*(w1.z*w.x + w.z*w1.x),
+                               a.z*(w1.x*w.y + w.x*w1.y));
+    const dem_vec3 w3 = demi_v(a.x*(w2.y*w.z + 2*w1.y*w1.z + w.y*w2.z),
+                               a.y*(w2.z*w.x + 2*w1.z*w1.x + w.z*w2.x),
+                               a.z*(w2.x*w.y + 2*w1.x*w1.y + w.x*w2.y));
+    const dem_real ll = demi_dot(L, L);
+    dem_vec3 mean, end, g, c, magnus;
+    end = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(1.0/3))), h*h*DEM_R(0.5));
+    mean = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(0.25))), h*h*DEM_R(1.0/6));
+    end = demi_add(w, demi_add(demi_scale(w1, h), end));
+    mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
+    magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
+    *q = dem_quat_multiply(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
+    end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
+    g = dem_quat_unrotate(*q, L);
+    c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
+    *q = demi_quat_again(dem_quat_multiply(*q, dem_quat_make(1, c.x, c.y, c.z)));
+    return demi_add(mean, magnus);
+}
+/* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
+   about their axis): half an Euler step for q at the middle, w there from L, a whole step with
+   that. */
+static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+    const dem_quat start = *q;
+    dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
+    dem_quat mid, by;
+    by = dem_quat_multiply(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
+    mid = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
+                                       start.z + by.z));
+    m = dem_quat_unrotate(mid, L);
+    w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
+    by = dem_quat_multiply(mid, dem_quat_make(0, w.x*h/2, w.y*h/2, w.z*h/2));
+    *q = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
+                                      start.z + by.z));
+    return dem_quat_unrotate(start, dem_quat_rotate(mid, w));
+}
+/* NO_SQUISH's splitting [DLM97]: free rotation about x, y, z, y, x in turn, each exact; symplectic,
+   so that energy swings and does not drift. */
+static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+    static const int order[5] = {0, 1, 2, 1, 0};
+    const dem_quat start = *q;
+    dem_vec3 m = dem_quat_unrotate(start, L), w0 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z), w1;
+    int k;
+    for (k = 0; k < 5; k++) {
+        const double step = (double)(k == 2 ? h : h/2);
+        const double rate = order[k] == 0 ? (double)(m.x/I.x) : order[k] == 1 ? (double)(m.y/I.y)
+            : (double)(m.z/I.z);
+        const dem_real c = (dem_real)demi_cos(rate*step/2), s = (dem_real)demi_sin(rate*step/2);
+        const dem_quat r = dem_quat_make(c, order[k] == 0 ? s : 0, order[k] == 1 ? s : 0,
+                                         order[k] == 2 ? s : 0);
+        *q = dem_quat_multiply(*q, r);
+        m = dem_quat_unrotate(r, m);
+    }
+    *q = demi_quat_unit(*q);
+    m = dem_quat_unrotate(*q, L);
+    w1 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
+    return demi_scale(demi_add(w0, dem_quat_unrotate(start, dem_quat_rotate(*q, w1))), DEM_R(0.5));
+}
+/* Spin of a body with angular momentum L. */
+DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
+    const dem_vec3 m = dem_quat_unrotate(q, L);
+    return dem_quat_rotate(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
+}
+
+/* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
+typedef struct demi_turning {
+    dem_real q[4][DEMI_ROOM], L[3][DEMI_ROOM], T[3][DEMI_ROOM], I[4][DEMI_ROOM];
+    dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
+    dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the moment_arm's end */
+    dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
+} demi_turning;
+/* One body of the tile: kicks L by T kick, flies for dt, and says what a law will see, with L + T
+   after, and how fast it was. */
+DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
+                                 dem_real after) {
+    dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
+    const dem_vec3 T = demi_v(t->T[0][l], t->T[1][l], t->T[2][l]);
+    const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
+    const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
+    const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
+                              t->L[2][l] + T.z*kick);
+    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
+        : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
+        : demi_flight_splitting(&q, L, I, dt);
+    const dem_vec3 half = dem_quat_rotate(start, mean);
+    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
+    const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
+    t->rate2[l] = demi_dot(half, half);
+    t->speed2[l] = t->rate2[l]*t->I[3][l]*t->I[3][l];
+    t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
+    t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
+    t->L[0][l] = L.x; t->L[1][l] = L.y; t->L[2][l] = L.z;
+    t->half[0][l] = half.x; t->half[1][l] = half.y; t->half[2][l] = half.z;
+    t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
+}
+/* The common one, without a question inside, so that it becomes vectors. */
+DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real kick, dem_real dt,
+                                            dem_real after) {
+    int l, q;
+    for (q = 0; q < count; q += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = 0; l < DEMI_LANES; l++)
+            demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
+    }
+}
+static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
+                             dem_real dt, dem_real after) {
+    int l;
+    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(t, count, kick, dt, after);
+    else for (l = 0; l < count; l++)
+        demi_turning_fly(t, l, (int)w->desc.rotation, kick, dt, after);
+}
+/* How long bodies turn: a step, as springs do it; one in halves, kicked in between, as impulses do;
+   the half to where their contacts are found. */
+enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
+/* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
+static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
+                             int how) {
+    const dem_real dt = w->clock.dt;
+    demi_turning t;
+    int l, e;
+    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    dem_real turn = 0, speed = 0, rate = 0, check = 0;
+    for (l = 0; l < full; l++) {                /* groups filled up with the last one */
+        size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
+        DEMI_ONE_BY_ONE(i);
+        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
+        for (e = 0; e < 4; e++) t.I[e][l] = w->bodies.moment[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.angular[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.T[e][l] = w->bodies.torque[i + (size_t)e];
+        if (how == DEMI_TURN_HALVES && !w->bodies.went[i/4])    /* as they move */
+            for (e = 0; e < 3; e++) { t.L[e][l] += t.T[e][l]*dt; t.T[e][l] = 0; }
+    }
+    if (how == DEMI_TURN_STEP) demi_turning_all(w, &t, full, dt, dt, dt/2);
+    else demi_turning_all(w, &t, full, 0, dt/2, 0);
+    if (how == DEMI_TURN_HALVES) {
+        demi_turning first = t;
+        demi_turning_all(w, &t, full, dt, dt/2, 0);
+        for (l = 0; l < count; l++) {
+            dem_real change2 = 0;
+            for (e = 0; e < 3; e++) {
+                const dem_real by = t.spin[e][l] - first.half[e][l];
+                change2 += by*by;
+                t.half[e][l] = (first.half[e][l] + t.half[e][l])/2;
+            }
+            t.change2[l] = 4*change2*t.I[3][l]*t.I[3][l];
+            t.speed2[l] = DEMI_MAX(t.speed2[l], first.speed2[l]);
+            t.rate2[l] = DEMI_MAX(t.rate2[l], first.rate2[l]);
+        }
+    }
+    for (l = 0; l < count; l++) {
+        size_t i = 4*(size_t)who[l];
+        DEMI_ONE_BY_ONE(i);
+        for (e = 0; e < 4; e++) w->bodies.orient[i + (size_t)e] = t.q[e][l];
+        for (e = 0; e < 3; e++) w->bodies.angular[i + (size_t)e] = t.L[e][l];
+        for (e = 0; e < 3 && how != DEMI_TURN_AHEAD; e++)
+            w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
+        for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
+        if (w->bodies.centres_valid && how != DEMI_TURN_HALVES &&
+            w->shapes[w->bodies.shape[who[l]] - 1].count) demi_centres_rotate(w, who[l]);
+        turn = DEMI_MAX(turn, t.change2[l]);
+        speed = DEMI_MAX(speed, t.speed2[l]);
+        rate = DEMI_MAX(rate, t.rate2[l]);
+        check += t.rate2[l];
+    }
+    if (!domain) return;
+    domain->turn_rate = DEMI_MAX(domain->turn_rate, (double)rate);
+    domain->turn = DEMI_MAX(domain->turn, (double)turn);
+    domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
+    domain->check += (double)check;
+}
+/* The same for spheres, whose spins L has: exp(w dt/2) q, w of the world's frame. */
+DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
+    int l, k;
+    for (k = 0; k < count; k += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = k; l < k + DEMI_LANES; l++) {
+            const dem_quat q = demi_quat_again(dem_quat_multiply(
+                demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
+                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l])));
+            t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
+        }
+    }
+}
+static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
+    const dem_real *now = w->bodies.spin, *mean = w->bodies.half_spin;
+    const dem_real dt = how == DEMI_TURN_STEP ? w->clock.dt : w->clock.dt/2;
+    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_turning t;
+    int l, e, half;
+    for (l = 0; l < full; l++)
+        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[4*who[DEMI_MIN(l, count - 1)] + e];
+    for (half = 0; half < (how == DEMI_TURN_HALVES ? 2 : 1); half++) {
+        for (l = 0; l < full; l++)
+            for (e = 0; e < 3; e++) {
+                const int i = 4*who[DEMI_MIN(l, count - 1)] + e;
+                t.L[e][l] = how == DEMI_TURN_STEP ? mean[i]
+                    : how == DEMI_TURN_HALVES && !half ? 2*mean[i] - now[i] : now[i];
+            }
+        demi_turning_balls(&t, full, dt);
+    }
+    for (l = 0; l < count; l++)
+        for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
+}
+/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres. */
+static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end, int how) {
+    int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
+    for (i = begin; i < end; i++) {
+        if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
+        if (w->bodies.shape[i]) {
+            who[count++] = i;
+            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count, how); count = 0; }
+        } else if (w->desc.orientations) {
+            balls[ball_count++] = i;
+            if (ball_count == DEMI_TILE) {
+                demi_orient_balls(w, balls, ball_count, how);
+                ball_count = 0;
+            }
+        }
+    }
+    if (count) demi_orient_some(w, domain, who, count, how);
+    if (ball_count) demi_orient_balls(w, balls, ball_count, how);
+}
+/* Spins at the full step, from angular momentum at the half step and the torque of now. */
+static void demi_orient_finish(dem_world *w, int begin, int end) {
+    const dem_real h = (dem_real)w->clock.half_kick;
+    int i;
+    for (i = begin; i < end; i++)
+        if (w->bodies.shape[i] && w->bodies.inv_mass[i] > 0) {
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+            demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
+                demi_add(demi_at(w->bodies.angular + 4*i),
+                         demi_scale(demi_at(w->bodies.torque + 4*i), h)),
+                demi_v(1/I.x, 1/I.y, 1/I.z)));
+        }
+}
+
+typedef struct demi_integrator_row {
+    const char *name;
+    void (*advance)(dem_world *w, int begin, int end, int turning);
+    void (*finish)(dem_world *w, int begin, int end);
+    int order;
+    int backward;                  /* it needs last_pos, the places of one step ago */
+    int predicts;                  /* laws see velocities that the step's forces still change */
+} demi_integrator_row;
+static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
+    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, 1},
+    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 0},
+    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
+    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
+};
+enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
+/* Impulses have their own, whose velocities are finished at once. */
+static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
+    static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
+                                                 demi_finish_nothing, 2, 1, 0};
+    return demi_impulsive(w) ? &midpoint : demi_integrator_rows + w->desc.integrator;
+}
+
+static void demi_domain_finish(dem_world *w, int d) {
+    if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
+    demi_integrator_of(w)->finish(w, w->domains[d].begin, w->domains[d].end);
+    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses finish it by themselves */
+        demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
+}
+
+/* Completes the half kick that a step leaves open: velocities are then those of the present time.
+   */
+static void demi_finish(dem_world *w) {
+    if (w->stage.synced) return;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
+    w->stage.synced = 1;
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>facets
@@ -8129,7 +8665,7 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
    each bears its part of the weight. Left as they are, so that contacts add up, as they do in a
    corner: facets that pierce each other or overlap in one plane, cracks, and seams between walls of
    different kinds. That Euler's number adds is old; as a rule of contact we have not found it
-   published. Tests: tests/test_facets.c.
+   published. Tests: tests/surface/test_facets.c.
    --------------------------------------------------------------------------------------------- */
 DEM_INLINE int demi_wall_is(const demi_wall *wall, int trait) {
     return (demi_wall_kinds[wall->kind].traits & trait) != 0;
@@ -12595,7 +13131,7 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
        nearest point takes that away: above a crossing there is one contact, half way between two
        rows, two. One that does not takes away by itself, as a contact of share -1.
        Every row, crossing and side has an element number of its own, for contact memory. Tests:
-       tests/test_sieve.c, tests/hard/hard_impacts.c. --- */
+       tests/surface/test_sieve.c, tests/hard/hard_impacts.c. --- */
 enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1,
        DEMI_SIEVE_ROWS = 13 };                  /* rows of both sets, and the ring */
 /* What the last three bits of a row's number say; of round holes, 0 .. 5: side, lattice. */
@@ -13066,6 +13602,7 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
 #pragma GCC push_options
 #pragma GCC optimize("no-trapping-math")
 #endif
+
 /* ---------------------------------------------------------------------------------------------
    >>respond
    The loops that bring near pairs, touch and law together. Grain-grain, a tile of pairs at a
@@ -14548,7 +15085,7 @@ static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_v
    those of faces of D, not of the short vector to the origin, and hold where a gap is 0. Where a
    face of one lies square to the normal, the other's is cut to its outline; no more than four of
    those points are the contact. Checked against all separating planes, and against portals, by
-   tests/test_convex.c.
+   tests/contact/test_convex.c.
    --------------------------------------------------------------------------------------------- */
 
 /* A corner of D: B's corner b less A's corner a. */
@@ -17676,7 +18213,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
    number can do without. What a law is asked about before it touches counts by itself. Damping goes
    by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of
    s U'), so that mu is the ratio of both sums. Checked by "a cluster landing on one, two or
-   three spheres" and tests/test_facets.c. */
+   three spheres" and tests/surface/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&
         (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
@@ -18825,527 +19362,6 @@ static void demi_cross_gather(dem_world *w, int d) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>integrators
-   Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same
-   time t_n; half_vel is the mean velocity of the step that led there, v(t_n - dt/2). Each scheme
-   is one function over a range of bodies; `synced` = 0 says the step before was not finished, so
-   that its last half kick is still due (it is merged with the first one of this step: same
-   arithmetic). Rotation runs along in the same scheme (position Verlet: leapfrog).
-   >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
-   --------------------------------------------------------------------------------------------- */
-typedef struct demi_lane {           /* one body's translation or rotation */
-    dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each */
-    dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
-} demi_lane;
-
-/* v(t + dt/2) = v(t - dt/2) + a dt, and what a law will see: v(t + dt), a taken as constant. */
-DEM_INLINE void demi_kick_leapfrog(const demi_lane *b, dem_real h) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        const dem_real kick = (b->f[k]*b->inv + b->g[k])*h;
-        const dem_real half = b->half[k] + 2*kick;
-        b->half[k] = half;
-        b->v[k] = half + kick;
-    }
-}
-DEM_INLINE void demi_finish_half(const demi_lane *b, dem_real h) {
-    int k;
-    for (k = 0; k < 3; k++) b->v[k] = b->half[k] + (b->f[k]*b->inv + b->g[k])*h;
-}
-
-/* A body as the schemes see it, its motion and its spin alike: what does not move has 1/mass 0, and
-   no weight. */
-DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
-    demi_lane b;
-    b.v = w->bodies.vel + 4*i; b.half = w->bodies.half_vel + 4*i; b.f = w->bodies.force + 4*i;
-    b.inv = w->bodies.inv_mass[i];
-    b.g[0] = b.inv > 0 ? w->desc.gravity.x : 0;
-    b.g[1] = b.inv > 0 ? w->desc.gravity.y : 0;
-    b.g[2] = b.inv > 0 ? w->desc.gravity.z : 0;
-    return b;
-}
-DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
-    demi_lane b;
-    b.v = w->bodies.spin + 4*i; b.half = w->bodies.half_spin + 4*i; b.f = w->bodies.torque + 4*i;
-    b.inv = w->bodies.inv_inertia[i];
-    b.g[0] = b.g[1] = b.g[2] = 0;
-    return b;
-}
-
-/* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half. By rows of four, the
-   last of which stays zero (in pos: the radius, which zero does not move): rows make vectors. */
-static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
-    const int synced = w->stage.synced;
-    dem_real *DEMI_RESTRICT x = w->bodies.pos, *DEMI_RESTRICT v = w->bodies.vel,
-        *DEMI_RESTRICT u = w->bodies.half_vel;
-    const dem_real *DEMI_RESTRICT f = w->bodies.force, *DEMI_RESTRICT inv = w->bodies.inv_mass;
-    dem_real g[4];
-    int i, k;
-    g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
-    for (i = begin; i < end; i++) {
-        const dem_real m = inv[i], free_fall = m > 0 ? DEM_R(1) : DEM_R(0);
-        for (k = 4*i; k < 4*i + 4; k++) {
-            const dem_real kick = (f[k]*m + g[k - 4*i]*free_fall)*h;
-            const dem_real half = (synced ? v[k] : u[k] + kick) + kick;
-            u[k] = half;
-            v[k] = half + kick;
-            x[k] += half*dt;
-        }
-    }
-    if (!turning) return;
-    v = w->bodies.spin; u = w->bodies.half_spin; f = w->bodies.torque; inv = w->bodies.inv_inertia;
-    for (i = begin; i < end; i++)
-        for (k = 4*i; k < 4*i + 4; k++) {
-            const dem_real kick = f[k]*inv[i]*h, half = (synced ? v[k] : u[k] + kick) + kick;
-            u[k] = half;
-            v[k] = half + kick;
-        }
-}
-/* v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
-static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
-    int i, k;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i);
-        demi_kick_leapfrog(&b, h);
-        for (k = 0; k < 3; k++) w->bodies.pos[4*i + k] += b.half[k]*dt;
-    }
-    if (!turning) return;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_turn(w, i);
-        demi_kick_leapfrog(&b, h);
-    }
-}
-/* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [ALK07] eq 2.3; v from differences, predicted with a */
-static void demi_move_position_verlet(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
-    int i, k;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i);
-        for (k = 0; k < 3; k++) {
-            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->bodies.pos[4*i + k];
-            const dem_real next = 2*x - w->bodies.last_pos[4*i + k] + a*dt*dt;
-            b.half[k] = (next - x)/dt;
-            b.v[k] = b.half[k] + a*h;
-            w->bodies.last_pos[4*i + k] = x;
-            w->bodies.pos[4*i + k] = next;
-        }
-    }
-    if (!turning) return;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_turn(w, i);
-        demi_kick_leapfrog(&b, h);
-    }
-}
-/* v(t+dt) = v + a dt, x(t+dt) = x + v(t+dt) dt */
-static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt;
-    int i, k;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
-        for (k = 0; k < 3; k++) {
-            b.half[k] = b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
-            w->bodies.pos[4*i + k] += b.v[k]*dt;
-            if (turning) s.half[k] = s.v[k] += s.f[k]*s.inv*dt;
-        }
-    }
-}
-/* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
-static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt;
-    int i, k;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
-        for (k = 0; k < 3; k++) {
-            b.half[k] = b.v[k];
-            w->bodies.pos[4*i + k] += b.v[k]*dt;
-            b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
-            s.half[k] = s.v[k];
-            if (turning) s.v[k] += s.f[k]*s.inv*dt;
-        }
-    }
-}
-/* x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt: impulses, found at x + v dt/2.
-   A velocity that somebody has set may go into a wall, or part a joint: there they are found at x,
-   and take it off before the body goes. */
-static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt;
-    int i, k;
-    demi_move_velocity_verlet(w, begin, end, turning);
-    for (i = begin; i < end; i++)
-        for (k = 4*i; k < 4*i + 3 && !w->bodies.went[i]; k++) {
-            w->bodies.pos[k] += (w->bodies.vel[k] - w->bodies.half_vel[k])*dt;
-            w->bodies.half_vel[k] = w->bodies.vel[k];
-            w->bodies.half_spin[k] = w->bodies.spin[k];
-        }
-}
-static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
-    (void)end; }
-/* Velocities of the present time, for schemes that stand at the half step. */
-static void demi_finish_halves(dem_world *w, int begin, int end) {
-    const dem_real h = (dem_real)w->clock.half_kick;
-    int i;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
-        demi_finish_half(&b, h);
-        demi_finish_half(&s, h);
-    }
-}
-/* For the ledger: by how much the velocities that laws have seen fell short of the derivative of
-   the path. With x''' = j the prediction falls short by j dt^2/2, and the step's end velocity,
-   which is the central difference of three places, is ahead by j dt^2/6: two thirds of the way from
-   one to the other the errors of second order are gone, of dashpots' losses and of the work of
-   springs alike. */
-static void demi_late_note(dem_world *w, int begin, int end) {
-    const dem_real h = (dem_real)w->clock.half_kick, part = DEM_R(2.0)/3;
-    const dem_real *DEMI_RESTRICT v = w->bodies.vel, *DEMI_RESTRICT u = w->bodies.half_vel;
-    const dem_real *DEMI_RESTRICT f = w->bodies.force, *DEMI_RESTRICT inv = w->bodies.inv_mass;
-    dem_real *DEMI_RESTRICT late = w->bodies.late, g[4];
-    int i, k;
-    g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
-    for (i = begin; i < end; i++) {
-        const dem_real m = inv[i], free_fall = m > 0 ? DEM_R(1) : DEM_R(0);
-        for (k = 4*i; k < 4*i + 4; k++)
-            late[k] = (u[k] - v[k] + (f[k]*m + g[k - 4*i]*free_fall)*h)*part;
-    }
-}
-/* What half_vel and half_spin must be before the first step from a state at t. */
-static void demi_prime_body(dem_world *w, int i) {
-    const dem_real dt = w->clock.dt, h = dt/2;
-    const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
-    int k;
-    for (k = 0; k < 3; k++) {
-        const dem_real a = b.f[k]*b.inv + b.g[k];
-        b.half[k] = b.v[k] - a*h;
-        if (w->bodies.backward) w->bodies.last_pos[4*i + k] = w->bodies.pos[4*i + k] - b.half[k]*dt;
-        s.half[k] = s.v[k] - s.f[k]*s.inv*h;
-    }
-    if (w->bodies.shaped && w->bodies.shape[i])
-        demi_put(w->bodies.angular + 4*i,
-                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i),
-                                                            demi_impulsive(w) ? 0 : h)));
-}
-static void demi_prime(dem_world *w) {
-    int i;
-    for (i = 0; i < w->bodies.count; i++) demi_prime_body(w, i);
-    w->stage.primed = 1;
-}
-/* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
-       somebody asked for it, follows. A body that is not a sphere keeps its angular momentum in the
-       world's frame, L(t - dt/2), which torques kick: L(t + dt/2) = L(t - dt/2) + T(t) dt. In
-       between it flies free: from q(t) with L to q(t + dt), by one of the functions below; free
-       flight leaves L as it is, to the bit. What a law sees: half_spin, the mean over the flight,
-       and spin, predicted with the last torque. All are of second order under torques. Checked by
-       tests of rotation (free flight against elliptic functions, order, tops). --- */
-
-/* The rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
-DEM_INLINE dem_quat demi_quat_exp(dem_vec3 v) {
-    const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
-    /* cos and half of sin x/x; products with constants, which quotients would not become */
-    const dem_real c = 1 + x*(DEM_R(-1.0/2) + x*(DEM_R(1.0/24) + x*(DEM_R(-1.0/720) +
-        x*(DEM_R(1.0/40320) + x*(DEM_R(-1.0/3628800) + x*DEM_R(1.0/479001600))))));
-    const dem_real s = DEM_R(0.5) + x*(DEM_R(-1.0/12) + x*(DEM_R(1.0/240) + x*(DEM_R(-1.0/10080) +
-        x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
-    return dem_quat_make(c, s*v.x, s*v.y, s*v.z);
-}
-/* As demi_quat_unit, for what is nearly one, in kernels. */
-DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
-    const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
-    return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
-}
-/* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a
-   third order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little
-   every step. Here the torque is in the kick alone, and the flight is that of a free body: Taylor's
-   series of w to third order, w' = I^-1 (I w x w), give its mean and its end,
-       mean = w + h w'/2 + h^2 w''/6 + h^3 w'''/24,   end = w + h w' + h^2 w''/2 + h^3 w'''/6;
-   q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
-   puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight:
-   order 3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
-   (docs/shapes.md). I, inv: principal moments, their inverses; answers the mean, in the body's
-   frame. */
-DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
-                                       dem_real h) {
-    const dem_vec3 m = dem_quat_unrotate(*q, L);
-    const dem_vec3 w = demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z);
-    const dem_vec3 a = demi_v((I.y - I.z)*inv.x, (I.z - I.x)*inv.y, (I.x - I.y)*inv.z);
-    const dem_vec3 w1 = demi_v(a.x*w.y*w.z, a.y*w.z*w.x, a.z*w.x*w.y);
-    const dem_vec3 w2 = demi_v(a.x*(w1.y*w.z + w.y*w1.z), a.y*(w1.z*w.x + w.z*w1.x),
-                               a.z*(w1.x*w.y + w.x*w1.y));
-    const dem_vec3 w3 = demi_v(a.x*(w2.y*w.z + 2*w1.y*w1.z + w.y*w2.z),
-                               a.y*(w2.z*w.x + 2*w1.z*w1.x + w.z*w2.x),
-                               a.z*(w2.x*w.y + 2*w1.x*w1.y + w.x*w2.y));
-    const dem_real ll = demi_dot(L, L);
-    dem_vec3 mean, end, g, c, magnus;
-    end = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(1.0/3))), h*h*DEM_R(0.5));
-    mean = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(0.25))), h*h*DEM_R(1.0/6));
-    end = demi_add(w, demi_add(demi_scale(w1, h), end));
-    mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
-    magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
-    *q = dem_quat_multiply(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
-    end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
-    g = dem_quat_unrotate(*q, L);
-    c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
-    *q = demi_quat_again(dem_quat_multiply(*q, dem_quat_make(1, c.x, c.y, c.z)));
-    return demi_add(mean, magnus);
-}
-/* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
-   about their axis): half an Euler step for q at the middle, w there from L, a whole step with
-   that. */
-static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
-    const dem_quat start = *q;
-    dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    dem_quat mid, by;
-    by = dem_quat_multiply(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
-    mid = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
-                                       start.z + by.z));
-    m = dem_quat_unrotate(mid, L);
-    w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    by = dem_quat_multiply(mid, dem_quat_make(0, w.x*h/2, w.y*h/2, w.z*h/2));
-    *q = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
-                                      start.z + by.z));
-    return dem_quat_unrotate(start, dem_quat_rotate(mid, w));
-}
-/* NO_SQUISH's splitting [DLM97]: free rotation about x, y, z, y, x in turn, each exact; symplectic,
-   so that energy swings and does not drift. */
-static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
-    static const int order[5] = {0, 1, 2, 1, 0};
-    const dem_quat start = *q;
-    dem_vec3 m = dem_quat_unrotate(start, L), w0 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z), w1;
-    int k;
-    for (k = 0; k < 5; k++) {
-        const double step = (double)(k == 2 ? h : h/2);
-        const double rate = order[k] == 0 ? (double)(m.x/I.x) : order[k] == 1 ? (double)(m.y/I.y)
-            : (double)(m.z/I.z);
-        const dem_real c = (dem_real)demi_cos(rate*step/2), s = (dem_real)demi_sin(rate*step/2);
-        const dem_quat r = dem_quat_make(c, order[k] == 0 ? s : 0, order[k] == 1 ? s : 0,
-                                         order[k] == 2 ? s : 0);
-        *q = dem_quat_multiply(*q, r);
-        m = dem_quat_unrotate(r, m);
-    }
-    *q = demi_quat_unit(*q);
-    m = dem_quat_unrotate(*q, L);
-    w1 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    return demi_scale(demi_add(w0, dem_quat_unrotate(start, dem_quat_rotate(*q, w1))), DEM_R(0.5));
-}
-/* Spin of a body with angular momentum L. */
-DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
-    const dem_vec3 m = dem_quat_unrotate(q, L);
-    return dem_quat_rotate(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
-}
-
-/* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
-typedef struct demi_turning {
-    dem_real q[4][DEMI_ROOM], L[3][DEMI_ROOM], T[3][DEMI_ROOM], I[4][DEMI_ROOM];
-    dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
-    dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the moment_arm's end */
-    dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
-} demi_turning;
-/* One body of the tile: kicks L by T kick, flies for dt, and says what a law will see, with L + T
-   after, and how fast it was. */
-DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
-                                 dem_real after) {
-    dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
-    const dem_vec3 T = demi_v(t->T[0][l], t->T[1][l], t->T[2][l]);
-    const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
-    const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
-    const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
-                              t->L[2][l] + T.z*kick);
-    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
-        : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
-        : demi_flight_splitting(&q, L, I, dt);
-    const dem_vec3 half = dem_quat_rotate(start, mean);
-    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
-    const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
-    t->rate2[l] = demi_dot(half, half);
-    t->speed2[l] = t->rate2[l]*t->I[3][l]*t->I[3][l];
-    t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
-    t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
-    t->L[0][l] = L.x; t->L[1][l] = L.y; t->L[2][l] = L.z;
-    t->half[0][l] = half.x; t->half[1][l] = half.y; t->half[2][l] = half.z;
-    t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
-}
-/* The common one, without a question inside, so that it becomes vectors. */
-DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real kick, dem_real dt,
-                                            dem_real after) {
-    int l, q;
-    for (q = 0; q < count; q += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = 0; l < DEMI_LANES; l++)
-            demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
-    }
-}
-static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
-                             dem_real dt, dem_real after) {
-    int l;
-    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(t, count, kick, dt, after);
-    else for (l = 0; l < count; l++)
-        demi_turning_fly(t, l, (int)w->desc.rotation, kick, dt, after);
-}
-/* How long bodies turn: a step, as springs do it; one in halves, kicked in between, as impulses do;
-   the half to where their contacts are found. */
-enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
-/* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
-static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
-                             int how) {
-    const dem_real dt = w->clock.dt;
-    demi_turning t;
-    int l, e;
-    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    dem_real turn = 0, speed = 0, rate = 0, check = 0;
-    for (l = 0; l < full; l++) {                /* groups filled up with the last one */
-        size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
-        DEMI_ONE_BY_ONE(i);
-        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
-        for (e = 0; e < 4; e++) t.I[e][l] = w->bodies.moment[i + (size_t)e];
-        for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.angular[i + (size_t)e];
-        for (e = 0; e < 3; e++) t.T[e][l] = w->bodies.torque[i + (size_t)e];
-        if (how == DEMI_TURN_HALVES && !w->bodies.went[i/4])    /* as they move */
-            for (e = 0; e < 3; e++) { t.L[e][l] += t.T[e][l]*dt; t.T[e][l] = 0; }
-    }
-    if (how == DEMI_TURN_STEP) demi_turning_all(w, &t, full, dt, dt, dt/2);
-    else demi_turning_all(w, &t, full, 0, dt/2, 0);
-    if (how == DEMI_TURN_HALVES) {
-        demi_turning first = t;
-        demi_turning_all(w, &t, full, dt, dt/2, 0);
-        for (l = 0; l < count; l++) {
-            dem_real change2 = 0;
-            for (e = 0; e < 3; e++) {
-                const dem_real by = t.spin[e][l] - first.half[e][l];
-                change2 += by*by;
-                t.half[e][l] = (first.half[e][l] + t.half[e][l])/2;
-            }
-            t.change2[l] = 4*change2*t.I[3][l]*t.I[3][l];
-            t.speed2[l] = DEMI_MAX(t.speed2[l], first.speed2[l]);
-            t.rate2[l] = DEMI_MAX(t.rate2[l], first.rate2[l]);
-        }
-    }
-    for (l = 0; l < count; l++) {
-        size_t i = 4*(size_t)who[l];
-        DEMI_ONE_BY_ONE(i);
-        for (e = 0; e < 4; e++) w->bodies.orient[i + (size_t)e] = t.q[e][l];
-        for (e = 0; e < 3; e++) w->bodies.angular[i + (size_t)e] = t.L[e][l];
-        for (e = 0; e < 3 && how != DEMI_TURN_AHEAD; e++)
-            w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
-        for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
-        if (w->bodies.centres_valid && how != DEMI_TURN_HALVES &&
-            w->shapes[w->bodies.shape[who[l]] - 1].count) demi_centres_rotate(w, who[l]);
-        turn = DEMI_MAX(turn, t.change2[l]);
-        speed = DEMI_MAX(speed, t.speed2[l]);
-        rate = DEMI_MAX(rate, t.rate2[l]);
-        check += t.rate2[l];
-    }
-    if (!domain) return;
-    domain->turn_rate = DEMI_MAX(domain->turn_rate, (double)rate);
-    domain->turn = DEMI_MAX(domain->turn, (double)turn);
-    domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
-    domain->check += (double)check;
-}
-/* The same for spheres, whose spins L has: exp(w dt/2) q, w of the world's frame. */
-DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
-    int l, k;
-    for (k = 0; k < count; k += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = k; l < k + DEMI_LANES; l++) {
-            const dem_quat q = demi_quat_again(dem_quat_multiply(
-                demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
-                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l])));
-            t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
-        }
-    }
-}
-static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
-    const dem_real *now = w->bodies.spin, *mean = w->bodies.half_spin;
-    const dem_real dt = how == DEMI_TURN_STEP ? w->clock.dt : w->clock.dt/2;
-    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    demi_turning t;
-    int l, e, half;
-    for (l = 0; l < full; l++)
-        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[4*who[DEMI_MIN(l, count - 1)] + e];
-    for (half = 0; half < (how == DEMI_TURN_HALVES ? 2 : 1); half++) {
-        for (l = 0; l < full; l++)
-            for (e = 0; e < 3; e++) {
-                const int i = 4*who[DEMI_MIN(l, count - 1)] + e;
-                t.L[e][l] = how == DEMI_TURN_STEP ? mean[i]
-                    : how == DEMI_TURN_HALVES && !half ? 2*mean[i] - now[i] : now[i];
-            }
-        demi_turning_balls(&t, full, dt);
-    }
-    for (l = 0; l < count; l++)
-        for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
-}
-/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres. */
-static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end, int how) {
-    int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
-    for (i = begin; i < end; i++) {
-        if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
-        if (w->bodies.shape[i]) {
-            who[count++] = i;
-            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count, how); count = 0; }
-        } else if (w->desc.orientations) {
-            balls[ball_count++] = i;
-            if (ball_count == DEMI_TILE) {
-                demi_orient_balls(w, balls, ball_count, how);
-                ball_count = 0;
-            }
-        }
-    }
-    if (count) demi_orient_some(w, domain, who, count, how);
-    if (ball_count) demi_orient_balls(w, balls, ball_count, how);
-}
-/* Spins at the full step, from angular momentum at the half step and the torque of now. */
-static void demi_orient_finish(dem_world *w, int begin, int end) {
-    const dem_real h = (dem_real)w->clock.half_kick;
-    int i;
-    for (i = begin; i < end; i++)
-        if (w->bodies.shape[i] && w->bodies.inv_mass[i] > 0) {
-            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
-            demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
-                demi_add(demi_at(w->bodies.angular + 4*i),
-                         demi_scale(demi_at(w->bodies.torque + 4*i), h)),
-                demi_v(1/I.x, 1/I.y, 1/I.z)));
-        }
-}
-
-typedef struct demi_integrator_row {
-    const char *name;
-    void (*advance)(dem_world *w, int begin, int end, int turning);
-    void (*finish)(dem_world *w, int begin, int end);
-    int order;
-    int backward;                  /* it needs last_pos, the places of one step ago */
-    int predicts;                  /* laws see velocities that the step's forces still change */
-} demi_integrator_row;
-static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
-    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, 1},
-    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 0},
-    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
-    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
-    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
-};
-enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
-/* Impulses have their own, whose velocities are finished at once. */
-static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
-    static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
-                                                 demi_finish_nothing, 2, 1, 0};
-    return demi_impulsive(w) ? &midpoint : demi_integrator_rows + w->desc.integrator;
-}
-
-static void demi_domain_finish(dem_world *w, int d) {
-    if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
-    demi_integrator_of(w)->finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses finish it by themselves */
-        demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
-}
-
-/* Completes the half kick that a step leaves open: velocities are then those of the present time.
-   */
-static void demi_finish(dem_world *w) {
-    if (w->stage.synced) return;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
-    w->stage.synced = 1;
-}
-
-/* ---------------------------------------------------------------------------------------------
    >>impulses
    In place of contact laws: rigid grains, and impulses that keep them out of each other ([TAS10],
    [STE96]). At the end of a step positions and velocities belong to one time. The next step's
@@ -19800,7 +19816,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
    are wanted at J u after = -J u before/2, and if need be at -J u before, which gives nothing
    whatever contacts, motors and fields do. Gaps that are left are closed by moving places alone.
    A motor with a limit is a row until it reaches that, and then a torque.
-   Owns w->joints. Tests: tests/test_joints.c.
+   Owns w->joints. Tests: tests/impulse/test_joints.c.
    --------------------------------------------------------------------------------------------- */
 
 /* Index of a body by its id; -1: it is no more. */
@@ -19971,7 +19987,7 @@ DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
    >>joints-solved
    The system that joints and the bodies they hold make: the order of elimination, the blocks, the
    factor; sweeps over it, the guard of energy, and what joints have come to. Owns rods, knots and
-   what belongs to them in the solver. Tests: tests/test_joints.c, tests/hard/hard_joints.c.
+   what belongs to them in the solver. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
    --------------------------------------------------------------------------------------------- */
 
 /* Joins knot b to the list of a. 0: memory ran out. */
@@ -21568,108 +21584,11 @@ static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info 
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>ledger
-   Where the energy went. Laws add what they dissipate and store; moves add the work of gravity and
-   fields; walls the work they do. The springs in the tangent planes are the odd one out: what they
-   took in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the
-   contact.
-   --------------------------------------------------------------------------------------------- */
-/* J, of all that moves. */
-static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
-    int i;
-    *kinetic = *rotational = 0;
-    for (i = 0; i < w->bodies.count; i++) {
-        const dem_real *v = w->bodies.vel + 4*i;
-        const double m = (double)w->bodies.mass[i];
-        if (w->bodies.inv_mass[i] <= 0) continue;
-        *kinetic += m*((double)v[0]*(double)v[0] + (double)v[1]*(double)v[1] +
-                       (double)v[2]*(double)v[2])/2;
-        *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
-    }
-}
-/* After a force evaluation: adds the domains' flows to the totals; stored energies replace the
-   last. */
-static void demi_ledger_book(dem_world *w) {
-    static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL,
-                                DEMI_E_FORCE};
-    double walls = 0;
-    size_t i;
-    for (i = 0; i < sizeof flows/sizeof *flows; i++) {
-        const double part = demi_sum_energy(w, flows[i]);
-        w->booked.energy[flows[i]] += part;
-        if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
-    }
-    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
-    w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
-    for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
-        w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));
-    for (i = 0; i < (size_t)w->wall_count;
-         i++) walls += (double)w->walls[i].loads.power*(w->stage.forces_valid
-                                                           ? (double)w->clock.dt : 0);
-    w->booked.energy[DEMI_E_WALLS] += walls;
-    w->booked.throughput += fabs(walls);
-}
-DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
-    dem_ledger l;
-    memset(&l, 0, sizeof l);
-    if (!w || !w->desc.ledger) return l;
-    demi_kinetic(w, &l.kinetic, &l.rotational);
-    l.elastic = w->booked.energy[DEMI_E_ELASTIC] + w->booked.energy[DEMI_E_SHEAR_STORED];
-    l.gravity = w->booked.energy[DEMI_E_GRAVITY];
-    l.walls = w->booked.energy[DEMI_E_WALLS];
-    l.force = w->booked.energy[DEMI_E_FORCE];
-    l.inserted = w->booked.inserted;
-    l.removed = w->booked.removed;
-    l.normal = w->booked.energy[DEMI_E_DASHPOT];
-    l.slide = w->booked.energy[DEMI_E_SLIDE];
-    l.tangent = w->booked.energy[DEMI_E_SHEAR_WORK] - w->booked.energy[DEMI_E_SLIDE] -
-        w->booked.energy[DEMI_E_SHEAR_STORED];
-    l.rolling = w->booked.energy[DEMI_E_ROLL];
-    l.throughput = w->booked.throughput + w->booked.inserted;
-    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
-        l.inserted + l.removed +
-                 l.normal + l.slide + l.tangent + l.rolling;
-    if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
-        l.unknown = l.residual;
-        l.residual = 0;
-    }
-    return l;
-}
-DEM_API dem_totals dem_totals_get(const dem_world *w) {
-    dem_totals t;
-    int i;
-    memset(&t, 0, sizeof t);
-    if (!w) return t;
-    demi_kinetic(w, &t.kinetic, &t.rotational);
-    for (i = 0; i < w->bodies.count; i++) {
-        const double m = (double)w->bodies.mass[i];
-        dem_real own[3];
-        double x[3], v[3];
-        int k;
-        if (w->bodies.inv_mass[i] <= 0) continue;
-        demi_put(own, demi_angular_of(w, i));
-        for (k = 0; k < 3; k++) {
-            x[k] = (double)w->bodies.pos[4*i + k];
-            v[k] = (double)w->bodies.vel[4*i + k];
-        }
-        t.mass += m;
-        for (k = 0; k < 3; k++) {
-            t.centre[k] += m*x[k];
-            t.momentum[k] += m*v[k];
-            t.angular[k] += m*(x[(k + 1)%3]*v[(k + 2)%3] - x[(k + 2)%3]*v[(k + 1)%3]) +
-                (double)own[k];
-        }
-    }
-    for (i = 0; i < 3 && t.mass > 0; i++) t.centre[i] /= t.mass;
-    return t;
-}
-
-/* ---------------------------------------------------------------------------------------------
    >>sizes
    Distributions of size. Each kind is a function, the share that is finer than a radius, made to go
    from 0 below min to 1 at max; a table of it at radii of equal ratio, with the numbers that belong
    to the shares, is all that drawing and classes need. Shares of mass become numbers by the mass of
-   a grain, r^3 or r^2. Tests: tests/test_sizes.c.
+   a grain, r^3 or r^2. Tests: tests/scene/test_sizes.c.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_SIZE_STEPS = 2048 };
 typedef struct demi_size_table {
@@ -23767,661 +23686,100 @@ static dem_result demi_dt_check(dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>check
-   What is likely to be wrong with a scene, before it runs. Each function looks for mistakes of one
-   kind and puts a sentence in for each. Limits are such that scenes of practice pass: grains from
-   0.1 um to 0.5 m, matter from foam to osmium, moduli softened to 1e4 Pa.
+   >>ledger
+   Where the energy went. Laws add what they dissipate and store; moves add the work of gravity and
+   fields; walls the work they do. The springs in the tangent planes are the odd one out: what they
+   took in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the
+   contact.
    --------------------------------------------------------------------------------------------- */
-
-/* The most severe of all findings; what is found first comes first among its like. */
-typedef struct demi_findings { dem_finding *to; int room, kept, count; } demi_findings;
-static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...)
-    DEMI_FORMAT(3, 4);
-static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...) {
-    int i = f->kept;
-    va_list arguments;
-    f->count++;
-    while (i > 0 && f->to[i - 1].severity < severity) i--;
-    if (i >= f->room) return;
-    if (f->kept < f->room) f->kept++;
-    memmove(f->to + i + 1, f->to + i, (size_t)(f->kept - 1 - i)*sizeof *f->to);
-    f->to[i].severity = severity;
-    va_start(arguments, format);
-    vsnprintf(f->to[i].text, sizeof f->to[i].text, format, arguments);
-    va_end(arguments);
-}
-
-/* Units and sizes of matter. */
-static void demi_check_materials(const dem_world *w, demi_findings *f) {
-    int used[DEMI_MATERIALS], i, k;
-    memset(used, 0, sizeof used);
-    for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
-    for (i = 0; i < w->wall_count; i++)
-        if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
-    for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
-        for (k = 0; k < d->class_count; k++) used[demi_feed_material(d, k)] = 1;
-    }
-    for (i = 0; i < w->material_count; i++) {
-        const dem_material_desc *m = &w->materials[i];
-        if (!used[i])
-            demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
-        if (m->density < 10 || m->density > 25000)
-            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
-                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?",
-                      i + 1, (double)m->density,
-                      (double)(m->density < 10 ? m->density : m->density/1000));
-        if (!w->desc.law && !(m->stiffness > 0) &&
-            (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
-            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
-                      "moduli are in Pa (glass has 7e10, softened grains 1e6 to 1e8)", i + 1,
-                      (double)m->young);
-        if (m->friction > 2)
-            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a friction of %g: it is a "
-                      "coefficient, not an angle; tan(%g degrees) is %.3g", i + 1,
-                      (double)m->friction, (double)m->friction,
-                      demi_sin((double)m->friction*DEMI_PI/180)/
-                      demi_cos((double)m->friction*DEMI_PI/180));
-        if (m->rolling_friction > 1)
-            demi_find(f, DEM_SEVERITY_WARNING,
-                      "material %d has a rolling friction of %g: it is a fraction of the "
-                      "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
-        if (m->rolling_friction > 0 && !(m->friction > 0))
-            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
-                      "friction: its grains slide instead of rolling", i + 1);
-    }
-    if (w->desc.threads > demi_threads_available() && demi_threads_available() > 0)
-        demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more threads "
-                  "make the run slower", w->desc.threads, demi_threads_available());
-}
-static void demi_radii_of(const dem_world *w, double *least, double *most) {
+/* J, of all that moves. */
+static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
     int i;
-    *least = 1e300;
-    *most = 0;
+    *kinetic = *rotational = 0;
     for (i = 0; i < w->bodies.count; i++) {
-        *least = DEMI_MIN(*least, (double)w->bodies.pos[4*i + 3]);
-        *most = DEMI_MAX(*most, (double)w->bodies.pos[4*i + 3]);
+        const dem_real *v = w->bodies.vel + 4*i;
+        const double m = (double)w->bodies.mass[i];
+        if (w->bodies.inv_mass[i] <= 0) continue;
+        *kinetic += m*((double)v[0]*(double)v[0] + (double)v[1]*(double)v[1] +
+                       (double)v[2]*(double)v[2])/2;
+        *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
-static void demi_check_radii(const dem_world *w, demi_findings *f) {
-    double least, most;
-    demi_radii_of(w, &least, &most);
-    if (most > 0.5)
-        demi_find(f, DEM_SEVERITY_WARNING, "the largest grain has a radius of %g m: lengths are in "
-                  "metres, was %g mm meant?", most, most);
-    if (least < 1e-7)
-        demi_find(f, DEM_SEVERITY_WARNING, "the smallest grain has a radius of %g m: below 1e-7 m "
-                  "attraction and thermal motion outweigh the forces simulated here", least);
+/* After a force evaluation: adds the domains' flows to the totals; stored energies replace the
+   last. */
+static void demi_ledger_book(dem_world *w) {
+    static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL,
+                                DEMI_E_FORCE};
+    double walls = 0;
+    size_t i;
+    for (i = 0; i < sizeof flows/sizeof *flows; i++) {
+        const double part = demi_sum_energy(w, flows[i]);
+        w->booked.energy[flows[i]] += part;
+        if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
+    }
+    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
+    w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
+    for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
+        w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));
+    for (i = 0; i < (size_t)w->wall_count;
+         i++) walls += (double)w->walls[i].loads.power*(w->stage.forces_valid
+                                                           ? (double)w->clock.dt : 0);
+    w->booked.energy[DEMI_E_WALLS] += walls;
+    w->booked.throughput += fabs(walls);
 }
-/* Places are numbers of so many digits: far from the origin too few are left for overlaps, which
-   are thousandths of a radius. A bead that rebounds from a plane in single precision is off by 1 %
-   where places are 2e-4 radii apart, by 5 % at 2e-3, and sticks fast at 2e-2. */
-static void demi_check_digits(const dem_world *w, demi_findings *f) {
-    const double digit = DEMI_SINGLE ? 1.1920929e-7 : 2.220446e-16;
-    double worst = 0;
-    int i, k, body = 0;
-    for (i = 0; i < w->bodies.count; i++)
-        for (k = 0; k < 3; k++) {
-            const double part =
-                fabs((double)w->bodies.pos[4*i + k])/(double)w->bodies.pos[4*i + 3]*digit;
-            if (!(part > worst)) continue;
-            worst = part;
-            body = i;
-        }
-    if (worst > 2e-4)
-        demi_find(f, worst > 2e-3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "body %d is so far "
-                  "from the origin that its position is resolved only to %.2g of its radius: "
-                  "contacts lose %s; build the scene around the origin%s",
-                  (int)w->bodies.slot[body] + 1, worst,
-                  worst > 2e-3 ? "their accuracy" : "about 1 % of accuracy",
-                  DEMI_SINGLE ? ", or use double precision" : "");
+DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
+    dem_ledger l;
+    memset(&l, 0, sizeof l);
+    if (!w || !w->desc.ledger) return l;
+    demi_kinetic(w, &l.kinetic, &l.rotational);
+    l.elastic = w->booked.energy[DEMI_E_ELASTIC] + w->booked.energy[DEMI_E_SHEAR_STORED];
+    l.gravity = w->booked.energy[DEMI_E_GRAVITY];
+    l.walls = w->booked.energy[DEMI_E_WALLS];
+    l.force = w->booked.energy[DEMI_E_FORCE];
+    l.inserted = w->booked.inserted;
+    l.removed = w->booked.removed;
+    l.normal = w->booked.energy[DEMI_E_DASHPOT];
+    l.slide = w->booked.energy[DEMI_E_SLIDE];
+    l.tangent = w->booked.energy[DEMI_E_SHEAR_WORK] - w->booked.energy[DEMI_E_SLIDE] -
+        w->booked.energy[DEMI_E_SHEAR_STORED];
+    l.rolling = w->booked.energy[DEMI_E_ROLL];
+    l.throughput = w->booked.throughput + w->booked.inserted;
+    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
+        l.inserted + l.removed +
+                 l.normal + l.slide + l.tangent + l.rolling;
+    if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
+        l.unknown = l.residual;
+        l.residual = 0;
+    }
+    return l;
 }
-
-/* m, how far along n (unit) from the origin a wall may stop what comes that way; 1e300: without
-   end, -1e300: nowhere (a plane seen along itself or from behind, a tube through its opening). */
-static double demi_wall_far(const demi_wall *wall, dem_vec3 n) {
-    const dem_vec3 own = demi_unrotate(wall->pose.rotation, n);
-    const int drawn = demi_wall_is(wall, DEMI_DRAWN);
-    double far = -1e300;
+DEM_API dem_totals dem_totals_get(const dem_world *w) {
+    dem_totals t;
     int i;
-    if (demi_wall_is(wall, DEMI_FLAT)) return own.z < DEM_R(-1e-3) ? 1e300 : -1e300;
-    if (DEMI_ABS(own.z) > DEM_R(0.999) && (drawn || (wall->extent < 0 && wall->radius > 0)))
-        return -1e300;
-    if (wall->extent < 0 || (drawn && DEMI_ABS(own.z) > DEM_R(1e-6))) return 1e300;
-    for (i = 0; i < wall->vertex_count; i++)
-        far = DEMI_MAX(far, (double)demi_dot(demi_at(wall->vertices + 3*i), own));
-    if (!wall->vertex_count) far = (double)DEMI_MAX(wall->extent, wall->radius);
-    else if (demi_wall_is(wall, DEMI_BALLS)) far += (double)wall->radius;
-    return far + (double)demi_dot(wall->pose.position, n);
-}
-/* m, the longest side of its box, or its diameter. */
-static double demi_wall_size(const demi_wall *wall) {
-    const dem_vec3 box = demi_sub(wall->box.hi, wall->box.lo);
-    if (!wall->vertex_count) return 2*(double)wall->extent;
-    return (double)DEMI_MAX(box.x, DEMI_MAX(box.y, demi_wall_is(wall, DEMI_DRAWN) ? 0 : box.z));
-}
-/* Does anything move, and does anything stop it? */
-static void demi_check_motion(const dem_world *w, demi_findings *f) {
-    const dem_vec3 g = w->desc.gravity;
-    const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
-    dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
-    double lowest = -1e300, floor = -1e300, speed = 0;
-    int i, moving = 0;
+    memset(&t, 0, sizeof t);
+    if (!w) return t;
+    demi_kinetic(w, &t.kinetic, &t.rotational);
     for (i = 0; i < w->bodies.count; i++) {
-        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
-        if (w->bodies.inv_mass[i] <= 0) { floor = DEMI_MAX(floor, h); continue; }
-        moving++;
-        lowest = DEMI_MAX(lowest, h);
-        speed = DEMI_MAX(speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
-    }
-    if (!moving && !w->feed_count) {
-        demi_find(f, DEM_SEVERITY_ERROR, "no grain can move, and there is no feed: add grains, "
-                  "for example with dem_spheres_fill");
-        return;
-    }
-    if (!pulled && !forced && !(speed > 0) && moving)
-        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
-                  "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
-    for (i = 0; i < w->wall_count; i++)
-        if (w->walls[i].kind != DEMI_WALL_NONE)
-            floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
-    if (pulled && moving && !forced && floor < lowest && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
-        w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
-        w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
-        w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
-        demi_find(f, DEM_SEVERITY_WARNING, "gravity is (%g, %g, %g) m/s2, but no wall or fixed "
-                  "grain is below the lowest grain: grains fall for ever; add a floor, or change "
-                  "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
-}
-
-/* Is a wall with ends all behind some plane, or beyond a face where grains leave? */
-static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
-    double lo[3], hi[3];
-    int k;
-    if (demi_wall_is(wall, DEMI_DRAWN)) return 0;       /* it goes on and on */
-    demi_domain_limits(w, lo, hi);
-    for (k = 0; k < w->wall_count; k++) {
-        const demi_wall *plane = &w->walls[k];
-        const dem_vec3 n = demi_rotate(plane->pose.rotation, demi_v(0, 0, 1));
-        if (plane->kind == DEMI_WALL_NONE || !demi_wall_is(plane, DEMI_FLAT)) continue;
-        if (demi_wall_far(wall, n) < (double)demi_dot(plane->pose.position, n)) return 1;
-    }
-    for (k = 0; k < 3; k++) {
-        const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
-        if (w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW &&
-            (demi_wall_far(wall, n) < lo[k] || -demi_wall_far(wall, demi_scale(n, -1)) > hi[k]))
-            return 1;
-    }
-    return 0;
-}
-/* Sizes and places of walls, beside those of grains. */
-static void demi_check_walls(const dem_world *w, demi_findings *f) {
-    double least, most;
-    int i;
-    demi_radii_of(w, &least, &most);
-    for (i = 0; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        const double size = demi_wall_size(wall);
-        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
-        if (most > 0 && size > 2e4*most)
-            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, %.3g radii of the "
-                      "largest grain: was it in millimetres? scale it by 0.001", (int)wall->id,
-                      demi_wall_kinds[wall->kind].name, size, size/most);
-        else if (most > 0 && size < least)
-            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, less than the radius "
-                      "of the smallest grain, %g m: is it in other units?", (int)wall->id,
-                      demi_wall_kinds[wall->kind].name, size, least);
-        if (demi_wall_hidden(w, wall))
-            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is behind a plane or outside the "
-                      "domain: nothing can reach it; does the plane's normal point to the grains?",
-                      (int)wall->id, demi_wall_kinds[wall->kind].name);
-    }
-}
-
-/* Grains inside each other, in walls, or out of the domain. Needs lists. */
-static void demi_check_pairs(const dem_world *w, demi_findings *f) {
-    double worst = 0.01;
-    int d, k, cross, count = 0, who[2] = {0, 0};
-    for (d = 0; d < w->domain_count; d++)
-        for (cross = 0; cross < 2; cross++) {
-            const demi_list *list = cross ? &w->cross : &w->own;
-            const int from = d*list->stride, n = cross ? w->domains[d].cross : w->domains[d].own;
-            for (k = from; k < from + n; k++) {
-                const int a = list->a[k], b = list->b[k];
-                const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
-                const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
-                                                              list->image[k], r)/r);
-                if (!(deep > 0.01) || (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0))
-                    continue;
-                count++;
-                if (deep <= worst) continue;
-                worst = deep;
-                who[0] = (int)w->bodies.slot[a] + 1;
-                who[1] = (int)w->bodies.slot[b] + 1;
-            }
-        }
-    if (count)
-        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
-                  : DEM_SEVERITY_NOTE,
-                      "%d pair%s of grains begin%s with an overlap, bodies %d and %d by %.3g of "
-                  "the smaller radius: they will fly apart; place them with dem_spheres_fill, or "
-                  "farther apart", count, count > 1 ? "s" : "",
-                  count > 1 ? "" : "s", who[0], who[1], worst);
-}
-static void demi_check_in_walls(dem_world *w, demi_findings *f) {
-    double worst = 0.01;
-    int d, k, count = 0, body = 0, wall = 0;
-    if (!demi_touch(w)) return;                 /* no memory: the run will say so */
-    for (d = 0; d < w->domain_count; d++)
-        for (k = 0; k < w->domains[d].kept_next; k++) {
-            const demi_kept *c = w->kept_next + w->kept_first[d] + k;
-            if (c->b >= 0 || !((double)c->deep > 0.01)) continue;
-            count++;
-            if ((double)c->deep <= worst) continue;
-            worst = (double)c->deep;
-            body = (int)w->bodies.slot[c->a] + 1;
-            wall = w->walls[c->wall].id;
-        }
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
-    if (count)
-        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
-                  : DEM_SEVERITY_NOTE, "grains overlap walls at %d place%s, body %d wall %d by "
-                  "%.3g of its radius: move it, or does the normal (inside) of the wall point the "
-                  "wrong way?", count, count > 1 ? "s" : "", body, wall, worst);
-}
-static void demi_check_outside(const dem_world *w, demi_findings *f) {
-    double lo[3], hi[3];
-    int i, k, count = 0;
-    demi_domain_limits(w, lo, hi);
-    for (i = 0; i < w->bodies.count; i++)
+        const double m = (double)w->bodies.mass[i];
+        dem_real own[3];
+        double x[3], v[3];
+        int k;
+        if (w->bodies.inv_mass[i] <= 0) continue;
+        demi_put(own, demi_angular_of(w, i));
         for (k = 0; k < 3; k++) {
-            const double x = (double)w->bodies.pos[4*i + k];
-            if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
-            count++;
-            break;
+            x[k] = (double)w->bodies.pos[4*i + k];
+            v[k] = (double)w->bodies.vel[4*i + k];
         }
-    if (count)
-        demi_find(f, DEM_SEVERITY_WARNING, "%d grain%s outside the domain, whose outflow faces "
-                  "will remove them in the first step; make the domain larger", count,
-                  count > 1 ? "s are" : " is");
-}
-
-/* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
-       thin: both sides push, so that grains inside a solid body touch nothing and stay there
-       unseen. A closed container has all grains inside; where some are inside and some are not,
-       one of the two was not meant. A shell is closed if an even number of its facets meets at
-       each edge (of profiles: at each end), also if the facets belong to several walls that do not
-       move against each other. A place is inside if a line from it crosses the shell an odd number
-       of times. --- */
-typedef struct demi_probe {
-    double x[3];                   /* m, where the surface was when its motion began */
-    int odd, turn;                 /* crossings: is their number odd; sum of their directions */
-    int feed;                      /* 0: a grain; else a place of this feed's region */
-    int owner;                     /* its images have the same */
-} demi_probe;
-typedef struct demi_probes {
-    demi_probe *at;                /* in the order of y: those near the surface */
-    int count, grains, places;     /* of these; of grains that can move and feeds' places in all */
-    int owners;
-    char *seen;                    /* for each owner: has an image of it been counted */
-} demi_probes;
-enum { DEMI_FEED_PLACES = 64 };    /* places by which a feed's region is known */
-
-static int demi_probe_compare(const void *a, const void *b) {
-    const double x = ((const demi_probe *)a)->x[1], y = ((const demi_probe *)b)->x[1];
-    return x < y ? -1 : x > y;
-}
-/* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
-   moved from `home` to `pose` since. 0 when memory ran out. */
-static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
-                          const double *box, dem_vec3 x, int feed) {
-    int n, k;
-    for (n = 0; n < 27; n++) {
-        const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
-        const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
-        const dem_vec3 own = demi_unrotate(wall->pose.rotation,
-                                           demi_sub(demi_add(x, by), wall->pose.position));
-        const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation, own));
-        demi_probe *to;
-        double c[3];
-        int near = 1;
-        c[0] = (double)at.x; c[1] = (double)at.y; c[2] = (double)at.z;
-        for (k = 0; k < 3; k++)
-            near = near && (!s[k] || w->wall_period[k] > 0) && c[k] >= box[k] && c[k] <= box[3 + k];
-        if (!near) continue;
-        if ((size_t)p->count == *room) {
-            demi_probe *more = (demi_probe *)demi_alloc(w, 2*(*room + 32), sizeof *more);
-            if (!more) return 0;
-            if (p->count) memcpy(more, p->at, (size_t)p->count*sizeof *more);
-            demi_free(w, p->at);
-            p->at = more;
-            *room = 2*(*room + 32);
-        }
-        to = p->at + p->count++;
-        memcpy(to->x, c, sizeof c);
-        to->odd = to->turn = 0;
-        to->feed = feed;
-        to->owner = p->owners;
-    }
-    p->owners++;
-    return 1;
-}
-static void demi_probes_free(dem_world *w, demi_probes *p) {
-    demi_free(w, p->at);
-    demi_free(w, p->seen);
-}
-/* Grains and places of feeds that may be inside a surface in this box. 0 when memory ran out. */
-static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
-                            const double *box) {
-    size_t room = 0;
-    int i, n, ok = 1;
-    memset(p, 0, sizeof *p);
-    for (i = 0; i < w->bodies.count && ok; i++) {
-        if (!(w->bodies.inv_mass[i] > 0)) continue;
-        p->grains++;
-        ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
-    }
-    for (i = 0; i < w->feed_count && ok; i++) {
-        const demi_feed *feed = demi_feed_at(w, i);
-        uint64_t random = 1;
-        demi_region g;
-        if (feed->state.done || !demi_feed_region(w, &feed->desc, &g)) continue;
-        for (n = 0; n < DEMI_FEED_PLACES && ok; n++) {
-            const double u = demi_uniform(&random), v = demi_uniform(&random);
-            const double at[3] = {u, v, demi_uniform(&random)};
-            dem_vec3 x;
-            if (!demi_region_at(&g, at, (dem_real)feed->lo[0], &x)) continue;
-            p->places++;
-            ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
-        }
-    }
-    if (!ok || !p->count) return ok;
-    qsort(p->at, (size_t)p->count, sizeof *p->at, demi_probe_compare);
-    p->seen = (char *)demi_alloc(w, (size_t)p->owners, 1);
-    return p->seen != 0;
-}
-/* Are there probes on both sides? wall: a number; normals: 1 where its facets have any. */
-static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_probes *p, int wall,
-                              int normals) {
-    const char *name = demi_wall_kinds[w->walls[wall].kind].name, *way = "";
-    int i, grains = 0, places = 0, feed = 0, turn = 0;
-    if (p->count) memset(p->seen, 0, (size_t)p->owners);
-    for (i = 0; i < p->count; i++) {
-        if (!p->at[i].odd || p->seen[p->at[i].owner]++) continue;
-        turn += p->at[i].turn > 0 ? 1 : -1;
-        if (p->at[i].feed) { places++; feed = p->at[i].feed; } else grains++;
-    }
-    if (normals && turn) way = turn > 0 ? " with normals outwards" : " with normals inwards";
-    if (!(grains + places) || grains + places == p->grains + p->places) return;
-    if (grains)
-        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d "
-                  "grains begin inside wall %d, a closed %s%s, and stay inside: if the wall is "
-                  "solid, keep them out (`inside` of dem_region) or remove them; if it is hollow, "
-                  "all is well", grains, p->grains, (int)w->walls[wall].id, name, way);
-    else
-        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d "
-                  "inserts grains inside wall %d, a closed %s%s, and they stay inside: if the "
-                  "wall is solid, keep them out (`inside` of the feed); if it is hollow, all is "
-                  "well", feed, (int)w->walls[wall].id, name, way);
-}
-/* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
-   above; the same of a side from b to a, to the bit. */
-static int demi_probe_crosses(const double *a, const double *b, const double *x) {
-    const int up = b[1] > x[1];
-    const double *lo = up ? a : b, *hi = up ? b : a;
-    if ((a[1] > x[1]) == up) return 0;
-    if (!((lo[0] - x[0])*(hi[1] - x[1]) - (hi[0] - x[0])*(lo[1] - x[1]) > 0)) return 0;
-    return up ? 1 : -1;
-}
-/* Crossings of one facet: of a segment by lines along x, of a triangle by those along z. */
-static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
-    const int per = j->per;
-    const double *c[3], *a, *b;
-    double lo, hi, u[3], v[3], n[3];
-    int k, from = 0, to = p->count;
-    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + 2 + (k < per ? k : 0)];
-    lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
-    hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
-    for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
-    for (k = 0; k < 3; k++) n[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
-    while (from < to) {
-        const int mid = from + (to - from)/2;
-        if (p->at[mid].x[1] < lo) from = mid + 1;
-        else to = mid;
-    }
-    for (; from < p->count && p->at[from].x[1] <= hi; from++) {
-        demi_probe *at = p->at + from;
-        int turn = 0;
-        for (k = 0; k < (per == 3 ? 3 : 1); k++) {
-            a = c[k];
-            b = c[(k + 1)%3];
-            turn += demi_probe_crosses(a, b, at->x);
-        }
-        if (!turn || (per == 3 && !((c[0][2] - at->x[2])*fabs(n[2]) >
-            (n[0]*(at->x[0] - c[0][0]) + n[1]*(at->x[1] - c[0][1]))*(n[2] > 0 ? 1 : -1)))) continue;
-        at->odd = !at->odd;
-        at->turn += turn;
-    }
-}
-/* Shells of the join: root[i]: the first facet of the shell that facet i is of, -1: it is open. */
-static void demi_join_shells(demi_join *j, int32_t *root) {
-    demi_side *s = j->per == 3 ? j->piece : j->side;
-    const int sides = j->per == 3 ? j->sides : 2*j->facets;
-    int i, end;
-    for (i = 0; i < j->facets; i++) root[i] = i;
-    for (i = 0; i < sides && j->per == 2; i++) {
-        const int32_t at = j->facet[5*(i/2) + 2 + i%2];
-        s[i] = demi_side_of(at, at, i/2, i%2);
-    }
-    if (j->per == 2) qsort(s, (size_t)sides, sizeof *s, demi_side_compare);
-    for (i = 1; i < sides; i++) {
-        int32_t a = s[i - 1].facet, b = s[i].facet;
-        if (s[i].lo != s[i - 1].lo || s[i].hi != s[i - 1].hi) continue;
-        while (root[a] != a) a = root[a] = root[root[a]];
-        while (root[b] != b) b = root[b] = root[root[b]];
-        root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
-    }
-    for (i = 0; i < j->facets; i++) root[i] = root[root[i]];
-    for (i = 0; i < sides; i = end) {
-        const int32_t of = s[i].facet;
-        for (end = i; end < sides && s[end].lo == s[i].lo && s[end].hi == s[i].hi;) end++;
-        if ((end - i)%2) root[root[of] >= 0 ? root[of] : of] = -1;
-    }
-    for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
-}
-/* The closed shells of this wall and those that do not move against it: meshes or profiles. */
-static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
-    double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
-    int32_t *root = 0, *next = 0;
-    demi_probes p;
-    demi_join j;
-    int i, k, ok = demi_join_begin(w, &j, w->walls[wall].group, per);
-    memset(&p, 0, sizeof p);
-    for (i = 0; i < 3*j.points && ok; i++) {
-        box[i%3] = DEMI_MIN(box[i%3], j.x[i]);
-        box[3 + i%3] = DEMI_MAX(box[3 + i%3], j.x[i]);
-    }
-    if (per == 2) { box[2] = -1e300; box[5] = 1e300; }
-    if (ok) ok = demi_probes_make(w, &p, &w->walls[wall], box);
-    if (ok && p.count) {
-        demi_join_double(&j);                   /* which points are corners */
-        ok = per == 2 || demi_join_cut(w, &j);
-        root = (int32_t *)demi_alloc(w, 2*(size_t)j.facets + 1, sizeof *root);
-    }
-    if (ok && root) {
-        next = root + j.facets;
-        demi_join_shells(&j, root);
-        for (i = 0; i < j.facets; i++) next[i] = -1;
-        for (i = j.facets - 1; i >= 0; i--) {   /* facets of a shell: a list, its root first */
-            if (root[i] < 0 || root[i] == i) continue;
-            next[i] = next[root[i]];
-            next[root[i]] = i;
-        }
-        for (i = 0; i < j.facets; i++) {
-            if (root[i] != i) continue;
-            for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
-            for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
-            if (j.facet[5*i] >= 0) demi_probes_judge(w, f, &p, j.facet[5*i], per == 3);
-        }
-    }
-    demi_free(w, root);
-    demi_probes_free(w, &p);
-    demi_join_free(w, &j);
-}
-/* A surface of revolution is closed where it ends on its axis, or where it began. */
-static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
-    const demi_wall *s = &w->walls[wall];
-    const int n = s->ring_count;
-    const dem_real *r = s->ring_radius, *h = s->ring_height;
-    const int loop = !(r[0] > r[n - 1]) && !(r[0] < r[n - 1]) && !(h[0] > h[n - 1]) &&
-        !(h[0] < h[n - 1]);
-    const double e = (double)s->extent;
-    const dem_vec3 x = s->home.position;
-    double box[6];
-    demi_probes p;
-    int i, k;
-    if (!loop && (r[0] > 0 || r[n - 1] > 0)) return;
-    box[0] = (double)x.x - e; box[1] = (double)x.y - e; box[2] = (double)x.z - e;
-    for (k = 0; k < 3; k++) box[3 + k] = box[k] + 2*e;
-    if (demi_probes_make(w, &p, s, box)) {
-        for (i = 0; i < p.count; i++) {
-            const dem_vec3 at = demi_v((dem_real)p.at[i].x[0], (dem_real)p.at[i].x[1],
-                                       (dem_real)p.at[i].x[2]);
-            const dem_vec3 own = demi_unrotate(s->home.rotation, demi_sub(at, x));
-            const double c[2] = {sqrt((double)(own.x*own.x + own.y*own.y)), (double)own.z};
-            for (k = 0; k + 1 < n; k++) {
-                const double a[2] = {(double)r[k], (double)h[k]};
-                const double b[2] = {(double)r[k + 1], (double)h[k + 1]};
-                if (demi_probe_crosses(a, b, c)) p.at[i].odd = !p.at[i].odd;
-            }
-        }
-        demi_probes_judge(w, f, &p, wall, 0);
-    }
-    demi_probes_free(w, &p);
-}
-static void demi_check_enclosed(dem_world *w, demi_findings *f) {
-    int i, k, per;
-    if (!w->facets_valid && !demi_facets_weigh(w)) return;     /* no memory: the run will say so */
-    for (i = 0; i < w->wall_count; i++) {
-        const int kind = w->walls[i].kind;
-        if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
-        for (per = 2; per <= 3; per++) {
-            for (k = 0; k < i && !demi_join_member(w, k, w->walls[i].group, per);) k++;
-            if (k == i && kind != DEMI_WALL_NONE && demi_join_member(w, i, w->walls[i].group, per))
-                demi_check_shells(w, f, i, per);
-        }
-    }
-}
-
-/* The time step that was asked for, beside what the scene bears. */
-static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
-    const double dt = (double)w->desc.dt;
-    double limit, fastest = demi_fastest(w);
-    int i, worst = 0;
-    if (!(dt > 0) || (!(a->contact_time > 0) && !demi_impulsive(w))) return;
-    for (i = 0; i < w->wall_count; i++)
-        if (w->walls[i].kind != DEMI_WALL_NONE)
-            fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
-    if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
-    else if (dt > (double)a->dt_max)
-        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
-                  "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
-                  (double)a->dt_max, a->binds);
-    else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
-        demi_find(f, DEM_SEVERITY_ERROR,
-                  "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
-                  "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
-                  w->press[worst].contacts);
-    else if (dt < (double)a->dt/20)
-        demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
-                  "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
-                  (double)a->dt);
-    if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
-        demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
-                  "smallest grain in a step of %g s: they would pass through each other "
-                  "undetected; use dt = 0", fastest, fastest*dt/(double)w->effects.radius_min, dt);
-}
-/* Overlaps, over the radius, of the smallest grains of each material with their like: when they
-   meet at the speed there may be, and under the weight of all, were they stacked where they are. */
-static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
-    const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
-    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
-    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, area = 0, mass = 0;
-    const double n[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
-                         (double)w->desc.gravity.z};
-    demi_grades grades;
-    int i, k;
-    if (w->desc.law || demi_impulsive(w)) return;       /* nothing is known of it; no overlaps */
-    for (i = 0; i < w->bodies.count; i++) {
-        if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
+        t.mass += m;
         for (k = 0; k < 3; k++) {
-            const double x = (double)w->bodies.pos[4*i + k], r = (double)w->bodies.pos[4*i + 3];
-            lo[k] = DEMI_MIN(lo[k], x - r);
-            hi[k] = DEMI_MAX(hi[k], x + r);
+            t.centre[k] += m*x[k];
+            t.momentum[k] += m*v[k];
+            t.angular[k] += m*(x[(k + 1)%3]*v[(k + 2)%3] - x[(k + 2)%3]*v[(k + 1)%3]) +
+                (double)own[k];
         }
     }
-    for (k = 0; k < 3 && g > 0 && mass > 0; k++)
-        area += fabs(n[k])/g*(hi[(k + 1)%3] - lo[(k + 1)%3])*(hi[(k + 2)%3] - lo[(k + 2)%3]);
-    demi_grades_of(w, &grades);
-    for (i = 0; i < w->material_count; i++) {
-        const double r = grades.smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r)/2 : 0;
-        double deep[2] = {0, 0}, force, kn;
-        dem_real coef[DEMI_COEFS];
-        if (!(r > 0)) continue;
-        demi_coefficients(w, i, i, r/2, m, m, 0, coef);
-        kn = (double)coef[DEMI_KN];
-        force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
-        deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
-        deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
-        for (k = 0; k < 2; k++) {
-            const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
-            if (!(deep[k] > 0.05)) continue;
-            demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
-                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s; "
-                      "%s of %.2g %s would keep it below 0.01", i + 1, r, deep[k],
-                      k ? "under a weight of " : "at ", k ? force : v, k ? "N each" : "m/s",
-                      w->materials[i].stiffness > 0 ? "a stiffness" : "a Young's modulus",
-                      more*(double)(w->materials[i].stiffness > 0 ? w->materials[i].stiffness
-                                                                  : w->materials[i].young),
-                      w->materials[i].stiffness > 0 ? "N/m" : "Pa");
-        }
-    }
-}
-
-DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
-    demi_findings f;
-    dem_advice advice;
-    if (demi_null(w, "dem_world_check", w, "world")) return 0;
-    memset(&f, 0, sizeof f);
-    f.to = findings;
-    f.room = findings && capacity > 0 ? capacity : 0;
-    demi_advise(w, &advice);
-    demi_check_motion(w, &f);
-    demi_check_radii(w, &f);
-    demi_check_digits(w, &f);
-    demi_check_materials(w, &f);
-    demi_check_walls(w, &f);
-    demi_check_outside(w, &f);
-    demi_check_enclosed(w, &f);
-    demi_check_overlaps(w, &advice, &f);
-    if (!w->bodies.count) return f.count;
-    if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {
-        demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
-        return f.count;
-    }
-    demi_check_pairs(w, &f);
-    demi_check_in_walls(w, &f);
-    demi_check_step(w, &advice, &f);
-    return f.count;
-}
-
-DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
-    static const char *const severities[] = {"note", "note", "warning", "error"};
-    dem_finding findings[16];
-    int i, n = dem_world_check(w, findings, 16);
-    for (i = 0; out && i < n && i < 16; i++)
-        fprintf(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
-    return n;
+    for (i = 0; i < 3 && t.mass > 0; i++) t.centre[i] /= t.mass;
+    return t;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -27550,7 +26908,7 @@ DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int coun
    Grains in: what a column or an array of a file is, by its name, and where its numbers go. All
    formats of >>read-grains use this. A name may carry quotes, a unit and a component (velocity:0,
    vx, omega_y, Position.X); a quantity that is there twice counts the first time.
-   Tests: tests/test_grains.c, tests/fuzz_grains.c.
+   Tests: tests/file/test_read_grains.c, tests/fuzz_grains.c.
    --------------------------------------------------------------------------------------------- */
 /* Of this machine: formats say which order they want. */
 static int demi_is_little_endian(void) {
@@ -27739,7 +27097,7 @@ static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
    Grains in: text with separators, XYZ, dumps of LAMMPS and LIGGGHTS are rows of columns; VTK and
    VTP are arrays, in words or in bytes. What each is says >>read-tables. As in >>read nothing is
    trusted: counts are held against the bytes there.
-   Tests: tests/test_grains.c, tests/fuzz_grains.c.
+   Tests: tests/file/test_read_grains.c, tests/fuzz_grains.c.
    --------------------------------------------------------------------------------------------- */
 /* ---- rows ---- */
 
@@ -30729,7 +30087,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
    Files and calls on a schedule: dem_world_step looks here (demi_lookers) before the first of its
    steps and after each. What each output has written is state (demi_written): a run that goes on
    from a checkpoint writes what the run without a stop would have written, and of a CSV file the
-   lines of later times are taken out before the first is appended. Tests: tests/test_output.c.
+   lines of later times are taken out before the first is appended. Tests: tests/file/test_output.c.
    --------------------------------------------------------------------------------------------- */
 static const char demi_output_columns[] = "steps bodies contacts kinetic rotational overlap_max";
 
@@ -31031,6 +30389,664 @@ DEM_API dem_output dem_output_every_add(dem_world *w, dem_output_kind kind, cons
     desc.path = path;
     desc.interval = interval;
     return dem_output_add(w, &desc);
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>check
+   What is likely to be wrong with a scene, before it runs. Each function looks for mistakes of one
+   kind and puts a sentence in for each. Limits are such that scenes of practice pass: grains from
+   0.1 um to 0.5 m, matter from foam to osmium, moduli softened to 1e4 Pa.
+   --------------------------------------------------------------------------------------------- */
+
+/* The most severe of all findings; what is found first comes first among its like. */
+typedef struct demi_findings { dem_finding *to; int room, kept, count; } demi_findings;
+static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...)
+    DEMI_FORMAT(3, 4);
+static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...) {
+    int i = f->kept;
+    va_list arguments;
+    f->count++;
+    while (i > 0 && f->to[i - 1].severity < severity) i--;
+    if (i >= f->room) return;
+    if (f->kept < f->room) f->kept++;
+    memmove(f->to + i + 1, f->to + i, (size_t)(f->kept - 1 - i)*sizeof *f->to);
+    f->to[i].severity = severity;
+    va_start(arguments, format);
+    vsnprintf(f->to[i].text, sizeof f->to[i].text, format, arguments);
+    va_end(arguments);
+}
+
+/* Units and sizes of matter. */
+static void demi_check_materials(const dem_world *w, demi_findings *f) {
+    int used[DEMI_MATERIALS], i, k;
+    memset(used, 0, sizeof used);
+    for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) used[demi_feed_material(d, k)] = 1;
+    }
+    for (i = 0; i < w->material_count; i++) {
+        const dem_material_desc *m = &w->materials[i];
+        if (!used[i])
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
+        if (m->density < 10 || m->density > 25000)
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
+                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?",
+                      i + 1, (double)m->density,
+                      (double)(m->density < 10 ? m->density : m->density/1000));
+        if (!w->desc.law && !(m->stiffness > 0) &&
+            (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
+                      "moduli are in Pa (glass has 7e10, softened grains 1e6 to 1e8)", i + 1,
+                      (double)m->young);
+        if (m->friction > 2)
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a friction of %g: it is a "
+                      "coefficient, not an angle; tan(%g degrees) is %.3g", i + 1,
+                      (double)m->friction, (double)m->friction,
+                      demi_sin((double)m->friction*DEMI_PI/180)/
+                      demi_cos((double)m->friction*DEMI_PI/180));
+        if (m->rolling_friction > 1)
+            demi_find(f, DEM_SEVERITY_WARNING,
+                      "material %d has a rolling friction of %g: it is a fraction of the "
+                      "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
+        if (m->rolling_friction > 0 && !(m->friction > 0))
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
+                      "friction: its grains slide instead of rolling", i + 1);
+    }
+    if (w->desc.threads > demi_threads_available() && demi_threads_available() > 0)
+        demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more threads "
+                  "make the run slower", w->desc.threads, demi_threads_available());
+}
+static void demi_radii_of(const dem_world *w, double *least, double *most) {
+    int i;
+    *least = 1e300;
+    *most = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        *least = DEMI_MIN(*least, (double)w->bodies.pos[4*i + 3]);
+        *most = DEMI_MAX(*most, (double)w->bodies.pos[4*i + 3]);
+    }
+}
+static void demi_check_radii(const dem_world *w, demi_findings *f) {
+    double least, most;
+    demi_radii_of(w, &least, &most);
+    if (most > 0.5)
+        demi_find(f, DEM_SEVERITY_WARNING, "the largest grain has a radius of %g m: lengths are in "
+                  "metres, was %g mm meant?", most, most);
+    if (least < 1e-7)
+        demi_find(f, DEM_SEVERITY_WARNING, "the smallest grain has a radius of %g m: below 1e-7 m "
+                  "attraction and thermal motion outweigh the forces simulated here", least);
+}
+/* Places are numbers of so many digits: far from the origin too few are left for overlaps, which
+   are thousandths of a radius. A bead that rebounds from a plane in single precision is off by 1 %
+   where places are 2e-4 radii apart, by 5 % at 2e-3, and sticks fast at 2e-2. */
+static void demi_check_digits(const dem_world *w, demi_findings *f) {
+    const double digit = DEMI_SINGLE ? 1.1920929e-7 : 2.220446e-16;
+    double worst = 0;
+    int i, k, body = 0;
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double part =
+                fabs((double)w->bodies.pos[4*i + k])/(double)w->bodies.pos[4*i + 3]*digit;
+            if (!(part > worst)) continue;
+            worst = part;
+            body = i;
+        }
+    if (worst > 2e-4)
+        demi_find(f, worst > 2e-3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "body %d is so far "
+                  "from the origin that its position is resolved only to %.2g of its radius: "
+                  "contacts lose %s; build the scene around the origin%s",
+                  (int)w->bodies.slot[body] + 1, worst,
+                  worst > 2e-3 ? "their accuracy" : "about 1 % of accuracy",
+                  DEMI_SINGLE ? ", or use double precision" : "");
+}
+
+/* m, how far along n (unit) from the origin a wall may stop what comes that way; 1e300: without
+   end, -1e300: nowhere (a plane seen along itself or from behind, a tube through its opening). */
+static double demi_wall_far(const demi_wall *wall, dem_vec3 n) {
+    const dem_vec3 own = demi_unrotate(wall->pose.rotation, n);
+    const int drawn = demi_wall_is(wall, DEMI_DRAWN);
+    double far = -1e300;
+    int i;
+    if (demi_wall_is(wall, DEMI_FLAT)) return own.z < DEM_R(-1e-3) ? 1e300 : -1e300;
+    if (DEMI_ABS(own.z) > DEM_R(0.999) && (drawn || (wall->extent < 0 && wall->radius > 0)))
+        return -1e300;
+    if (wall->extent < 0 || (drawn && DEMI_ABS(own.z) > DEM_R(1e-6))) return 1e300;
+    for (i = 0; i < wall->vertex_count; i++)
+        far = DEMI_MAX(far, (double)demi_dot(demi_at(wall->vertices + 3*i), own));
+    if (!wall->vertex_count) far = (double)DEMI_MAX(wall->extent, wall->radius);
+    else if (demi_wall_is(wall, DEMI_BALLS)) far += (double)wall->radius;
+    return far + (double)demi_dot(wall->pose.position, n);
+}
+/* m, the longest side of its box, or its diameter. */
+static double demi_wall_size(const demi_wall *wall) {
+    const dem_vec3 box = demi_sub(wall->box.hi, wall->box.lo);
+    if (!wall->vertex_count) return 2*(double)wall->extent;
+    return (double)DEMI_MAX(box.x, DEMI_MAX(box.y, demi_wall_is(wall, DEMI_DRAWN) ? 0 : box.z));
+}
+/* Does anything move, and does anything stop it? */
+static void demi_check_motion(const dem_world *w, demi_findings *f) {
+    const dem_vec3 g = w->desc.gravity;
+    const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
+    dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
+    double lowest = -1e300, floor = -1e300, speed = 0;
+    int i, moving = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+        if (w->bodies.inv_mass[i] <= 0) { floor = DEMI_MAX(floor, h); continue; }
+        moving++;
+        lowest = DEMI_MAX(lowest, h);
+        speed = DEMI_MAX(speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
+    }
+    if (!moving && !w->feed_count) {
+        demi_find(f, DEM_SEVERITY_ERROR, "no grain can move, and there is no feed: add grains, "
+                  "for example with dem_spheres_fill");
+        return;
+    }
+    if (!pulled && !forced && !(speed > 0) && moving)
+        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
+                  "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
+    if (pulled && moving && !forced && floor < lowest && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
+        w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
+        w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
+        w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
+        demi_find(f, DEM_SEVERITY_WARNING, "gravity is (%g, %g, %g) m/s2, but no wall or fixed "
+                  "grain is below the lowest grain: grains fall for ever; add a floor, or change "
+                  "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
+}
+
+/* Is a wall with ends all behind some plane, or beyond a face where grains leave? */
+static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
+    double lo[3], hi[3];
+    int k;
+    if (demi_wall_is(wall, DEMI_DRAWN)) return 0;       /* it goes on and on */
+    demi_domain_limits(w, lo, hi);
+    for (k = 0; k < w->wall_count; k++) {
+        const demi_wall *plane = &w->walls[k];
+        const dem_vec3 n = demi_rotate(plane->pose.rotation, demi_v(0, 0, 1));
+        if (plane->kind == DEMI_WALL_NONE || !demi_wall_is(plane, DEMI_FLAT)) continue;
+        if (demi_wall_far(wall, n) < (double)demi_dot(plane->pose.position, n)) return 1;
+    }
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
+        if (w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW &&
+            (demi_wall_far(wall, n) < lo[k] || -demi_wall_far(wall, demi_scale(n, -1)) > hi[k]))
+            return 1;
+    }
+    return 0;
+}
+/* Sizes and places of walls, beside those of grains. */
+static void demi_check_walls(const dem_world *w, demi_findings *f) {
+    double least, most;
+    int i;
+    demi_radii_of(w, &least, &most);
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const double size = demi_wall_size(wall);
+        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
+        if (most > 0 && size > 2e4*most)
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, %.3g radii of the "
+                      "largest grain: was it in millimetres? scale it by 0.001", (int)wall->id,
+                      demi_wall_kinds[wall->kind].name, size, size/most);
+        else if (most > 0 && size < least)
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, less than the radius "
+                      "of the smallest grain, %g m: is it in other units?", (int)wall->id,
+                      demi_wall_kinds[wall->kind].name, size, least);
+        if (demi_wall_hidden(w, wall))
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is behind a plane or outside the "
+                      "domain: nothing can reach it; does the plane's normal point to the grains?",
+                      (int)wall->id, demi_wall_kinds[wall->kind].name);
+    }
+}
+
+/* Grains inside each other, in walls, or out of the domain. Needs lists. */
+static void demi_check_pairs(const dem_world *w, demi_findings *f) {
+    double worst = 0.01;
+    int d, k, cross, count = 0, who[2] = {0, 0};
+    for (d = 0; d < w->domain_count; d++)
+        for (cross = 0; cross < 2; cross++) {
+            const demi_list *list = cross ? &w->cross : &w->own;
+            const int from = d*list->stride, n = cross ? w->domains[d].cross : w->domains[d].own;
+            for (k = from; k < from + n; k++) {
+                const int a = list->a[k], b = list->b[k];
+                const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
+                const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
+                                                              list->image[k], r)/r);
+                if (!(deep > 0.01) || (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0))
+                    continue;
+                count++;
+                if (deep <= worst) continue;
+                worst = deep;
+                who[0] = (int)w->bodies.slot[a] + 1;
+                who[1] = (int)w->bodies.slot[b] + 1;
+            }
+        }
+    if (count)
+        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
+                  : DEM_SEVERITY_NOTE,
+                      "%d pair%s of grains begin%s with an overlap, bodies %d and %d by %.3g of "
+                  "the smaller radius: they will fly apart; place them with dem_spheres_fill, or "
+                  "farther apart", count, count > 1 ? "s" : "",
+                  count > 1 ? "" : "s", who[0], who[1], worst);
+}
+static void demi_check_in_walls(dem_world *w, demi_findings *f) {
+    double worst = 0.01;
+    int d, k, count = 0, body = 0, wall = 0;
+    if (!demi_touch(w)) return;                 /* no memory: the run will say so */
+    for (d = 0; d < w->domain_count; d++)
+        for (k = 0; k < w->domains[d].kept_next; k++) {
+            const demi_kept *c = w->kept_next + w->kept_first[d] + k;
+            if (c->b >= 0 || !((double)c->deep > 0.01)) continue;
+            count++;
+            if ((double)c->deep <= worst) continue;
+            worst = (double)c->deep;
+            body = (int)w->bodies.slot[c->a] + 1;
+            wall = w->walls[c->wall].id;
+        }
+    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
+    if (count)
+        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
+                  : DEM_SEVERITY_NOTE, "grains overlap walls at %d place%s, body %d wall %d by "
+                  "%.3g of its radius: move it, or does the normal (inside) of the wall point the "
+                  "wrong way?", count, count > 1 ? "s" : "", body, wall, worst);
+}
+static void demi_check_outside(const dem_world *w, demi_findings *f) {
+    double lo[3], hi[3];
+    int i, k, count = 0;
+    demi_domain_limits(w, lo, hi);
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->bodies.pos[4*i + k];
+            if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
+            count++;
+            break;
+        }
+    if (count)
+        demi_find(f, DEM_SEVERITY_WARNING, "%d grain%s outside the domain, whose outflow faces "
+                  "will remove them in the first step; make the domain larger", count,
+                  count > 1 ? "s are" : " is");
+}
+
+/* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
+       thin: both sides push, so that grains inside a solid body touch nothing and stay there
+       unseen. A closed container has all grains inside; where some are inside and some are not,
+       one of the two was not meant. A shell is closed if an even number of its facets meets at
+       each edge (of profiles: at each end), also if the facets belong to several walls that do not
+       move against each other. A place is inside if a line from it crosses the shell an odd number
+       of times. --- */
+typedef struct demi_probe {
+    double x[3];                   /* m, where the surface was when its motion began */
+    int odd, turn;                 /* crossings: is their number odd; sum of their directions */
+    int feed;                      /* 0: a grain; else a place of this feed's region */
+    int owner;                     /* its images have the same */
+} demi_probe;
+typedef struct demi_probes {
+    demi_probe *at;                /* in the order of y: those near the surface */
+    int count, grains, places;     /* of these; of grains that can move and feeds' places in all */
+    int owners;
+    char *seen;                    /* for each owner: has an image of it been counted */
+} demi_probes;
+enum { DEMI_FEED_PLACES = 64 };    /* places by which a feed's region is known */
+
+static int demi_probe_compare(const void *a, const void *b) {
+    const double x = ((const demi_probe *)a)->x[1], y = ((const demi_probe *)b)->x[1];
+    return x < y ? -1 : x > y;
+}
+/* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
+   moved from `home` to `pose` since. 0 when memory ran out. */
+static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
+                          const double *box, dem_vec3 x, int feed) {
+    int n, k;
+    for (n = 0; n < 27; n++) {
+        const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+        const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
+        const dem_vec3 own = demi_unrotate(wall->pose.rotation,
+                                           demi_sub(demi_add(x, by), wall->pose.position));
+        const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation, own));
+        demi_probe *to;
+        double c[3];
+        int near = 1;
+        c[0] = (double)at.x; c[1] = (double)at.y; c[2] = (double)at.z;
+        for (k = 0; k < 3; k++)
+            near = near && (!s[k] || w->wall_period[k] > 0) && c[k] >= box[k] && c[k] <= box[3 + k];
+        if (!near) continue;
+        if ((size_t)p->count == *room) {
+            demi_probe *more = (demi_probe *)demi_alloc(w, 2*(*room + 32), sizeof *more);
+            if (!more) return 0;
+            if (p->count) memcpy(more, p->at, (size_t)p->count*sizeof *more);
+            demi_free(w, p->at);
+            p->at = more;
+            *room = 2*(*room + 32);
+        }
+        to = p->at + p->count++;
+        memcpy(to->x, c, sizeof c);
+        to->odd = to->turn = 0;
+        to->feed = feed;
+        to->owner = p->owners;
+    }
+    p->owners++;
+    return 1;
+}
+static void demi_probes_free(dem_world *w, demi_probes *p) {
+    demi_free(w, p->at);
+    demi_free(w, p->seen);
+}
+/* Grains and places of feeds that may be inside a surface in this box. 0 when memory ran out. */
+static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
+                            const double *box) {
+    size_t room = 0;
+    int i, n, ok = 1;
+    memset(p, 0, sizeof *p);
+    for (i = 0; i < w->bodies.count && ok; i++) {
+        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        p->grains++;
+        ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
+    }
+    for (i = 0; i < w->feed_count && ok; i++) {
+        const demi_feed *feed = demi_feed_at(w, i);
+        uint64_t random = 1;
+        demi_region g;
+        if (feed->state.done || !demi_feed_region(w, &feed->desc, &g)) continue;
+        for (n = 0; n < DEMI_FEED_PLACES && ok; n++) {
+            const double u = demi_uniform(&random), v = demi_uniform(&random);
+            const double at[3] = {u, v, demi_uniform(&random)};
+            dem_vec3 x;
+            if (!demi_region_at(&g, at, (dem_real)feed->lo[0], &x)) continue;
+            p->places++;
+            ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
+        }
+    }
+    if (!ok || !p->count) return ok;
+    qsort(p->at, (size_t)p->count, sizeof *p->at, demi_probe_compare);
+    p->seen = (char *)demi_alloc(w, (size_t)p->owners, 1);
+    return p->seen != 0;
+}
+/* Are there probes on both sides? wall: a number; normals: 1 where its facets have any. */
+static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_probes *p, int wall,
+                              int normals) {
+    const char *name = demi_wall_kinds[w->walls[wall].kind].name, *way = "";
+    int i, grains = 0, places = 0, feed = 0, turn = 0;
+    if (p->count) memset(p->seen, 0, (size_t)p->owners);
+    for (i = 0; i < p->count; i++) {
+        if (!p->at[i].odd || p->seen[p->at[i].owner]++) continue;
+        turn += p->at[i].turn > 0 ? 1 : -1;
+        if (p->at[i].feed) { places++; feed = p->at[i].feed; } else grains++;
+    }
+    if (normals && turn) way = turn > 0 ? " with normals outwards" : " with normals inwards";
+    if (!(grains + places) || grains + places == p->grains + p->places) return;
+    if (grains)
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d "
+                  "grains begin inside wall %d, a closed %s%s, and stay inside: if the wall is "
+                  "solid, keep them out (`inside` of dem_region) or remove them; if it is hollow, "
+                  "all is well", grains, p->grains, (int)w->walls[wall].id, name, way);
+    else
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d "
+                  "inserts grains inside wall %d, a closed %s%s, and they stay inside: if the "
+                  "wall is solid, keep them out (`inside` of the feed); if it is hollow, all is "
+                  "well", feed, (int)w->walls[wall].id, name, way);
+}
+/* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
+   above; the same of a side from b to a, to the bit. */
+static int demi_probe_crosses(const double *a, const double *b, const double *x) {
+    const int up = b[1] > x[1];
+    const double *lo = up ? a : b, *hi = up ? b : a;
+    if ((a[1] > x[1]) == up) return 0;
+    if (!((lo[0] - x[0])*(hi[1] - x[1]) - (hi[0] - x[0])*(lo[1] - x[1]) > 0)) return 0;
+    return up ? 1 : -1;
+}
+/* Crossings of one facet: of a segment by lines along x, of a triangle by those along z. */
+static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
+    const int per = j->per;
+    const double *c[3], *a, *b;
+    double lo, hi, u[3], v[3], n[3];
+    int k, from = 0, to = p->count;
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + 2 + (k < per ? k : 0)];
+    lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
+    hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
+    for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
+    for (k = 0; k < 3; k++) n[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
+    while (from < to) {
+        const int mid = from + (to - from)/2;
+        if (p->at[mid].x[1] < lo) from = mid + 1;
+        else to = mid;
+    }
+    for (; from < p->count && p->at[from].x[1] <= hi; from++) {
+        demi_probe *at = p->at + from;
+        int turn = 0;
+        for (k = 0; k < (per == 3 ? 3 : 1); k++) {
+            a = c[k];
+            b = c[(k + 1)%3];
+            turn += demi_probe_crosses(a, b, at->x);
+        }
+        if (!turn || (per == 3 && !((c[0][2] - at->x[2])*fabs(n[2]) >
+            (n[0]*(at->x[0] - c[0][0]) + n[1]*(at->x[1] - c[0][1]))*(n[2] > 0 ? 1 : -1)))) continue;
+        at->odd = !at->odd;
+        at->turn += turn;
+    }
+}
+/* Shells of the join: root[i]: the first facet of the shell that facet i is of, -1: it is open. */
+static void demi_join_shells(demi_join *j, int32_t *root) {
+    demi_side *s = j->per == 3 ? j->piece : j->side;
+    const int sides = j->per == 3 ? j->sides : 2*j->facets;
+    int i, end;
+    for (i = 0; i < j->facets; i++) root[i] = i;
+    for (i = 0; i < sides && j->per == 2; i++) {
+        const int32_t at = j->facet[5*(i/2) + 2 + i%2];
+        s[i] = demi_side_of(at, at, i/2, i%2);
+    }
+    if (j->per == 2) qsort(s, (size_t)sides, sizeof *s, demi_side_compare);
+    for (i = 1; i < sides; i++) {
+        int32_t a = s[i - 1].facet, b = s[i].facet;
+        if (s[i].lo != s[i - 1].lo || s[i].hi != s[i - 1].hi) continue;
+        while (root[a] != a) a = root[a] = root[root[a]];
+        while (root[b] != b) b = root[b] = root[root[b]];
+        root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
+    }
+    for (i = 0; i < j->facets; i++) root[i] = root[root[i]];
+    for (i = 0; i < sides; i = end) {
+        const int32_t of = s[i].facet;
+        for (end = i; end < sides && s[end].lo == s[i].lo && s[end].hi == s[i].hi;) end++;
+        if ((end - i)%2) root[root[of] >= 0 ? root[of] : of] = -1;
+    }
+    for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
+}
+/* The closed shells of this wall and those that do not move against it: meshes or profiles. */
+static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
+    double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
+    int32_t *root = 0, *next = 0;
+    demi_probes p;
+    demi_join j;
+    int i, k, ok = demi_join_begin(w, &j, w->walls[wall].group, per);
+    memset(&p, 0, sizeof p);
+    for (i = 0; i < 3*j.points && ok; i++) {
+        box[i%3] = DEMI_MIN(box[i%3], j.x[i]);
+        box[3 + i%3] = DEMI_MAX(box[3 + i%3], j.x[i]);
+    }
+    if (per == 2) { box[2] = -1e300; box[5] = 1e300; }
+    if (ok) ok = demi_probes_make(w, &p, &w->walls[wall], box);
+    if (ok && p.count) {
+        demi_join_double(&j);                   /* which points are corners */
+        ok = per == 2 || demi_join_cut(w, &j);
+        root = (int32_t *)demi_alloc(w, 2*(size_t)j.facets + 1, sizeof *root);
+    }
+    if (ok && root) {
+        next = root + j.facets;
+        demi_join_shells(&j, root);
+        for (i = 0; i < j.facets; i++) next[i] = -1;
+        for (i = j.facets - 1; i >= 0; i--) {   /* facets of a shell: a list, its root first */
+            if (root[i] < 0 || root[i] == i) continue;
+            next[i] = next[root[i]];
+            next[root[i]] = i;
+        }
+        for (i = 0; i < j.facets; i++) {
+            if (root[i] != i) continue;
+            for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
+            for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
+            if (j.facet[5*i] >= 0) demi_probes_judge(w, f, &p, j.facet[5*i], per == 3);
+        }
+    }
+    demi_free(w, root);
+    demi_probes_free(w, &p);
+    demi_join_free(w, &j);
+}
+/* A surface of revolution is closed where it ends on its axis, or where it began. */
+static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
+    const demi_wall *s = &w->walls[wall];
+    const int n = s->ring_count;
+    const dem_real *r = s->ring_radius, *h = s->ring_height;
+    const int loop = !(r[0] > r[n - 1]) && !(r[0] < r[n - 1]) && !(h[0] > h[n - 1]) &&
+        !(h[0] < h[n - 1]);
+    const double e = (double)s->extent;
+    const dem_vec3 x = s->home.position;
+    double box[6];
+    demi_probes p;
+    int i, k;
+    if (!loop && (r[0] > 0 || r[n - 1] > 0)) return;
+    box[0] = (double)x.x - e; box[1] = (double)x.y - e; box[2] = (double)x.z - e;
+    for (k = 0; k < 3; k++) box[3 + k] = box[k] + 2*e;
+    if (demi_probes_make(w, &p, s, box)) {
+        for (i = 0; i < p.count; i++) {
+            const dem_vec3 at = demi_v((dem_real)p.at[i].x[0], (dem_real)p.at[i].x[1],
+                                       (dem_real)p.at[i].x[2]);
+            const dem_vec3 own = demi_unrotate(s->home.rotation, demi_sub(at, x));
+            const double c[2] = {sqrt((double)(own.x*own.x + own.y*own.y)), (double)own.z};
+            for (k = 0; k + 1 < n; k++) {
+                const double a[2] = {(double)r[k], (double)h[k]};
+                const double b[2] = {(double)r[k + 1], (double)h[k + 1]};
+                if (demi_probe_crosses(a, b, c)) p.at[i].odd = !p.at[i].odd;
+            }
+        }
+        demi_probes_judge(w, f, &p, wall, 0);
+    }
+    demi_probes_free(w, &p);
+}
+static void demi_check_enclosed(dem_world *w, demi_findings *f) {
+    int i, k, per;
+    if (!w->facets_valid && !demi_facets_weigh(w)) return;     /* no memory: the run will say so */
+    for (i = 0; i < w->wall_count; i++) {
+        const int kind = w->walls[i].kind;
+        if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
+        for (per = 2; per <= 3; per++) {
+            for (k = 0; k < i && !demi_join_member(w, k, w->walls[i].group, per);) k++;
+            if (k == i && kind != DEMI_WALL_NONE && demi_join_member(w, i, w->walls[i].group, per))
+                demi_check_shells(w, f, i, per);
+        }
+    }
+}
+
+/* The time step that was asked for, beside what the scene bears. */
+static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const double dt = (double)w->desc.dt;
+    double limit, fastest = demi_fastest(w);
+    int i, worst = 0;
+    if (!(dt > 0) || (!(a->contact_time > 0) && !demi_impulsive(w))) return;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
+    if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
+    else if (dt > (double)a->dt_max)
+        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
+                  "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
+                  (double)a->dt_max, a->binds);
+    else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
+        demi_find(f, DEM_SEVERITY_ERROR,
+                  "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
+                  "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
+                  w->press[worst].contacts);
+    else if (dt < (double)a->dt/20)
+        demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
+                  "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
+                  (double)a->dt);
+    if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
+        demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
+                  "smallest grain in a step of %g s: they would pass through each other "
+                  "undetected; use dt = 0", fastest, fastest*dt/(double)w->effects.radius_min, dt);
+}
+/* Overlaps, over the radius, of the smallest grains of each material with their like: when they
+   meet at the speed there may be, and under the weight of all, were they stacked where they are. */
+static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
+    const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
+    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
+    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, area = 0, mass = 0;
+    const double n[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                         (double)w->desc.gravity.z};
+    demi_grades grades;
+    int i, k;
+    if (w->desc.law || demi_impulsive(w)) return;       /* nothing is known of it; no overlaps */
+    for (i = 0; i < w->bodies.count; i++) {
+        if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->bodies.pos[4*i + k], r = (double)w->bodies.pos[4*i + 3];
+            lo[k] = DEMI_MIN(lo[k], x - r);
+            hi[k] = DEMI_MAX(hi[k], x + r);
+        }
+    }
+    for (k = 0; k < 3 && g > 0 && mass > 0; k++)
+        area += fabs(n[k])/g*(hi[(k + 1)%3] - lo[(k + 1)%3])*(hi[(k + 2)%3] - lo[(k + 2)%3]);
+    demi_grades_of(w, &grades);
+    for (i = 0; i < w->material_count; i++) {
+        const double r = grades.smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r)/2 : 0;
+        double deep[2] = {0, 0}, force, kn;
+        dem_real coef[DEMI_COEFS];
+        if (!(r > 0)) continue;
+        demi_coefficients(w, i, i, r/2, m, m, 0, coef);
+        kn = (double)coef[DEMI_KN];
+        force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
+        deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
+        deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
+        for (k = 0; k < 2; k++) {
+            const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
+            if (!(deep[k] > 0.05)) continue;
+            demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
+                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s; "
+                      "%s of %.2g %s would keep it below 0.01", i + 1, r, deep[k],
+                      k ? "under a weight of " : "at ", k ? force : v, k ? "N each" : "m/s",
+                      w->materials[i].stiffness > 0 ? "a stiffness" : "a Young's modulus",
+                      more*(double)(w->materials[i].stiffness > 0 ? w->materials[i].stiffness
+                                                                  : w->materials[i].young),
+                      w->materials[i].stiffness > 0 ? "N/m" : "Pa");
+        }
+    }
+}
+
+DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
+    demi_findings f;
+    dem_advice advice;
+    if (demi_null(w, "dem_world_check", w, "world")) return 0;
+    memset(&f, 0, sizeof f);
+    f.to = findings;
+    f.room = findings && capacity > 0 ? capacity : 0;
+    demi_advise(w, &advice);
+    demi_check_motion(w, &f);
+    demi_check_radii(w, &f);
+    demi_check_digits(w, &f);
+    demi_check_materials(w, &f);
+    demi_check_walls(w, &f);
+    demi_check_outside(w, &f);
+    demi_check_enclosed(w, &f);
+    demi_check_overlaps(w, &advice, &f);
+    if (!w->bodies.count) return f.count;
+    if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {
+        demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
+        return f.count;
+    }
+    demi_check_pairs(w, &f);
+    demi_check_in_walls(w, &f);
+    demi_check_step(w, &advice, &f);
+    return f.count;
+}
+
+DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
+    static const char *const severities[] = {"note", "note", "warning", "error"};
+    dem_finding findings[16];
+    int i, n = dem_world_check(w, findings, 16);
+    for (i = 0; out && i < n && i < 16; i++)
+        fprintf(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
+    return n;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -34960,7 +34976,7 @@ static const char *const demi_viewer[] = {
                       2: a number of the user's, float32
        values         count; each: number, float32
 
-   Tested by tests/test_replay.c, which reads films back, and tests/replay.sh in a browser.
+   Tested by tests/replay/test_replay.c, which reads films back, and tests/replay.sh in a browser.
    --------------------------------------------------------------------------------------------- */
 
 /* Of a slot: what the film has told of it so far. */
@@ -35467,6 +35483,7 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
 #elif defined(__GNUC__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
+
 #pragma pop_macro("Y")
 #pragma pop_macro("X")
 #pragma pop_macro("W")

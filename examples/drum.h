@@ -10,7 +10,7 @@
    along z, every other one turned by half a place. The ends are Algorithm 5.3: hexagonal sheets
    over both of them, spheres that show at least in part. Printed: layers from
    z = -L/2 + r(1 + z sqrt 3) with z itself stepping by r sqrt 3; we step the layer's number.
-   Tests: tests/test_refusals.c. Used by examples/mill.c. */
+   Tests: tests/api/test_refusals.c. Used by examples/mill.c. */
 #ifndef DRUM_H
 #define DRUM_H
 #include <limits.h>

@@ -7,7 +7,7 @@
        exam_print(&sheet, stdout);                         // a line each: passed, or what was found
 
    A law is moved by hand along paths of overlap, slip and rolling (exam_begin, exam_move), and in worlds of two grains
-   that collide. exam.c draws its portrait as a page; tests/test_exam.c has a wrong law for every line. What a law that
+   that collide. exam.c draws its portrait as a page; tests/examples/test_exam.c has a wrong law for every line. What a law that
    fails a line does to a scene: docs/laws.md. */
 #ifndef EXAM_H
 #define EXAM_H

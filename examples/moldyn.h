@@ -58,7 +58,7 @@
    written or renamed; DEM_ERROR_ARGUMENT: a null pointer (if it is that of the moldyn, without a
    sentence) or a value out of its range; DEM_ERROR_MEMORY. Nothing is printed, nothing exits.
    What a file announces is compared with its size before memory is taken.
-   Tests: tests/test_moldyn.c; `make fuzz` feeds moldyn_parse with any bytes. */
+   Tests: tests/examples/test_moldyn.c; `make fuzz` feeds moldyn_parse with any bytes. */
 #ifndef MOLDYN_H
 #define MOLDYN_H
 #ifndef DEM_H

@@ -12,7 +12,7 @@
    these are; [ALK07] takes 1 for the lowest deck from the start. Its eq 4.36 contains the density
    twice, which we take for a misprint. The time is counted from the creation of the world or the
    last dem_outlet_reset, whichever outlet's is the earliest.
-   Tests: tests/test_feed.c. Used by examples/screener.c. */
+   Tests: tests/scene/test_feed.c. Used by examples/screener.c. */
 #ifndef SORTING_H
 #define SORTING_H
 #include <stdio.h>

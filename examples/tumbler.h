@@ -18,7 +18,7 @@
            it are one name behind (what is named A23' is A22', and so on: A33' appears twice)
      4.7   the way back must end where it began: w_b (2 n dt - (t - t_s)); printed are
            -w_b (t - t_s) - 2 n dt, which mixes an angle with a time
-   Tests: tests/test_tumbler.c. */
+   Tests: tests/examples/test_tumbler.c. */
 #ifndef TUMBLER_H
 #define TUMBLER_H
 #include <math.h>

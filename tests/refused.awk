@@ -1,5 +1,5 @@
 # awk -f tests/refused.awk dem.h > tests/refused.h: a call of every public function that takes a world, for
-# tests/test_refused.c, which has an argument of each type, good or bad. Of each desc also its fields, so that
+# tests/api/test_refused.c, which has an argument of each type, good or bad. Of each desc also its fields, so that
 # each is bad in turn. What is declared in a new type does not compile there: write good_TYPE or take_TYPE.
 />>implementation - stop here/ { exit }
 {                                               # the line without comments

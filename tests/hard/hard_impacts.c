@@ -49,7 +49,7 @@ typedef struct sweep {
 /* What an impact may gain at the step that the library chooses, t_c/50, of the energy that came:
    the place in a step where contacts begin and end. Measured: 3e-5 for Hertz, 3e-4 for linear
    springs among 400 impacts on each target; among 20,000 on a plane up to 1.92e-3
-   (tests/test_facets.c), so the long form has more room. */
+   (tests/surface/test_facets.c), so the long form has more room. */
 static double bound_of(double step) { return (at_length() ? 4e-3 : 1e-3)*step*step; }
 
 typedef struct lane { dem_body a, b; dem_vec3 middle; double before; } lane;

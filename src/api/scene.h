@@ -1,0 +1,888 @@
+/* ---------------------------------------------------------------------------------------------
+   >>scene
+   The parts of a scene, in the order in which a program builds it: the world, materials, grains
+   and other bodies, walls, joints, feeds and outlets.
+
+   Errors. A function that fails changes nothing. It returns an error code, an id of zeros or 0,
+   and dem_world_error_get says why. A function fails if a value is out of range, if an id or a
+   pointer is wrong, or if memory runs out; the comments below state only further reasons.
+   Positions (m), velocities (m/s) and angular velocities (rad/s) must be finite and at most 1e15.
+
+   Descs. Start from the constant of its name (DEM_WORLD_DESC) and set what differs. A field that is
+   left 0 is absent or has the stated default; a required field must be set.
+   --------------------------------------------------------------------------------------------- */
+
+/* ---- world ---- */
+/* The description of a world. dem_world_create_error_get checks it. */
+typedef struct dem_world_desc {
+    /* -- gravity and domain -- */
+    dem_vec3 gravity;              /* m/s2 */
+    /* m. Required on axes whose boundary is periodic or outflow, not needed on open axes. A
+       periodic axis must be at least as long as four of the largest radii, two skins and two
+       ranges of the law. */
+    dem_box domain;
+    dem_boundary boundary[3];      /* of the axes x, y and z */
+    /* 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0
+       and rotate about z only. gravity.z is ignored. */
+    int planar;
+    dem_real thickness;            /* m, of discs and polygons along z; default 1 m */
+
+    /* -- contact laws, for DEM_RESPONSE_SPRINGS: see "choices" above -- */
+    dem_normal_law normal_law;
+    dem_tangent_law tangent_law;
+    dem_rolling_law rolling_law;
+    dem_tension tension;
+    dem_load friction_load;
+    dem_slider slider;
+    dem_convention convention;
+
+    /* -- user-defined law -- */
+    dem_law_fn law;                /* replaces the normal, tangential and rolling law */
+    void *law_user;                /* passed to law as c->user */
+    int law_memory;                /* reals of contact history per contact: 0 to 16 */
+    /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Default: memory0,
+       memory1, ... */
+    const char *law_memory_names;
+    int law_vectors;               /* leading triples of them that are vectors: 0 to law_memory/3 */
+    /* N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the
+       built-in law. */
+    dem_real law_stiffness;
+    /* law_range: m, >= 0; law_range_radii: a factor, >= 0. law is also called for two bodies that
+       do not touch while their gap is below law_range + law_range_radii (Ra + Rb), with c->overlap
+       < 0. A wall counts with radius 0, an ellipsoid with its bounding sphere. Built-in laws that
+       it calls need overlap > 0. With both 0, law is called in contact only, at no extra cost. */
+    dem_real law_range, law_range_radii;
+    int law_who;                   /* 1 fills in c->who: ids, radii, masses, contact point, time */
+    /* Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who
+       and body_reals. It is called before the first step and at least once in eight steps. A given
+       dt above the stable limit is an error; a chosen dt is at most half of it. Null: these rates
+       do not limit dt. */
+    dem_law_rate_fn law_rate;
+
+    /* -- numbers on bodies -- */
+    /* Names of numbers that every body and wall carries, such as "temperature charge": at most 8
+       words of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With
+       law_who, law reads them and returns their rates (per s). Null: no numbers. */
+    const char *body_reals;
+    /* Updates the numbers of a body after each step. Null: each grows by rate dt. Numbers of walls
+       stay as set; dem_wall_loads sums what they would gain. */
+    dem_reals_fn body_reals_fn;
+    void *body_reals_user;         /* passed to body_reals_fn */
+
+    /* -- force fields; both may be given and add up -- */
+    dem_force_fn force;            /* force on a body */
+    dem_body_force_fn body_force;  /* force and torque on a body */
+    void *force_user;              /* passed to both */
+
+    /* -- time stepping -- */
+    dem_integrator integrator;
+    dem_real dt;                   /* s; 0 means chosen from the scene, see dem_step_advice_get */
+    int allow_large_dt;            /* 1 allows dt above t_c/20, to show what happens then */
+    /* m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness
+       from Young's modulus depend on it. If it is 0, the time step is for the largest speed
+       expected from grains, walls and height of fall, and the stiffness is for 1 m/s. */
+    dem_real impact_speed;
+
+    /* -- impulses -- */
+    /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
+       (docs/impulses.md) for either value of integrator that it accepts, 0 and
+       DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
+       solved; 0 means three times the distance that the fastest body moves in a step, or less
+       where a short period leaves no room, but always between 0.1 and 1 of the largest radius.
+       The fields that follow apply to impulses only. */
+    dem_response response;
+    dem_cone cone;
+    dem_solver solver;
+    int sweeps;                    /* most sweeps over all contacts in a step; default 200 */
+    /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. Default: when
+       the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
+       largest change is below 30 times that. */
+    dem_real tolerance;
+    int cold_start;                /* 1 begins with zero impulses, not those of the last step */
+    /* 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
+       With 0 it continues; dem_counters_get, the report and dem_progress_print count such steps. */
+    int unsolved_stops;
+
+    /* -- contact detection -- */
+    dem_search search;
+    /* m, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is
+       rebuilt in every step. */
+    dem_real skin;
+
+    /* -- other shapes -- */
+    dem_rotation rotation;         /* of bodies that are not spheres */
+    dem_overlap ellipsoid_overlap;
+    dem_cluster_contacts cluster_contacts;
+    int orientations;              /* 1 follows the orientations of spheres too */
+
+    /* -- running -- */
+    int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
+    int threads;                   /* 1 to 64; 0 means as many as OpenMP offers, at most 64 */
+    dem_allocator allocator;       /* default malloc and free */
+} dem_world_desc;
+static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
+    {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
+    DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_ALLOWED,
+    DEM_LOAD_REPULSIVE, DEM_SLIDER_PARALLEL, DEM_CONVENTION_STANDARD,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_INTEGRATOR_VELOCITY_VERLET, 0, 0, 0,
+    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_GAUSS_SEIDEL, 0, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_CLUSTER_CONTACTS_MERGED, 0, 0, 0, {0, 0, 0}};
+#define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
+
+/* Creates an empty world. Returns null if a value of desc is out of range or memory runs out;
+   dem_world_create_error_get(desc) says why. */
+static inline dem_world *dem_world_create(const dem_world_desc *desc);
+/* Returns the reason why dem_world_create refuses desc, or "" if it accepts desc. */
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
+/* Frees a world and all that belongs to it. Null does nothing. The function of an output cannot
+   destroy its world. */
+DEM_API void dem_world_destroy(dem_world *world);
+/* Returns the error message of the last call on this world that failed; "" if none failed. For a
+   null world the message says that it is null.
+   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
+   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
+   that run the scene return an error that quotes its message, because a scene without its floor
+   would run and return DEM_OK. They work again after a call of this function or after the failed
+   call has been repeated with success. A program that handles such an error and continues calls
+   this function first. */
+DEM_API const char *dem_world_error_get(const dem_world *world);
+/* Returns a short text for a result, such as "out of memory". */
+DEM_API const char *dem_result_name_get(dem_result result);
+/* Returns the desc in force: zeros are replaced by the values that were chosen. */
+DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
+
+/* ---- materials ---- */
+/* A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients
+   at most 1e9. With impulses young may be 0 and restitution may be 0. */
+typedef struct dem_material_desc {
+    dem_real density;              /* kg/m3, required, > 0 */
+    /* Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness */
+    dem_real young;
+    dem_real poisson;              /* 0 <= nu < 0.5; 0 is a physical value */
+    /* Required, 0 < e <= 1: speed after a normal impact over speed before it. The hysteretic law
+       takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact
+       without adhesion. */
+    dem_real restitution;
+    dem_real friction;             /* sliding friction mu, >= 0 */
+    /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
+       Fn until the contact slides, then mu Fn until the slip stops or reverses. */
+    dem_real friction_static;
+    dem_real rolling_friction;     /* mu_r, >= 0: the moment is at most mu_r R* Fn */
+    /* N/m, kn of the linear and hysteretic law; 0 means from young and impact_speed [DIM04] */
+    dem_real stiffness;
+    dem_real stiffness_ratio;      /* kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu) */
+    /* N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness. */
+    dem_real stiffness_unloading;
+    /* N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion */
+    dem_real stiffness_adhesion;
+} dem_material_desc;
+static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
+
+/* Adds a material. A world holds at most 64. */
+DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
+/* Changes moduli, restitution and friction of a material, also while the world runs. Its pairs are
+   mixed again, except those that dem_pair_set has replaced. Contacts keep their history; a chosen
+   time step is chosen again. The density must stay the same, because bodies have their masses. A
+   checkpoint that is written afterwards can be read only by a world whose material has been changed
+   in the same way. */
+DEM_API dem_result dem_material_set(dem_world *world, dem_material material,
+                                    const dem_material_desc *desc);
+/* Writes the present values of a material to desc. */
+DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
+                                    dem_material_desc *desc);
+
+/* The contact properties of two materials. Unless dem_pair_set sets them, they are mixed from the
+   materials, for walls as for grains:
+   - restitution, the three friction coefficients and stiffness_adhesion by the geometric mean: a
+     coefficient that is 0 in one of the two is 0 in the pair (friction_static 0 means friction);
+   - moduli in series as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G;
+   - stiffness by the mean 2 ka kb/(ka + kb) if both give one; otherwise it follows from E*, or is
+     the given one if E* is unknown because a material has no young;
+   - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
+typedef struct dem_pair {
+    dem_real young_eff;            /* E*, Pa */
+    dem_real shear_eff;            /* G*, Pa */
+    dem_real restitution, friction;
+    /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
+       materials leave it 0. */
+    dem_real friction_static;
+    dem_real rolling_friction;     /* mu_r: the moment is at most mu_r R* Fn */
+    /* N/m, linear and hysteretic law; 0 means from E* and impact_speed for each pair of radii */
+    dem_real stiffness;
+    dem_real stiffness_ratio;      /* kt/kn, linear and hysteretic law */
+    dem_real tangent_damping;      /* factor on the tangential dashpot, >= 0; mixed: 1 */
+    /* N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
+    dem_real stiffness_adhesion;
+    /* N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
+       restitution (linear) or none (hysteretic) */
+    dem_real normal_damping;
+    /* The last three are for impulses only: 0 when mixed, and must be 0 with springs. */
+    dem_real spinning_friction;    /* mu_spin, >= 0: moment about the normal up to mu_spin R* Fn */
+    /* N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of
+       the smaller radius. */
+    dem_real cohesion;
+    /* m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable
+       for any value; oscillations that the step does not resolve are damped. */
+    dem_real compliance;
+} dem_pair;
+/* Writes the contact properties of two materials to pair. */
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
+                                dem_pair *pair);
+/* Replaces the contact properties of two materials, in both orders. Start from dem_pair_get. */
+DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b,
+                                const dem_pair *pair);
+
+/* The coefficients of the built-in laws for two spheres. */
+typedef struct dem_coefficients {
+    dem_real r_eff, m_eff;         /* m, kg: effective radius and mass */
+    dem_real kn, cn, kt, ct;       /* see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v */
+    dem_real kun, kad;             /* N/m, hysteretic law; otherwise 0 */
+    dem_real damping_ratio;        /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
+    dem_real contact_time;         /* s, at the impact speed; hysteretic law: [ALK07] eq 2.45 */
+} dem_coefficients;
+/* Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of
+   material b. The impact speed is that of the desc, or 1 m/s if it is 0 there. */
+DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
+                                        dem_real radius_a, dem_real radius_b,
+                                        dem_coefficients *out);
+/* Prints the contact properties of all pairs of materials, one line per pair. */
+DEM_API void dem_pairs_print(const dem_world *world, FILE *out);
+
+/* ---- grains ---- */
+
+/* Adds a sphere, or in a planar world a disc, at rest. radius > 0 and position in m. */
+DEM_API dem_body dem_sphere_add(dem_world *world, dem_material material, dem_real radius,
+                                dem_vec3 position);
+/* Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or null for
+   rest. radii: count, m, or null if all have `radius`. */
+DEM_API dem_result dem_spheres_add(dem_world *world, dem_material material, int count,
+                                   const dem_real *positions,
+                                   const dem_real *velocities, const dem_real *radii,
+                                   dem_real radius);
+/* Returns nonzero if a body with this bounding radius (m) may have its centre here. */
+typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
+/* A region for new bodies. */
+typedef struct dem_region {
+    /* m, required. Bodies lie wholly inside. If the box spans the domain on a periodic axis, it has
+       no faces there and centres may be anywhere. */
+    dem_box box;
+    /* 'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis,
+       elliptic if the box is not square. 0 means the whole box. */
+    int cylinder;
+    dem_inside_fn inside;          /* restricts the region further; null means no restriction */
+    void *user;                    /* passed to inside */
+} dem_region;
+static const dem_region DEM_REGION_ZERO = {{{0, 0, 0}, {0, 0, 0}}, 0, 0, 0};
+#define DEM_REGION DEM_REGION_ZERO
+/* Returns the region that is a whole box. */
+DEM_INLINE dem_region dem_region_make(dem_box box) {
+    dem_region region = DEM_REGION;
+    region.box = box;
+    return region;
+}
+/* Returns the region of a box in which inside(centre, radius, user) is nonzero. */
+DEM_INLINE dem_region dem_region_inside_make(dem_box box, dem_inside_fn inside, void *user) {
+    dem_region region = dem_region_make(box);
+    region.inside = inside;
+    region.user = user;
+    return region;
+}
+/* Adds up to count spheres of one radius (m) at random positions in a region, one after the other.
+   The same seed gives the same positions. A position is free if the sphere there overlaps no body
+   (a body that is not a sphere counts with its bounding sphere), also across periodic faces, and
+   touches no wall. No position is free behind a plane, on the wrong side of a cylinder or in a
+   sieve; the inside of a closed mesh counts like its outside. Returns how many were added. If these
+   are fewer than count, 2000 tries for one sphere failed; dem_world_error_get says so, but the
+   world can run. */
+DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
+                             dem_region region, int count, uint64_t seed);
+/* The kind of a size distribution. F(r) is the fraction finer than radius r. All are truncated to
+   min <= r <= max and scaled to 1. */
+typedef enum dem_sizes_kind {
+    DEM_SIZES_UNIFORM = 0,         /* F grows linearly with r */
+    DEM_SIZES_LOGNORMAL,           /* log-normal, by median and spread */
+    DEM_SIZES_WEIBULL,             /* Weibull or Rosin-Rammler: F = 1 - exp(-(r/scale)^modulus) */
+    DEM_SIZES_SIEVE_CURVE,         /* the fraction that passes each of `count` sieves */
+    DEM_SIZES_NORMAL,              /* normal, by median and deviation */
+    /* exponential beyond min with mean `scale` (docs/separator.md): F = 1 - exp(-(r - min)/(scale -
+       min)) */
+    DEM_SIZES_EXPONENTIAL
+} dem_sizes_kind;
+enum { DEM_SIEVES = 32 };          /* largest number of sieves of a sieve curve */
+/* A size distribution, by radius. */
+typedef struct dem_sizes {
+    dem_sizes_kind kind;
+    int by_count;                  /* 0: F is a fraction of the mass, 1: of the number */
+    /* m, 1e-15 <= min <= max < 1e15. Defaults for 0: log-normal, the median times exp(-6 spread)
+       and exp(6 spread); normal, 6 deviations from the median, min at least 1e-3 of the median;
+       sieve curve, its ends; Weibull and exponential, max where F = 1 - 1e-9. The others are
+       required: min of Weibull and exponential, both of uniform. */
+    dem_real min, max;
+    dem_real median;               /* m, log-normal and normal, > 0 */
+    double spread;                 /* log-normal, > 0 and < 10: standard deviation of ln r */
+    dem_real scale;                /* m, Weibull > 0; exponential: the mean, > min */
+    double modulus;                /* Weibull, > 0.05 and < 1000 */
+    int count;                     /* number of sieves, 2 to 32 */
+    dem_real radius[DEM_SIEVES];   /* m, half the apertures, > 0, ascending */
+    /* Fraction that passes each sieve, ascending, the last 1. F is linear between two sieves;
+       grains that pass the first have its radius. */
+    double passing[DEM_SIEVES];
+    dem_real deviation;            /* m, normal, > 0: standard deviation */
+} dem_sizes;
+static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0};
+#define DEM_SIZES DEM_SIZES_ZERO
+/* Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error. */
+DEM_API double dem_sizes_finer_get(dem_world *world, const dem_sizes *sizes, dem_real radius);
+/* Draws count radii (m) at random or, with seed 0, at equal steps of the distribution of numbers,
+   ascending: then a few hundred radii represent it within 1 %. Mass is proportional to r^3, in
+   planar worlds to r^2. */
+DEM_API dem_result dem_sizes_draw(dem_world *world, const dem_sizes *sizes, int count,
+                                  uint64_t seed, dem_real *radii);
+/* Divides a distribution into at most class_count (1 to 16) classes, whose bounds have equal
+   ratios, for the fields radius and amount of dem_feed_desc (with by_mass = 1 - by_count). radius
+   (m) is that of a grain of the mean mass of its class; the amounts sum to 1. Returns the number of
+   classes that are not empty; 0 on error. */
+DEM_API int dem_sizes_classes_get(dem_world *world, const dem_sizes *sizes, int class_count,
+                              dem_real *radius, double *amount);
+/* Adds up to count spheres, as dem_spheres_fill does, with radii as dem_sizes_draw gives them for
+   its seed 0, largest first, while there is most room. seed is for the positions. */
+DEM_API int dem_sizes_fill(dem_world *world, dem_material material, const dem_sizes *sizes,
+                           dem_region region, int count, uint64_t seed);
+/* Adds spheres on a hexagonal close packing, in layers along z, with a gap of padding (m, >= 0)
+   between surfaces: at most count (0: all that fit), at those sites that lie in the region and are
+   free as in dem_spheres_fill. In a planar world the packing is a triangular lattice. Spheres at
+   opposite periodic faces do not overlap, but the lattice does not continue across the faces.
+   Returns how many were added. */
+DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
+                             dem_real padding, dem_region region, int count);
+/* Removes a body. Its id becomes invalid. */
+DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
+
+/* The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and
+   ignores the rest. */
+struct dem_body_state {
+    dem_vec3 position, velocity, spin;   /* m, m/s, rad/s */
+    dem_vec3 force, torque;        /* N, N m: of the last step, without gravity */
+    /* m, kg, kg m2. For a body that is not a sphere: the radius of its bounding sphere and the
+       smallest principal moment. */
+    dem_real radius, mass, inertia;
+    dem_material material;
+    int fixed;                     /* 1: the body never moves, whatever forces act on it */
+    /* Rotates the frame in which the shape was given into the world. dem_body_set accepts any
+       length but 0. Spheres have one if desc.orientations is 1. */
+    dem_quat orientation;
+    dem_shape shape;               /* id 0 for a sphere */
+    dem_vec3 moments;              /* kg m2, about the principal axes */
+    const dem_real *reals;         /* desc.body_reals, valid until the next step; null: none */
+};
+/* Writes the state of a body to state. */
+DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
+/* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. */
+DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
+
+/* Returns the granular temperature, m2/s2: the mass-weighted mean square deviation of velocities
+   from their mean, per axis (two in a planar world), over all bodies that can move. Returns 0 for
+   fewer than two bodies. */
+DEM_API double dem_temperature_get(const dem_world *world);
+/* Sets the granular temperature (m2/s2, >= 0). seed 0 scales the deviations from the mean velocity;
+   any other seed draws velocities from Maxwell's distribution, with equal mean energy for all
+   masses. The mean velocity and the spins stay. It is an error if fewer than two bodies can move,
+   or if seed is 0 and the present temperature is 0. */
+DEM_API dem_result dem_temperature_set(dem_world *world, double temperature, uint64_t seed);
+
+/* The arrays of all bodies. Their order changes when the neighbour list is rebuilt; slots identify
+   the bodies. Pointers are valid until the next step or change. */
+typedef struct dem_bodies {
+    int count;
+    const dem_real *positions;     /* count x 4: x, y, z [m], (bounding) radius [m] */
+    const dem_real *velocities;    /* count x 4: x, y, z [m/s], 0 */
+    const dem_real *spins;         /* count x 4: x, y, z [rad/s], 0 */
+    const dem_real *forces;        /* count x 4: x, y, z [N], 0; gravity is not included */
+    const dem_real *torques;       /* count x 4: x, y, z [N m], 0 */
+    const dem_real *masses;        /* count [kg] */
+    const uint32_t *slots;         /* count: slot of dem_body less 1; see dem_body_id_get */
+    const int32_t *materials;      /* count: ids of dem_material */
+    /* count x 4: w, x, y, z, from principal axes to the world; null if none is followed */
+    const dem_real *orientations;
+    const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if all are */
+    int real_count;                /* numbers per body (desc.body_reals) */
+    const dem_real *reals;         /* count x real_count; null if there are none */
+    const dem_real *rates;         /* count x real_count, per s, of the last step; null likewise */
+} dem_bodies;
+/* Returns the arrays of all bodies; zeros for a null world. */
+DEM_API dem_bodies dem_bodies_get(const dem_world *world);
+/* Returns the id of the body at this index of the arrays; zeros if there is none. */
+DEM_API dem_body dem_body_id_get(const dem_world *world, int index);
+
+/* The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the
+   order of dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it
+   (_set). Values must be finite. Laws use them from the next step on. It is an error if
+   desc.body_reals names none. */
+DEM_API dem_result dem_body_reals_get(const dem_world *world, dem_body body, dem_real *reals);
+DEM_API dem_result dem_body_reals_set(dem_world *world, dem_body body, const dem_real *reals);
+DEM_API dem_result dem_bodies_reals_set(dem_world *world, const dem_real *reals);
+DEM_API dem_result dem_wall_reals_get(const dem_world *world, dem_wall wall, dem_real *reals);
+DEM_API dem_result dem_wall_reals_set(dem_world *world, dem_wall wall, const dem_real *reals);
+
+/* ---- bodies that are not spheres ---- */
+
+/* Adds an ellipsoid with these semi-axes (m, > 0) along x, y and z of its frame. The longest may be
+   at most 1000 times the shortest. Not in planar worlds. */
+DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *world, dem_vec3 semi_axes);
+
+/* How the mass properties of a cluster are found. */
+typedef enum dem_cluster_mass {
+    /* volume shared by several spheres counts once, integrated along parallel rays */
+    DEM_CLUSTER_UNION = 0,
+    DEM_CLUSTER_SUM,               /* every sphere counts in full */
+    DEM_CLUSTER_GIVEN              /* volume, centre and inertia are given */
+} dem_cluster_mass;
+/* A rigid cluster of spheres, in a frame of your choice. */
+typedef struct dem_cluster_desc {
+    int count;                     /* spheres, required, 1 to 1000 */
+    const dem_real *positions;     /* count x 3, m, required */
+    const dem_real *radii;         /* count, m, > 0; null if all have `radius` */
+    dem_real radius;               /* m */
+    dem_cluster_mass mass;
+    /* DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; default 512. It is an error if
+       rays are more than a quarter of the smallest radius apart. */
+    int rays;
+    /* The rest is for DEM_CLUSTER_GIVEN. */
+    dem_real volume;               /* m3 */
+    dem_vec3 centre;               /* m, centre of mass */
+    /* m5, moments of inertia about the centre per density: xx, yy, zz, xy, xz, yz. Off-diagonal
+       ones are elements of the tensor: xy is -(integral of x y). */
+    dem_real inertia[6];
+} dem_cluster_desc;
+static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = {0, 0, 0, 0, DEM_CLUSTER_UNION, 0, 0,
+    {0, 0, 0}, {0, 0, 0, 0, 0, 0}};
+#define DEM_CLUSTER_DESC DEM_CLUSTER_DESC_ZERO
+/* Adds a cluster and computes its principal axes. Not in planar worlds. */
+DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
+
+/* Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of
+   your choice. Points inside the hull, or within 1e-10 of its size (single precision: 1e-6) of a
+   face, are dropped. If more than DEM_POLYHEDRON_FACES faces remain, this tolerance is raised up to
+   1e-5. It is an error if still more remain, or if the points lie in a plane. Not in planar worlds.
+   Two polyhedra repel each other by a pressure field in the volume they share ([ELA19],
+   >>polyhedra), a polyhedron and a sphere or ellipsoid at the nearest point. dem_contacts_get
+   reports a contact of two polyhedra, or of one with a wall, as four points over which its force is
+   spread; counters count it once. With impulses it has up to four points, each with its own gap
+   (>>gaps); counters count the points with a repulsive force. */
+enum { DEM_POLYHEDRON_FACES = 100 };
+DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
+/* Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if
+   the mesh lies deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to
+   round-off). The mesh must bound a body, as for dem_mesh_spheres; for an open mesh pass its
+   vertices to dem_shape_polyhedron_add. Not in planar worlds. */
+struct dem_mesh;
+DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
+
+/* Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame
+   of your choice. Each piece is a shape of this world, with a position (count x 3, m) and an
+   orientation (count x 4; null means none is rotated). Mass, moments and contact forces are the
+   sums over the pieces: overlapping pieces count twice. Clusters and unions cannot be pieces. */
+DEM_API dem_shape dem_shape_union_add(dem_world *world, int count, const dem_shape *shapes,
+                                      const dem_real *positions, const dem_real *orientations);
+/* Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m,
+   3 to 98). A concave polygon becomes the union of convex pieces, which are shapes too. The mass is
+   density x area x desc.thickness. For contacts the polygon is a prism of thickness 4/3
+   sqrt(area/pi), which gives it the volume of the sphere with the same area of cross-section. It is
+   an error if sides cross. */
+DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_real *points);
+
+/* Properties of a shape. */
+typedef struct dem_shape_info {
+    int spheres;                   /* of a cluster; otherwise 0 */
+    int corners, faces;            /* of a polyhedron; otherwise 0 */
+    dem_real volume;               /* m3 */
+    dem_vec3 centre;               /* m, centre of mass in the frame in which the shape was given */
+    dem_quat frame;                /* rotates the principal axes into that frame */
+    dem_vec3 inertia;              /* m5, principal moments of inertia per density */
+    dem_vec3 semi_axes;            /* m, of the ellipsoid with the same moments */
+    dem_real radius;               /* m, of the smallest sphere about the centre that contains it */
+    int pieces;                    /* of a union; otherwise 0 */
+} dem_shape_info;
+/* Writes the properties of a shape to info. */
+DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info);
+
+/* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
+   orientation (any length but 0) from the frame in which the shape was given. It is an error if a
+   wall has no contact with this shape: sieves, surfaces of revolution and DEM_EDGE_FRACTION
+   profiles have none with ellipsoids; such profiles and some sieves (dem_sieve_kind) have none with
+   polyhedra. */
+DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
+                              dem_vec3 position, dem_quat orientation);
+/* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:
+   orientations (count x 4: w, x, y, z; null: not rotated), velocities and spins (count x 3: m/s and
+   rad/s in the world's frame; null: at rest), scales (count, > 0: factor on all lengths of the
+   shape; null: 1). */
+DEM_API dem_result dem_bodies_add(dem_world *world, dem_material material, dem_shape shape,
+                                  int count, const dem_real *positions,
+                                  const dem_real *orientations, const dem_real *velocities,
+                                  const dem_real *spins, const dem_real *scales);
+/* Adds up to count bodies of a shape in random orientations, as dem_spheres_fill does. Bounding
+   spheres do not overlap, so that every body is free to rotate. */
+DEM_API int dem_bodies_fill(dem_world *world, dem_material material, dem_shape shape,
+                            dem_region region, int count, uint64_t seed);
+
+/* An ellipsoid outside any world, for analysis. In m; orientation of any length, 0 means none. */
+typedef struct dem_ellipsoid { dem_vec3 position, semi_axes; dem_quat orientation; } dem_ellipsoid;
+/* The contact of two ellipsoids. */
+typedef struct dem_ellipsoid_contact {
+    /* W0: scaled by it about their centres, the two touch in one point. < 1 if they overlap. */
+    dem_real scale;
+    dem_real lambda;               /* 0 to 1, maximises the function of Perram and Wertheim */
+    dem_vec3 point, normal;        /* m, of that contact; unit vector from a to b */
+    /* m, overlaps as in dem_overlap; negative if the two are apart, where depth_chord is 0 */
+    dem_real depth_normal, depth_chord, depth_conservative;
+    int iterations;                /* evaluations of that function */
+} dem_ellipsoid_contact;
+/* Returns the contact of two ellipsoids. lambda is an initial guess, or 0. */
+DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
+                                                     const dem_ellipsoid *b, dem_real lambda);
+
+/* Numbers of bodies. inserted = present + removed + left holds at all times. `left` counts those
+   that left through outflow boundaries and outlets. */
+typedef struct dem_body_counts { uint64_t inserted, present, removed, left; } dem_body_counts;
+/* Returns the numbers of bodies. */
+DEM_API dem_body_counts dem_body_counts_get(const dem_world *world);
+
+/* ---- walls ---- */
+/* Walls repel grains and move as prescribed; grains do not move them. Functions that add a wall
+   copy their data. */
+
+/* The kind of a wall's motion. */
+typedef enum dem_motion_kind {
+    DEM_MOTION_FIXED = 0,          /* at rest */
+    DEM_MOTION_TRANSLATING,        /* with `velocity` */
+    DEM_MOTION_ROTATING,           /* at `speed` about `axis` through `point`, right-handed */
+    /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start */
+    DEM_MOTION_OSCILLATING,
+    DEM_MOTION_USER,               /* as `function` says */
+    DEM_MOTION_TABLE               /* through the poses of `table`, smoothly */
+} dem_motion_kind;
+/* A pose of a wall at a time. */
+typedef struct dem_motion_row {
+    double time;                   /* s, after start; the first is 0, ascending */
+    dem_vec3 position;             /* m, displacement from the pose in which the motion started */
+    dem_quat rotation;             /* from that pose, about the displaced `point`; 0: not rotated */
+} dem_motion_row;
+/* The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is
+   called. */
+typedef struct dem_motion {
+    dem_motion_kind kind;
+    dem_vec3 velocity;             /* m/s (translating); direction only (oscillating) */
+    /* m and direction: the axis of rotation, and the axis to which dem_wall_loads refers torques.
+       An axis of 0 means along z, except for rotating walls, which need one. */
+    dem_vec3 point, axis;
+    dem_real speed;                /* rad/s */
+    dem_real amplitude, frequency, phase;  /* m, Hz, rad */
+    /* s. Until then rotating and translating walls are at rest. A time in the past means now. */
+    double start;
+    dem_motion_fn function;        /* DEM_MOTION_USER */
+    void *user;                    /* passed to function */
+    /* s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3,
+       u = (time - start)/ramp, to its full value. 0 means at once. */
+    double ramp;
+    /* The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity
+       and spin are continuous (tangents of the parabola through three rows). The wall is at rest
+       before the first row and after the last. With table_repeats = 1 the table starts again after
+       its last row without stopping; that row should have the pose of the first. From row to row
+       the wall rotates by less than pi. */
+    const dem_motion_row *table;
+    int table_count, table_repeats;
+} dem_motion;
+static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0,
+                                           0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_MOTION DEM_MOTION_ZERO
+
+/* How the segments of a profile share the force of a grain that touches several. */
+typedef enum dem_edge_rule {
+    /* The profile acts as one surface, however it is divided (>>facets): a flat one exerts exactly
+       the force of a plane. */
+    DEM_EDGE_RESOLVED = 0,
+    /* [MIL] Fig 5.19: each segment exerts the force along the normal of its own line times a^2 (3 -
+       2a), where a is its fraction of the chord inside the grain. Only for spheres and clusters,
+       and without law_range. */
+    DEM_EDGE_FRACTION
+} dem_edge_rule;
+
+/* A triangle mesh: vertex_count x 3 coordinates (m), triangle_count x 3 vertex numbers from 0. */
+typedef struct dem_mesh { int vertex_count, triangle_count; dem_real *vertices;
+                         int32_t *triangles; } dem_mesh;
+/* A profile: vertex_count x 2 coordinates (m), segment_count x 2 vertex numbers from 0. */
+typedef struct dem_profile { int vertex_count, segment_count; dem_real *vertices;
+                            int32_t *segments; } dem_profile;
+
+/* Adds a plane through point (m). Grains are on the side to which normal points. */
+DEM_API dem_wall dem_wall_plane_add(dem_world *world, dem_material material, dem_vec3 point,
+                               dem_vec3 normal);
+/* Adds an infinite cylinder of radius (m) about an axis through point (m). Grains are inside if
+   inside = 1, and outside if inside = 0. */
+DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis,
+                                  dem_real radius, int inside);
+/* Adds a surface of revolution about an axis through point (m): straight pieces between count (2 to
+   DEM_RINGS) rings of these radii (m, >= 0) at these heights (m, along the axis from point). It can
+   be a finite cylinder, a cone, a disc with a hole, a tube with a funnel or a drum with its ends.
+   Both sides repel. In an inner corner a grain touches both pieces; at an outer corner and at a rim
+   it touches the ring. A grain too wide for a narrow part touches one side of it only. Ellipsoids
+   have no contact with it. */
+enum { DEM_RINGS = 12 };
+DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis, int count, const dem_real *radii,
+                                  const dem_real *heights);
+/* Adds one piece of a surface of revolution: an open cone between two points (m) with these radii
+   (m, >= 0, not both 0). Equal radii make a finite cylinder. */
+DEM_API dem_wall dem_wall_cone_add(dem_world *world, dem_material material, dem_vec3 from,
+                                   dem_vec3 to,
+                              dem_real radius_from, dem_real radius_to);
+/* Adds a profile: segments in the x-y plane, extruded along z without end. Both sides repel. */
+DEM_API dem_wall dem_wall_profile_add(dem_world *world, dem_material material,
+                                 const dem_profile *profile,
+                                 dem_edge_rule rule);
+/* Adds a triangle mesh. Both sides repel. */
+DEM_API dem_wall dem_wall_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
+/* Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are
+   multiplied by share (0 < share <= 1), because overlapping spheres represent one surface. */
+DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, int count,
+                                     const dem_real *positions,
+                                     dem_real radius, dem_real share);
+
+/* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids with none.
+   Polyhedra have contact with infinite sieves except DEM_SIEVE_REDUCED; under DEM_RESPONSE_SPRINGS
+   plates need a thickness for it. */
+typedef enum dem_sieve_kind {
+    DEM_SIEVE_NONE = 0,
+    DEM_SIEVE_WIRES,               /* a square weave of round wires */
+    DEM_SIEVE_BARS,                /* parallel round wires, across `along` */
+    DEM_SIEVE_SQUARE,              /* a plate with square holes */
+    DEM_SIEVE_ROUND,               /* a plate with round holes */
+    DEM_SIEVE_SLOTS,               /* a plate with slots, longer along `along` */
+    /* [ALK07] 4.3.3: a plane through which a sphere falls without contact if it is near enough to
+       the middle of a square hole (dem_sieve_desc.model). It is cheaper and never blinds, but the
+       clearance decides what passes. */
+    DEM_SIEVE_REDUCED
+} dem_sieve_kind;
+/* A sieve: a plane with rows of holes, infinite or cut out as a disc. The cost per sphere does not
+   depend on the number of holes; that of a polyhedron on a plate grows with the holes below it. */
+typedef struct dem_sieve_desc {
+    dem_sieve_kind kind;           /* required */
+    dem_vec3 point;                /* m, centre of a hole, at half the thickness */
+    dem_vec3 normal;               /* across the sieve; 0 means along z */
+    /* Direction of the rows of holes. If it is 0 or within 0.001 rad of the normal: along x, or y
+       if x is near the normal. */
+    dem_vec3 along;
+    dem_real aperture;             /* m, required, > 0: clear width, side or diameter of a hole */
+    dem_real bar;                  /* m, required, > 0: wire diameter, or width between two holes */
+    dem_real length;               /* m, of slots, >= aperture; 0 means infinite */
+    dem_real thickness;            /* m, of plates; 0 means a sheet with sharp rims */
+    /* m, between the axes of the two layers of wires: 0 puts them in one plane, `bar` one on the
+       other. Real wires wind between the two. */
+    dem_real lift;
+    int staggered;                 /* 1 puts round holes in a triangular pattern */
+    dem_real radius;               /* m, of the disc; 0 means an infinite sieve */
+    /* Reduced holes. A sphere smaller than the hole falls if its centre is within (1 - clearance) b
+       of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or
+       aperture/2 (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end. */
+    int model;
+    dem_real clearance;            /* reduced holes: 0 open, 1 closed; zeta of [ALK07] */
+} dem_sieve_desc;
+static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+                                                   0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
+/* Adds a sieve. */
+DEM_API dem_wall dem_wall_sieve_add(dem_world *world, dem_material material,
+                                    const dem_sieve_desc *desc);
+/* Returns how many grains, clusters included, blind a sieve. Such a grain is stuck in a hole: it
+   touches the sieve on opposite sides, and the wedge between the two contacts is so narrow that
+   friction holds the grain. Grains faster than speed (m/s, relative to the sieve; 0 means any) do
+   not count. Reduced holes never blind. Returns -1 on error, also while there is no list of
+   contacts (see dem_contacts_get). */
+DEM_API int dem_sieve_blinded_get(const dem_world *world, dem_wall sieve, dem_real speed);
+
+/* Sets the motion of a wall, which begins at its present pose. */
+DEM_API dem_result dem_wall_motion_set(dem_world *world, dem_wall wall, const dem_motion *motion);
+/* Writes the present pose of a wall to pose. */
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall wall, dem_pose *pose);
+/* Removes a wall. Ids of other walls stay valid. It is an error if an outlet moves with it. */
+DEM_API dem_result dem_wall_remove(dem_world *world, dem_wall wall);
+
+/* The loads of grains on a wall. Torques are about the point of its motion (of a wall without a
+   motion: its own point, or the origin for profiles, meshes and walls of grains). */
+typedef struct dem_wall_loads {
+    dem_vec3 force;                /* N, of the last step */
+    dem_vec3 torque;               /* N m, of the last step */
+    dem_real torque_axial;         /* N m, component along the axis of its motion */
+    dem_real power;                /* W, from the wall to the grains: -(force . v + torque . w) */
+    int contacts;                  /* present number */
+    int touched;                   /* 1 if a grain has touched the wall since it was added */
+    /* All that follow except `rate` are sums since dem_wall_loads_reset. */
+    double impulse[3];             /* N s */
+    double torque_impulse;         /* N m s, of torque_axial */
+    double work;                   /* J, from the wall to the grains */
+    double time;                   /* s, over which these sums extend */
+    /* per s, last step: what laws gave to its numbers (desc.body_reals), in their units */
+    double rate[DEM_BODY_REALS];
+    double gained[DEM_BODY_REALS]; /* its sum over time */
+} dem_wall_loads;
+/* Writes the loads of a wall to loads. */
+DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall wall, dem_wall_loads *loads);
+/* Sets the sums of a wall's loads to 0. */
+DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
+
+/* ---- joints ---- */
+/* Joints connect a body to another body, to a wall or to space. They need DEM_RESPONSE_IMPULSES and
+   DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints are solved together by a
+   direct method; those of closed loops have a softness of 1e-6 of the inverse effective mass. The
+   joined points and axes coincide in the middle of the next step, where contacts are found, too.
+   Impulses of joints never add energy, for any number of sweeps (docs/impulses.md). Two bodies that
+   are joined have no contact with each other unless `collide` is 1. */
+typedef enum dem_joint_kind {
+    DEM_JOINT_NONE = 0,
+    DEM_JOINT_POINT,               /* a ball joint: keeps `point` of both together */
+    DEM_JOINT_REVOLUTE             /* a hinge or axle: keeps `axis` of both together too */
+} dem_joint_kind;
+/* The motor of a revolute joint. */
+typedef enum dem_motor {
+    DEM_MOTOR_NONE = 0,
+    DEM_MOTOR_SPEED,               /* rotates a against b at `speed`, by at most `torque` */
+    DEM_MOTOR_TORQUE               /* exerts `torque` on a, and the opposite on b */
+} dem_motor;
+typedef struct dem_joint { int32_t id; } dem_joint;                          /* id counts from 1 */
+/* A joint. point and axis refer to the present poses of the bodies. */
+typedef struct dem_joint_desc {
+    dem_joint_kind kind;           /* required */
+    dem_motor motor;               /* of a revolute joint */
+    dem_body a, b;                 /* a is required; b null means `wall`, or space */
+    dem_wall wall;                 /* if b is null: moves with it; null means space, at rest */
+    int collide;                   /* 1: the two bodies may touch each other */
+    dem_vec3 point;                /* m, where the two are joined */
+    dem_vec3 axis;                 /* of a revolute joint, not 0; planar worlds: along z */
+    /* rad/s, of a against b about axis, right-handed; at most 1e12 in size */
+    dem_real speed;
+    /* N m, on a about axis; at most 1e12 in size. For DEM_MOTOR_SPEED the limit, >= 0, where 0
+       means no limit. */
+    dem_real torque;
+} dem_joint_desc;
+static const dem_joint_desc DEM_JOINT_DESC_ZERO = {DEM_JOINT_NONE, DEM_MOTOR_NONE, {0, 0}, {0, 0},
+                                                   {0}, 0, {0, 0, 0}, {0, 0, 0}, 0, 0};
+#define DEM_JOINT_DESC DEM_JOINT_DESC_ZERO
+/* The state of a joint. */
+typedef struct dem_joint_state {
+    /* N, N m about the joined point: on a (b has the opposite), of the last step, with the motor */
+    dem_vec3 force, torque;
+    dem_real motor_torque;         /* N m, on a about axis, of the last step */
+    dem_real power;                /* W, from the motor to a and b; 0 without a motor */
+    /* in the middle of the coming step: m between the points; sine of the angle of the axes */
+    dem_real gap, tilt;
+    double turned;                 /* rad, of a against b about axis since the joint was added */
+    double work;                   /* J, of the motor */
+} dem_joint_state;
+/* Adds a joint. It is an error if the response is DEM_RESPONSE_SPRINGS, if neither of the two can
+   move, or if a sphere is joined without desc.orientations. A joint ends when one of its bodies or
+   its wall is removed or leaves; its id is then invalid and is never used again. While both bodies
+   are fixed, force, torque and power are 0; the joint acts again when one is released. Checkpoints
+   contain joints. */
+DEM_API dem_joint dem_joint_add(dem_world *world, const dem_joint_desc *desc);
+/* Replaces the motor of a joint from the next step on. The values are those of dem_joint_desc. */
+DEM_API dem_result dem_joint_motor_set(dem_world *world, dem_joint joint, dem_motor motor,
+                                   dem_real speed, dem_real torque);
+/* Writes the state of a joint to state. */
+DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
+/* Removes a joint. */
+DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
+
+/* ---- feed and outlets ---- */
+enum { DEM_CLASSES = 16 };         /* largest number of size classes */
+typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */
+typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
+
+/* A feed adds grains while the world runs, at random free positions in a region (free as in
+   dem_spheres_fill), at a rate or all at once. A grain for which there is no room waits; none is
+   lost. Most grains join the present neighbour list. The list is rebuilt for the first grain of a
+   new radius or material, and for every grain if the world has bodies that are not spheres. */
+typedef struct dem_feed_desc {
+    dem_material material;         /* required */
+    int class_count;               /* required, 1 to 16: size classes */
+    dem_real radius[DEM_CLASSES];  /* m, required */
+    /* > 0: relative amounts of the classes, or with `limited` grains (kg with by_mass) */
+    double amount[DEM_CLASSES];
+    int limited;                   /* 1: the feed ends after `amount`, drawn without replacement */
+    int by_mass;                   /* 1: amount and rate are in kg and kg/s instead of grains */
+    double rate;                   /* grains/s; 0 means all as room permits, and needs limited */
+    /* s, time of the world. A feed that is added later catches up with what was due since start.
+       end 0 means no end. */
+    double start, end;
+    dem_box box;                   /* m, required: centres lie inside (dem_region: whole bodies) */
+    int round;                     /* 1: only the vertical elliptic cylinder inscribed in the box */
+    dem_vec3 velocity;             /* m/s */
+    dem_real spread;               /* m/s, largest random change of each component of velocity */
+    uint64_t seed;                 /* of random positions, sizes and velocities */
+    dem_inside_fn inside;          /* restricts the box further, as in dem_region */
+    void *inside_user;             /* passed to inside */
+    /* A mixture: for each class, if not 0, its material; its shape, in random orientations and with
+       the volume of a sphere of `radius`; and the distribution of its radius (copied). */
+    dem_material materials[DEM_CLASSES];
+    dem_shape shapes[DEM_CLASSES];
+    const dem_sizes *sizes[DEM_CLASSES];
+} dem_feed_desc;
+static const dem_feed_desc DEM_FEED_DESC_ZERO = {{0}, 0, {0}, {0}, 0, 0, 0, 0, 0,
+                                                 {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0,
+                                                 {{0}}, {{0}}, {0}};
+#define DEM_FEED_DESC DEM_FEED_DESC_ZERO
+/* The state of a feed. */
+typedef struct dem_feed_state {
+    uint64_t fed[DEM_CLASSES], total;  /* grains added, per class and in all */
+    double mass;                   /* kg, added */
+    uint64_t waiting;              /* grains due but without room; by mass at a rate: 0 or 1 */
+    int done;                      /* 1: no more grains will be added */
+} dem_feed_state;
+/* Adds a feed. */
+DEM_API dem_feed dem_feed_add(dem_world *world, const dem_feed_desc *desc);
+/* Writes the state of a feed to state. */
+DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_state *state);
+
+/* An outlet removes the grains, fixed ones included, whose centre is in a region, and counts them;
+   dem_body_counts counts them as left. It checks whenever the neighbour list is rebuilt and every
+   64 steps: a grain is up to half a skin or 64 steps inside before it is removed, so that many
+   grains that leave one by one cost little. A region thinner than half a skin may miss grains.
+   Bodies that are not spheres count with the radius of their bounding sphere.
+   With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge
+   through a plane is what enters the box behind it. */
+typedef struct dem_outlet_desc {
+    dem_wall frame;                /* the region moves with this wall; null means it is at rest */
+    /* m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0) */
+    dem_box box;
+    dem_real beyond;               /* m: only grains this far or farther from the frame's z axis */
+    dem_real wanted_min, wanted_max;  /* m, radii meant to leave here; max 0: no limit */
+    int class_count;               /* 0 to 16 size classes to count in */
+    dem_real radius[DEM_CLASSES];  /* m, ascending; a grain counts in the nearest class */
+    dem_material material;         /* only grains of this material; id 0 means all */
+    int keep;                      /* 1: grains stay and are only counted; at most 16 such */
+} dem_outlet_desc;
+static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = {{0}, {{0, 0, 0}, {0, 0, 0}}, 0, 0, 0, 0, {0},
+                                                     {0}, 0};
+#define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
+/* The counts of an outlet: grains that were removed or, with `keep`, that entered. */
+typedef struct dem_outlet_state {
+    uint64_t count[DEM_CLASSES], total;     /* grains, per class and in all */
+    double mass[DEM_CLASSES], total_mass;   /* kg */
+    uint64_t sorted, gangue;       /* grains of wanted radii, and others: [ALK07] s_i and g_i */
+    double sorted_mass, gangue_mass;        /* kg */
+    double since, last;            /* s: when counting began; when the last grain was counted */
+    /* `keep` only: grains that went back, and grains that are inside now. Grains that were inside
+       when counting began have not entered. */
+    uint64_t back[DEM_CLASSES], held[DEM_CLASSES], back_total, held_total;
+    double back_mass[DEM_CLASSES], held_mass[DEM_CLASSES];      /* kg */
+    double back_total_mass, held_total_mass;                    /* kg */
+} dem_outlet_state;
+/* Adds an outlet. The wall that is its frame cannot be removed. */
+DEM_API dem_outlet dem_outlet_add(dem_world *world, const dem_outlet_desc *desc);
+/* Writes the counts of an outlet to state. */
+DEM_API dem_result dem_outlet_get(const dem_world *world, dem_outlet outlet,
+                                  dem_outlet_state *state);
+/* Sets the counts of an outlet to 0. dem_body_counts stays; grains inside have not entered. */
+DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);

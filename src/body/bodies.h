@@ -1,0 +1,860 @@
+/* ---------------------------------------------------------------------------------------------
+   >>bodies
+   Grains: who they are (slots, which never move), where they stand in the arrays (indices, which
+   change whenever the list is rebuilt), adding, removing, placing. Whoever changes who is where
+   calls demi_list_drop first (it stands here because everyone needs it): contact memory is then
+   filed by slot and finds its way into the next list.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- one notion of place. On a periodic axis a coordinate stands for all its images, a period
+       apart. Between two rebuilds bodies may stand up to half a skin outside the box (pairs note
+       which image of a partner is nearest, so nobody is moved while a list is in use). Whoever
+       asks where a body is, or how far from another, asks here: searches, fills, feeds, outlets,
+       fields, getters, writers. Tests: tests/search/test_periodic.c. --- */
+/* lo: m, where the box begins; period: m, 0 where an axis is not periodic, and half then huge. */
+typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
+/* The same numbers for every axis, periodic or not, so that loops need not ask: an axis that is not
+   has a period of 0, and half of it is out of reach. */
+static demi_periods demi_periods_of(const dem_world *w) {
+    const dem_vec3 lo = w->desc.domain.lo, size = demi_sub(w->desc.domain.hi, lo);
+    demi_periods p;
+    int k;
+    demi_put(p.lo, lo);
+    demi_put(p.period, size);
+    for (k = 0, p.any = 0; k < 3; k++) {
+        const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+        p.any |= periodic;
+        p.half[k] = periodic ? p.period[k]/2 : (DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX);
+        if (!periodic) p.period[k] = 0;
+    }
+    return p;
+}
+/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not
+   periodic. For the innermost loops; elsewhere demi_nearest. */
+DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
+    const dem_real up = d < -half ? period : 0, down = d > half ? period : 0;
+    return d + up - down;
+}
+/* The image of coordinate x with from <= image < from + period, whatever rounding does; x itself
+   where the period is 0. */
+DEM_INLINE dem_real demi_into(dem_real x, dem_real from, dem_real period) {
+    if (!(period > 0) || (x >= from && x < from + period)) return x;
+    if (x < from) x += period*(dem_real)ceil((double)((from - x)/period));
+    else x -= period*(dem_real)floor((double)((x - from)/period));
+    if (x >= from + period) x -= period;
+    return x < from ? from : x;
+}
+/* A place in the periodic box. */
+static dem_vec3 demi_place_of(const demi_periods *p, dem_vec3 x) {
+    if (!p->any) return x;
+    return demi_v(demi_into(x.x, p->lo[0], p->period[0]), demi_into(x.y, p->lo[1], p->period[1]),
+                  demi_into(x.z, p->lo[2], p->period[2]));
+}
+/* What is left of a distance between two places, of any size, when the nearest images are taken. */
+static dem_vec3 demi_nearest(const demi_periods *p, dem_vec3 d) {
+    if (!p->any) return d;
+    return demi_v(demi_into(d.x, -p->half[0], p->period[0]),
+                  demi_into(d.y, -p->half[1], p->period[1]),
+                  demi_into(d.z, -p->half[2], p->period[2]));
+}
+/* All bodies in the periodic box: count x 4, as bodies.pos. Holds until bodies move or are
+   sorted. */
+static const dem_real *demi_wrapped(const dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    if (!p.any) return w->bodies.pos;
+    for (i = 0; i < w->bodies.count; i++) {
+        for (k = 0; k < 3; k++)
+            w->bodies.scratch[4*i + k] = demi_into(w->bodies.pos[4*i + k], p.lo[k], p.period[k]);
+        w->bodies.scratch[4*i + 3] = w->bodies.pos[4*i + 3];
+    }
+    return w->bodies.scratch;
+}
+static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
+    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
+    lo[2] = (double)w->desc.domain.lo.z;
+    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
+    hi[2] = (double)w->desc.domain.hi.z;
+}
+/* Brings positions back into the periodic box: at a rebuild, when nobody holds images. */
+static void demi_wrap(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    for (k = 0; k < 3 && p.any; k++) {
+        for (i = 0; i < w->bodies.count && p.period[k] > 0; i++) {
+            const dem_real from = w->bodies.pos[4*i + k];
+            const dem_real to = demi_into(from, p.lo[k], p.period[k]);
+            if (w->bodies.backward) w->bodies.last_pos[4*i + k] += to - from;
+            w->bodies.pos[4*i + k] = to;
+        }
+    }
+}
+
+/* Is this body a copy of one that another slab owns? (>>slabs; never elsewhere) */
+DEM_INLINE int demi_is_ghost(const dem_world *w, int i) {
+    return w->bodies.ghost && w->bodies.ghost[w->bodies.slot[i]] == 1;
+}
+
+/* Room for filed memory. 0 when memory ran out. */
+static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
+    const size_t reals = (size_t)count*(size_t)stride;
+    const int ok = DEMI_GROW(w, w->filed.start, (size_t)rows + 2) &&
+                   DEMI_GROW(w, w->filed.partner, (size_t)count) &&
+                   DEMI_GROW(w, w->filed.memory, reals);
+    return ok;
+}
+
+/* Does a near pair remember anything? */
+static int demi_near_remembers(const dem_world *w, int d, int p) {
+    const dem_real *m = w->near.memory + (size_t)d*(size_t)w->memory_stride*(size_t)w->near.stride;
+    int e;
+    for (e = 0; e < w->memory_stride; e++) {
+        const dem_real value = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
+        if (value < 0 || value > 0) return 1;
+    }
+    return 0;
+}
+/* The pairs of domain d in the near list are p = 0 .. near_own - 1, then near_cross .. near_end -
+   1: the one after p. */
+DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
+    return p + 1 == domain->near_own ? domain->near_cross : p + 1;
+}
+DEM_INLINE int demi_near_first(const demi_domain *domain) {
+    return domain->near_own ? 0 : domain->near_cross;
+}
+
+/* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
+   complement when body a of the pair was the higher one. 0 when memory ran out. */
+static int demi_carry_collect(dem_world *w) {
+    const int stride = w->memory_stride;
+    int d, p, e, k, total = 0, pass;
+    w->filed.count = 0;
+    if (!stride || !w->domain_count) return 1;
+    if (!demi_carry_reserve(w, w->bodies.slot_count, 0, stride)) return 0;
+    memset(w->filed.start, 0, ((size_t)w->bodies.slot_count + 2)*sizeof(int32_t));
+    for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
+        for (d = 0; d < w->domain_count; d++) {
+            const demi_domain *domain = &w->domains[d];
+            const dem_real *m = w->near.memory + (size_t)d*(size_t)stride*(size_t)w->near.stride;
+            for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+                const int at = d*w->near.stride + p;
+                int32_t a, b, row;
+                dem_real *to;
+                if (!demi_near_remembers(w, d, p)) continue;
+                a = (int32_t)w->bodies.slot[w->near.a[at]];
+                b = (int32_t)w->bodies.slot[w->near.b[at]];
+                row = DEMI_MIN(a, b);
+                if (pass == 0) { w->filed.start[row + 2]++; total++; continue; }
+                w->filed.partner[w->filed.start[row + 1]] = a < b ? b : ~a;
+                to = w->filed.memory + (size_t)w->filed.start[row + 1]++*(size_t)stride;
+                for (e = 0; e < stride; e++)
+                    to[e] = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
+            }
+        }
+        if (pass == 0) {
+            if (!demi_carry_reserve(w, w->bodies.slot_count, total, stride)) return 0;
+            for (k = 2; k < w->bodies.slot_count +
+                 2; k++) w->filed.start[k] += w->filed.start[k - 1];
+        }
+    }
+    w->filed.count = total;
+    w->filed.rows = w->bodies.slot_count;
+    w->filed.stride = stride;
+    return 1;
+}
+
+/* Contacts that domain d keeps. */
+DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
+    return w->kept_now + w->kept_first[d];
+}
+/* Marks which materials have touched. Contacts that are kept tell when they begin. Two spheres are
+   looked at before a list is given up, not in every step: a contact shorter than a list's life may
+   be missed; all that lasts is seen. */
+static void demi_met_look(const dem_world *w, uint64_t *met) {
+    int d, p;
+    for (d = 0; d < w->domain_count && w->material_count > 1; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = 0; p < w->material_count; p++) met[p] |= domain->met[p];
+        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+            const int at = d*w->near.stride + p, a = w->near.a[at], b = w->near.b[at];
+            const int i = w->bodies.material[a] - 1, j = w->bodies.material[b] - 1;
+            const uint64_t bit = UINT64_C(1) << DEMI_MAX(i, j);
+            const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+            const dem_vec3 way = demi_near_way(w, (size_t)at);
+            if (demi_dot(way, way) < radii*radii) met[DEMI_MIN(i, j)] |= bit;
+        }
+    }
+}
+/* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed
+   then. */
+static int demi_list_drop(dem_world *w) {
+    int d, k;
+    w->bodies.centres_valid = 0;
+    if (!w->stage.list_valid) return 1;
+    if (!demi_carry_collect(w)) return 0;
+    demi_met_look(w, w->booked.met);
+    for (d = 0; d < w->domain_count; d++) {
+        memset(w->domains[d].met, 0, sizeof w->domains[d].met);
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            c->a = (int32_t)w->bodies.slot[c->a];            /* from here on slots */
+            if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
+        }
+    }
+    w->stage.list_valid = 0;
+    return 1;
+}
+
+/* --- the arrays of bodies (demi_body_arrays) --- */
+
+/* Does each body of this world (or slot) have one? */
+static int demi_has(const dem_world *w, const demi_body_array *a) {
+    return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
+           : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
+           : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
+           : a->who == DEMI_ZONED ? w->bodies.zoned
+           : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
+}
+/* Bytes of one body. */
+static size_t demi_item(const dem_world *w, const demi_body_array *a) {
+    return a->item*(a->who == DEMI_COUNTED ? (size_t)w->bodies.real_count : 1);
+}
+/* Is it state that each body of this world keeps? */
+static int demi_keeps(const dem_world *w, const demi_body_array *a) {
+    return a->what && a->who != DEMI_SLOTS && demi_has(w, a);
+}
+/* Bytes that one body keeps in all. */
+static size_t demi_body_size(const dem_world *w) {
+    size_t size = 0;
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++)
+        if (demi_keeps(w, &demi_body_arrays[k])) size += demi_item(w, &demi_body_arrays[k]);
+    return size;
+}
+static char *demi_data(const dem_world *w, const demi_body_array *a) {
+    char *data;
+    memcpy(&data, (const char *)&w->bodies + a->field, sizeof data);
+    return data;
+}
+/* What body i has of it. */
+static char *demi_datum(const dem_world *w, const demi_body_array *a, int i) {
+    return demi_data(w, a) + (size_t)i*demi_item(w, a);
+}
+/* New room for those arrays that `chosen` names, a bit for each who, keeping the first `used`
+   items. 0 when memory ran out: all are as they were. */
+static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) {
+    void *fresh[DEMI_BODY_ARRAYS];
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        fresh[k] = 0;
+        if (!(chosen >> a->who & 1) || !room) continue;
+        fresh[k] = demi_hold(w, DEMI_RUN, room, demi_item(w, a));
+        if (fresh[k]) continue;
+        while (k--) demi_free(w, fresh[k]);
+        return 0;
+    }
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (!fresh[k]) continue;
+        if (used) memcpy(fresh[k], demi_data(w, a), used*demi_item(w, a));
+        demi_free(w, demi_data(w, a));
+        memcpy((char *)&w->bodies + a->field, &fresh[k], sizeof fresh[k]);
+    }
+    return 1;
+}
+/* Room for so many bodies in all, and for the slots that those to come may need. 0 when memory ran
+   out; arrays that have grown already stay so. */
+static int demi_bodies_reserve(dem_world *w, size_t count) {
+    const size_t old = (size_t)w->bodies.capacity, room = DEMI_MAX(count, old + old/4 + 16);
+    /* slots of removed bodies rest until the next list: each body to come may need a new one */
+    const size_t more = count > (size_t)w->bodies.count ? count - (size_t)w->bodies.count : 0;
+    const size_t slots = (size_t)w->bodies.slot_count + more;
+    const int sets =
+        1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
+        (w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
+        (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
+        w->bodies.booked << DEMI_BOOKED;
+    if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
+    if (count > (size_t)w->bodies.capacity) {
+        if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
+        w->bodies.capacity = (int)room;
+    }
+    if (slots > (size_t)w->bodies.slot_capacity) {
+        const size_t slot_room = DEMI_MAX(slots, (size_t)w->bodies.slot_capacity*5/4 + 16);
+        if (!demi_bodies_room(w, 1 << DEMI_SLOTS, (size_t)w->bodies.slot_count,
+                              slot_room)) return 0;
+        w->bodies.slot_capacity = (int)slot_room;
+    }
+    return 1;
+}
+/* All that body i keeps becomes 0. */
+static void demi_body_clear(dem_world *w, int i) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (demi_keeps(w, a))
+            memset(demi_datum(w, a, i), 0, demi_item(w, a));
+    }
+}
+/* All that body `from` keeps, into body `to`. */
+static void demi_body_copy(dem_world *w, int from, int to) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (demi_keeps(w, a))
+            memcpy(demi_datum(w, a, to), demi_datum(w, a, from), demi_item(w, a));
+    }
+}
+
+/* From now on bodies have orientations. 0 when memory ran out; nothing changed then. */
+static int demi_orient_begin(dem_world *w) {
+    int i;
+    if (w->bodies.orienting) return 1;
+    if (!demi_bodies_room(w, 1 << DEMI_TURNED | w->bodies.backward << DEMI_BACK_TURNED, 0,
+                          (size_t)w->bodies.capacity)) return 0;
+    w->bodies.orienting = 1;
+    for (i = 0; i < w->bodies.count; i++) {
+        w->bodies.orient[4*i] = 1;
+        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
+    }
+    return 1;
+}
+
+/* From here on bodies know in which regions they are. 0 when memory ran out. */
+static int demi_zones_begin(dem_world *w) {
+    if (w->bodies.zoned) return 1;
+    if (!demi_bodies_room(w, 1 << DEMI_ZONED, 0, (size_t)w->bodies.capacity)) return 0;
+    w->bodies.zoned = 1;
+    return 1;
+}
+
+/* J, kinetic, of what moves. */
+static double demi_body_energy(const dem_world *w, int i) {
+    const dem_real *v = w->bodies.vel + 4*i;
+    const double m = (double)w->bodies.mass[i];
+    if (w->bodies.inv_mass[i] <= 0) return 0;
+    return m*(double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2 +
+        (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
+}
+
+/* What follows from bodies having changed: forces, list and advice must be made anew. */
+static void demi_scene_changed(dem_world *w) {
+    w->stage.forces_valid = w->stage.dt_valid = w->stage.primed = 0;
+}
+
+/* Puts one body at the end of the arrays; room and list have been seen to. */
+static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, dem_vec3 x) {
+    const int i = w->bodies.count++;
+    const double m = demi_sphere_mass(w, material, (double)radius);
+    int slot = w->bodies.slot_free;
+    /* chain: index = -2 - next */
+    if (slot >= 0) w->bodies.slot_free = -2 - w->bodies.slot_index[slot];
+    else { slot = w->bodies.slot_count++; w->bodies.slot_generation[slot] = 1; }
+    demi_body_clear(w, i);
+    demi_put(w->bodies.pos + 4*i, x);
+    if (w->desc.planar) w->bodies.pos[4*i + 2] = 0;
+    w->bodies.pos[4*i + 3] = radius;
+    w->bodies.mass[i] = (dem_real)m;
+    w->bodies.inv_mass[i] = (dem_real)(1/m);
+    w->bodies.inv_inertia[i] = (dem_real)(1/demi_sphere_inertia(w, m, (double)radius));
+    w->bodies.slot[i] = (uint32_t)slot;
+    w->bodies.material[i] = material + 1;
+    w->bodies.slot_index[slot] = i;
+    if (w->bodies.orienting) {
+        demi_quat_put(w->bodies.orient + 4*i, dem_quat_make(1, 0, 0, 0));
+        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
+    }
+    w->lll_valid = 0;
+    w->bodies.balance.inserted++;
+    w->bodies.balance.present++;
+    return (uint32_t)slot;
+}
+/* Why a part of this kind does not know a wall; 0: it does. (>>polyhedra-sieves) */
+static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part);
+/* Of a body of this shape (null: a sphere), piece by piece, the kind of part that does not know a
+   wall; -1: all do. */
+static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const demi_shape *shape) {
+    const int pieces = shape && shape->pieces ? shape->pieces : 1;
+    int i;
+    for (i = 0; i < pieces; i++) {
+        const demi_shape *one = shape && shape->pieces ? &w->shapes[shape->piece[i].shape] : shape;
+        if (demi_wall_why(w, wall, demi_shape_kind(one))) return demi_shape_kind(one);
+    }
+    return -1;
+}
+/* number: the wall's id. body: its slot, -1: it is yet to come. part: what it is. */
+static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
+                                 int body, int part) {
+    char who[32] = "the body";
+    if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: %s; nothing was "
+                     "added", call, number, demi_wall_kinds[wall->kind].name, who,
+                     demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
+                     demi_wall_why(w, wall, part));
+}
+/* 1 with a sentence when some wall does not know bodies of a shape that are to be added. */
+static int demi_walls_strange(dem_world *w, const char *call, int shape) {
+    int j;
+    for (j = 0; j < w->wall_count; j++) {
+        const demi_wall *wall = &w->walls[j];
+        const int part = wall->kind == DEMI_WALL_NONE ? -1
+            : demi_shape_strange(w, wall, &w->shapes[shape]);
+        if (part < 0) continue;
+        demi_strangers(w, call, wall, (int)wall->id, -1, part);
+        return 1;
+    }
+    return 0;
+}
+/* Mass of a body of a shape, scaled: flat ones keep their thickness. */
+static double demi_shape_mass(const dem_world *w, int material, int shape, double scale) {
+    return (double)w->materials[material].density*w->shapes[shape].volume*scale*scale*
+        (w->desc.planar ? 1 : scale);
+}
+/* What of an orientation is a rotation in the plane. */
+static dem_quat demi_quat_flat(dem_quat given) {
+    const dem_quat q = demi_quat_unit(given);
+    const dem_real l = DEMI_SQRT(q.w*q.w + q.z*q.z);
+    return l > 0 ? dem_quat_make(q.w/l, 0, 0, q.z/l) : dem_quat_make(1, 0, 0, 0);
+}
+/* Makes the body just appended one of a shape, scaled. */
+static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_quat orientation) {
+    const demi_shape *as = &w->shapes[shape];
+    const double m = demi_shape_mass(w, w->bodies.material[i] - 1, shape, (double)scale);
+    w->bodies.shape[i] = shape + 1;
+    w->bodies.pos[4*i + 3] = as->radius*scale;
+    w->bodies.mass[i] = (dem_real)m;
+    w->bodies.inv_mass[i] = (dem_real)(1/m);
+    w->bodies.inv_inertia[i] = 0;
+    demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
+    w->bodies.moment[4*i + 3] = as->moment_arm*scale;
+    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_multiply(
+        w->desc.planar ? demi_quat_flat(orientation) : orientation, as->frame)));
+    w->bodies.shaped++;
+}
+
+DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count,
+                                   const dem_real *positions,
+                                   const dem_real *velocities, const dem_real *radii,
+                                   dem_real radius) {
+    if (demi_null(w, "dem_spheres_add", w, "world")) return DEM_ERROR_ARGUMENT;
+    int i, m = 0;
+    if (demi_material_index(w, "dem_spheres_add", material,
+                            &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (count < 0 || (count > 0 && !positions))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: count is %d, must be >= 0 with "
+                         "positions (count x 3)"
+                         "; check the caller's array", count);
+    for (i = 0; i < count; i++) {
+        const dem_real r = radii ? radii[i] : radius;
+        if (!(r > 0) || !demi_finite(r))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g "
+                             "m, must be > 0 and finite; no sphere was added", i, (double)r);
+        if (demi_mass_refuse(w, "dem_spheres_add", m, r, i)) return DEM_ERROR_ARGUMENT;
+        if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
+                                                      !demi_place(demi_at(velocities + 3*i))))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
+                             "sphere %d is not a finite number, or beyond %g m or m/s; check the "
+                             "data it came from; no sphere was added", i, DEMI_FARTHEST);
+    }
+    if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
+        return demi_no_memory(w, "dem_spheres_add");
+    for (i = 0; i < count; i++) {
+        const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
+                                               demi_at(positions + 3*i));
+        const int k = w->bodies.slot_index[slot];
+        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
+        if (w->desc.planar) w->bodies.vel[4*k + 2] = 0;
+        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
+        w->booked.inserted += demi_body_energy(w, k);
+    }
+    demi_scene_changed(w);
+    demi_built(w, "dem_spheres_add");
+    return DEM_OK;
+}
+
+DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius,
+                                dem_vec3 position) {
+    if (demi_null(w, "dem_sphere_add", w, "world")) return demi_no_body;
+    dem_body id;
+    dem_real x[3];
+    id.slot = id.generation = 0;
+    demi_put(x, position);
+    if (dem_spheres_add(w, material, 1, x, 0, 0, radius) != DEM_OK) return id;
+    return dem_body_id_get(w, w->bodies.count - 1);
+}
+
+/* 0 with a sentence when an array for bodies has a bad value. */
+static int demi_bodies_check(dem_world *w, const char *call, int count, const dem_real *x,
+                             const dem_real *q, const dem_real *v, const dem_real *spin,
+                             const dem_real *scale) {
+    int i;
+    if (count < 0 || (count > 0 && !x)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0 with positions "
+                  "(count x 3); check the caller's array", call, count);
+        return 0;
+    }
+    for (i = 0; i < count; i++) {
+        const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
+        if (!demi_place(demi_at(x + 3*i)) || (v && !demi_place(demi_at(v + 3*i))) ||
+            (spin && !demi_place(demi_at(spin + 3*i)))) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position, velocity or spin of body %d is not a "
+                      "finite number, or beyond %g m, m/s or rad/s; check the data it came from; "
+                      "no body was added", call, i, DEMI_FARTHEST);
+            return 0;
+        }
+        if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: orientation of body %d is (%g, %g, %g, %g), "
+                      "must be finite and not zero; (1, 0, 0, 0) is no rotation; no body was added",
+                      call, i, (double)o.w, (double)o.x, (double)o.y, (double)o.z);
+            return 0;
+        }
+        if (scale && !(demi_finite(scale[i]) && scale[i] > 0)) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: scale of body %d is %g, must be > 0; no body "
+                      "was added", call, i, (double)scale[i]);
+            return 0;
+        }
+    }
+    return 1;
+}
+/* 1 with a sentence when a body of a shape, scaled, would weigh nothing or too much. */
+static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int shape,
+                                  dem_real scale, int i) {
+    const double s = (double)scale, m = demi_shape_mass(w, material, shape, s);
+    const dem_vec3 I = w->shapes[shape].inertia;
+    const double least = m*s*s*(double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    const double most = m*s*s*(double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
+    const dem_real six[] = {(dem_real)m, (dem_real)(1/m), (dem_real)least, (dem_real)(1/least),
+                            (dem_real)most, (dem_real)(1/most)};
+    int k, bad = !demi_finite_double(m) || !(m > 0);
+    for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
+    if (bad)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %d has scale %g and a mass of %g kg, and the "
+                  "mass or its inertia is too small or too large to calculate with in %s "
+                  "precision; lengths are in metres: check the unit; nothing was added",
+                  call, i, s, m,
+                  DEMI_SINGLE ? "single" : "double");
+    return bad;
+}
+/* All that may be refused comes first, then the one place where memory may run out, then what
+   cannot fail: so a refused call adds nobody. */
+static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material material,
+                                  dem_shape shape, int count, const dem_real *positions,
+                                  const dem_real *orientations, const dem_real *velocities,
+                                  const dem_real *spins, const dem_real *scales) {
+    int i, m = 0, f;
+    if (demi_material_index(w, call, material, &m) != DEM_OK ||
+        (f = demi_shape_index(w, call, shape)) < 0 ||
+        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales) ||
+        demi_walls_strange(w, call, f))
+        return DEM_ERROR_ARGUMENT;
+    for (i = 0; i < count; i++)
+        if (demi_shape_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i))
+            return DEM_ERROR_ARGUMENT;
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) ||
+        !demi_orient_begin(w)) return demi_no_memory(w, call);
+    for (i = 0; i < count; i++) {
+        const uint32_t slot = demi_body_append(w, m, 1, demi_at(positions + 3*i));
+        const int k = w->bodies.slot_index[slot];
+        demi_body_shape(w, k, f, scales ? scales[i] : 1, orientations
+                        ? demi_quat_unit(demi_quat_at(orientations + 4*i))
+                        : dem_quat_make(1, 0, 0, 0));
+        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
+        if (spins) demi_put(w->bodies.spin + 4*k, demi_at(spins + 3*i));
+        if (w->desc.planar)
+            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
+        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
+        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
+        demi_put(w->bodies.angular + 4*k, demi_angular_of(w, k));
+        w->booked.inserted += demi_body_energy(w, k);
+    }
+    demi_scene_changed(w);
+    demi_built(w, call);
+    return DEM_OK;
+}
+DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape shape, int count,
+                                  const dem_real *positions, const dem_real *orientations,
+                                  const dem_real *velocities, const dem_real *spins,
+                                  const dem_real *scales) {
+    if (demi_null(w, "dem_bodies_add", w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_bodies_add(w, "dem_bodies_add", material, shape, count, positions, orientations,
+                           velocities, spins, scales);
+}
+DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape shape,
+                              dem_vec3 position, dem_quat orientation) {
+    if (demi_null(w, "dem_body_add", w, "world")) return demi_no_body;
+    dem_body id;
+    dem_real x[3], q[4];
+    id.slot = id.generation = 0;
+    demi_put(x, position);
+    demi_quat_put(q, orientation);
+    if (demi_bodies_add(w, "dem_body_add", material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
+    return dem_body_id_get(w, w->bodies.count - 1);
+}
+
+/* Index of a body, or -1 with a sentence. */
+static int demi_body_index(dem_world *w, const char *call, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation ||
+        w->bodies.slot_index[b.slot - 1] < 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was "
+                  "removed, has left the domain, or was never added", call, (unsigned)b.slot,
+                  (unsigned)b.generation);
+        return -1;
+    }
+    return w->bodies.slot_index[b.slot - 1];
+}
+
+/* The last body moves to the place that becomes free. The slot rests until the next list is made
+   (demi_slots_release): contact memory on its way still names it. Its generation goes up, so that
+   ids of old find nobody. */
+static void demi_body_take_out(dem_world *w, int i) {
+    const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
+    w->booked.removed += demi_body_energy(w, i);
+    if (demi_shape_of(w, i)) w->bodies.shaped--;
+    if (i != last) {
+        demi_body_copy(w, last, i);
+        w->bodies.slot_index[w->bodies.slot[i]] = i;
+    }
+    w->bodies.slot_index[slot] = -2 - w->bodies.slot_pending;
+    w->bodies.slot_pending = slot;
+    w->bodies.slot_generation[slot]++;
+    w->lll_valid = 0;
+    w->bodies.count = last;
+    w->bodies.balance.present--;
+}
+
+DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
+    if (demi_null(w, "dem_body_remove", w, "world")) return DEM_ERROR_ARGUMENT;
+    int i = demi_body_index(w, "dem_body_remove", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_remove");
+    demi_body_take_out(w, i);
+    w->bodies.balance.removed++;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
+    if (demi_null_look(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
+    dem_world *w = (dem_world *)world;
+    demi_periods p;
+    int i = demi_body_index(w, "dem_body_get", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    p = demi_periods_of(w);
+    s->position = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
+    s->velocity = demi_at(w->bodies.vel + 4*i);
+    s->spin = demi_at(w->bodies.spin + 4*i);
+    s->force = demi_at(w->bodies.force + 4*i);
+    s->torque = demi_at(w->bodies.torque + 4*i);
+    s->radius = w->bodies.pos[4*i + 3];
+    s->mass = w->bodies.mass[i];
+    s->moments = demi_moments_of(w, i);
+    s->reals = w->bodies.real_count ? w->bodies.reals + w->bodies.real_count*i : 0;
+    s->inertia = DEMI_MIN(s->moments.x, DEMI_MIN(s->moments.y, s->moments.z));
+    s->material.id = w->bodies.material[i];
+    s->fixed = w->bodies.inv_mass[i] <= 0;
+    s->shape.id = w->bodies.orienting ? w->bodies.shape[i] : 0;
+    s->orientation = dem_quat_make(1, 0, 0, 0);
+    if (w->bodies.orienting) s->orientation = demi_quat_at(w->bodies.orient + 4*i);
+    if (demi_shape_of(w, i))                     /* as its user gave it */
+        s->orientation = dem_quat_multiply(s->orientation,
+                                        demi_quat_conjugate(demi_shape_of(w, i)->frame));
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_state *s) {
+    if (demi_null(w, "dem_body_set", s, "state")) return DEM_ERROR_ARGUMENT;
+    int i = demi_body_index(w, "dem_body_set", body);
+    const demi_shape *shape;
+    const dem_quat q = s->orientation;
+    double before, m;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    shape = demi_shape_of(w, i);
+    if (w->bodies.orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: orientation of body %u is (%g, %g, "
+                         "%g, %g), must be finite and not zero; fill the state with dem_body_get "
+                         "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
+                         (double)q.z);
+    if (!demi_place(s->position) || !demi_place(s->velocity) || !demi_place(s->spin))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
+                         "%u is not a finite number, or beyond %g m, m/s or rad/s; check what it "
+                         "was computed from", (unsigned)body.slot, DEMI_FARTHEST);
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
+    before = demi_body_energy(w, i);
+    m = (double)w->bodies.mass[i];
+    demi_put(w->bodies.pos + 4*i, s->position);
+    demi_put(w->bodies.vel + 4*i, s->velocity);
+    demi_put(w->bodies.spin + 4*i, s->spin);
+    if (w->desc.planar)
+        w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = w->bodies.spin[4*i] =
+            w->bodies.spin[4*i + 1] = 0;
+    /* never moves, whatever it is told */
+    if (s->fixed) demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));
+    if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
+    demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
+    demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
+    if (demi_impulsive(w)) w->bodies.went[i] = 0;
+    if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
+    w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
+    w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
+        (double)w->bodies.pos[4*i + 3]));
+    if (w->bodies.orienting) {
+        demi_quat_put(w->bodies.orient + 4*i,
+                      demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
+                                                               : q,
+                                                            shape->frame) : q));
+        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
+    }
+    w->booked.inserted += demi_body_energy(w, i) - before;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+/* Mass, number and mean velocity of the bodies that can move, and their temperature. */
+static double demi_temperature(const dem_world *w, double *mass, int *count, double *mean) {
+    const int axes = w->desc.planar ? 2 : 3;
+    double sum = 0, rest;
+    int pass, i, k;
+    *mass = 0;
+    *count = 0;
+    memset(mean, 0, 3*sizeof *mean);
+    for (pass = 0; pass < 2; pass++)
+        for (i = 0; i < w->bodies.slot_count; i++) {      /* by slot: whatever the order is */
+            const int b = w->bodies.slot_index[i];
+            const double m = b < 0 ? 0 : (double)w->bodies.mass[b];
+            if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
+            if (!pass) { *mass += m; ++*count; }
+            for (k = 0; k < axes; k++) {
+                const double v = (double)w->bodies.vel[4*b + k];
+                if (!pass) mean[k] += m*v;
+                else sum += m*(v - mean[k]/ *mass)*(v - mean[k]/ *mass);
+            }
+        }
+    for (k = 0; k < 3 && *mass > 0; k++) mean[k] /= *mass;
+    if (*count < 2) return 0;
+    sum /= axes* *mass;
+    rest = mean[0]*mean[0] + mean[1]*mean[1] + mean[2]*mean[2];
+    /* what rounding leaves of equal velocities is no temperature */
+    return sum > 1e-12*DEMI_SINGLE*rest + 1e-28*rest ? sum : 0;
+}
+DEM_API double dem_temperature_get(const dem_world *w) {
+    double mass, mean[3];
+    int count;
+    if (demi_null_look(w, "dem_temperature_get", w, "world")) return 0;
+    return demi_temperature(w, &mass, &count, mean);
+}
+DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_t seed) {
+    const int axes = w && w->desc.planar ? 2 : 3;
+    double mass, mean[3], drawn[3], was;
+    int count, i, k, pass;
+    if (demi_null(w, "dem_temperature_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    was = demi_temperature(w, &mass, &count, mean);
+    if (!(temperature >= 0) || !demi_finite_double(temperature) || count < 2 ||
+        (!seed && temperature > 0 && !(was > 0)))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_temperature_set: temperature is %g m2/s2, "
+                         "for %d bodies that can move and have %g m2/s2 now; it must be finite "
+                         "and >= 0, for two bodies at least, and bodies at rest have no "
+                         "velocities to scale: give a seed to draw velocities", temperature, count,
+                         was);
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_temperature_set");
+    /* first, with a seed, the velocities are drawn; then they are scaled */
+    for (pass = seed ? 0 : 1; pass < 2; pass++) {
+        double now = demi_temperature(w, &mass, &count, drawn), scale;
+        scale = now > 0 ? sqrt(temperature/now) : 0;
+        for (i = 0; i < w->bodies.slot_count; i++) {
+            const int b = w->bodies.slot_index[i];
+            double before;
+            if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
+            before = demi_body_energy(w, b);
+            for (k = 0; k < axes; k++) {
+                dem_real *v = w->bodies.vel + 4*b + k;
+                if (pass) *v = (dem_real)(mean[k] + scale*((double)*v - drawn[k]));
+                else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
+                w->bodies.half_vel[4*b + k] = *v;
+            }
+            if (demi_impulsive(w)) w->bodies.went[b] = 0;
+            w->booked.inserted += demi_body_energy(w, b) - before;
+        }
+    }
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
+    dem_bodies b;
+    memset(&b, 0, sizeof b);
+    if (!w) return b;
+    b.count = w->bodies.count;
+    b.positions = demi_wrapped(w);
+    b.velocities = w->bodies.vel;
+    b.spins = w->bodies.spin;
+    b.forces = w->bodies.force;
+    b.torques = w->bodies.torque;
+    b.masses = w->bodies.mass; b.slots = w->bodies.slot; b.materials = w->bodies.material;
+    b.orientations = w->bodies.orient;
+    b.shapes = w->bodies.shape;
+    b.real_count = w->bodies.real_count;
+    b.reals = w->bodies.reals;
+    b.rates = w->bodies.rates;
+    return b;
+}
+/* Refuses a call about numbers of the user's where there are none, or that are not finite. */
+static dem_result demi_reals_ask(const dem_world *world, const char *call, const dem_real *reals,
+                                 int count, int setting) {
+    dem_world *w = (dem_world *)world;
+    int k;
+    if (setting ? demi_null(w, call, reals, "reals") : demi_null_look(w, call, reals, "reals"))
+        return DEM_ERROR_ARGUMENT;
+    if (!w->bodies.real_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: bodies carry no user-defined numbers; name "
+                         "the numbers in desc.body_reals when the world is created", call);
+    for (k = 0; setting && k < count*w->bodies.real_count; k++)
+        if (!demi_finite(reals[k]))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: number %d is %g, must be finite; check "
+                             "what it was computed from", call, k, (double)reals[k]);
+    return DEM_OK;
+}
+DEM_API dem_result dem_body_reals_get(const dem_world *w, dem_body body, dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_body_reals_get", reals, 1, 0);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_body_index((dem_world *)w, "dem_body_reals_get", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(reals, w->bodies.reals + w->bodies.real_count*i,
+           (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_body_reals_set(dem_world *w, dem_body body, const dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_body_reals_set", reals, 1, 1);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_body_index(w, "dem_body_reals_set", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(w->bodies.reals + w->bodies.real_count*i, reals,
+           (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_bodies_reals_set", reals,
+                                             w ? w->bodies.count : 0, 1);
+    if (result != DEM_OK) return result;
+    if (w->bodies.count)
+        memcpy(w->bodies.reals, reals,
+               (size_t)(w->bodies.count*w->bodies.real_count)*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_body dem_body_id_get(const dem_world *w, int index) {
+    if (demi_null_look(w, "dem_body_id_get", w, "world")) return demi_no_body;
+    dem_body id;
+    id.slot = id.generation = 0;
+    if (index < 0 || index >= w->bodies.count) return id;
+    id.slot = w->bodies.slot[index] + 1;
+    id.generation = w->bodies.slot_generation[w->bodies.slot[index]];
+    return id;
+}
+DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
+    dem_body_counts none;
+    memset(&none, 0, sizeof none);
+    return w ? w->bodies.balance : none;
+}

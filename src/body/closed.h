@@ -1,0 +1,374 @@
+/* ---------------------------------------------------------------------------------------------
+   >>closed
+   Which side of a mesh is inside? Vertices at the same position are one vertex; of equal triangles
+   at most one counts. Two triangles that share an edge with no third must run along it in opposite
+   directions. This fixes the orientation of every triangle of a shell (the triangles that such
+   edges join) relative to its first, whatever their order of corners. A body is bounded by shells
+   without open edges. An outer shell faces out. A shell within a shell is a cavity if it was
+   written to face the opposite way of the shell around it; if not, the mesh is refused.
+   Tests: tests/file/test_decompose.c.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };
+typedef struct demi_closed {
+    const dem_mesh *mesh;
+    int32_t *corner;               /* triangles x 3: the first vertex at that place */
+    int32_t *edge;                 /* triangles x 3: the first triangle side that is this edge */
+    int32_t *parent;               /* of a triangle: nearer to the one that represents its shell */
+    unsigned char *turned;         /* against the parent */
+    signed char *sign;             /* 1; -1: to be turned round; 0: does not count */
+    int open, crowded, duplicates, flipped, twisted, shells;
+} demi_closed;
+
+/* For every key of `width` bytes the index of the first equal one: count int32, to be
+   freed; null without memory. Open addressing, in a table that is at most half full. */
+static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, size_t width) {
+    const char *key = (const char *)keys;
+    size_t i, slots = 16;
+    int32_t *first, *table; /* table: index + 1, or 0 */
+    while (slots < 2*count) slots *= 2;
+    first = (int32_t *)demi_alloc(w, count, sizeof(int32_t));
+    table = (int32_t *)demi_alloc(w, slots, sizeof(int32_t));
+    for (i = 0; first && table && i < count; i++) {
+        const char *mine = key + i*width;
+        size_t at = (size_t)demi_hash(DEMI_HASH_START, mine, width) & (slots - 1);
+        while (table[at] && memcmp(key + (size_t)(table[at] - 1)*width, mine, width) != 0)
+            at = (at + 1) & (slots - 1);
+        if (!table[at]) table[at] = (int32_t)i + 1;
+        first[i] = table[at] - 1;
+    }
+    demi_free(w, table);
+    if (!table) demi_free(w, first);
+    return table ? first : 0;
+}
+static void demi_closed_free(dem_world *w, demi_closed *c) {
+    demi_free(w, c->corner);
+    demi_free(w, c->edge);
+    demi_free(w, c->parent);
+    demi_free(w, c->turned);
+    demi_free(w, c->sign);
+}
+/* The triangle that represents the shell; *turned: does triangle i face the other way? */
+static int demi_closed_shell(demi_closed *c, int i, int *turned) {
+    for (*turned = 0; c->parent[i] != i; i = c->parent[i]) {
+        const int up = c->parent[i];
+        c->parent[i] = c->parent[up];
+        c->turned[i] ^= c->turned[up];
+        *turned ^= c->turned[i];
+    }
+    return i;
+}
+/* Does side k of triangle i run from the lower to the higher corner? 1 or -1. */
+static int demi_closed_way(const demi_closed *c, size_t side) {
+    return c->corner[side] < c->corner[side - side%3 + (side + 1)%3] ? 1 : -1;
+}
+/* Vertices at one place made one, a zero with a sign like any zero. 0: no memory. */
+static int demi_closed_weld(dem_world *w, demi_closed *c) {
+    const size_t n = (size_t)c->mesh->vertex_count;
+    dem_real *place = (dem_real *)demi_alloc(w, 3*n, sizeof *place);
+    int32_t *first = 0;
+    size_t i;
+    for (i = 0; place && i < 3*n; i++) place[i] = c->mesh->vertices[i] + 0;
+    if (place) first = demi_first_equal(w, place, n, 3*sizeof *place);
+    for (i = 0; first && i < 3*(size_t)c->mesh->triangle_count; i++)
+        c->corner[i] = first[c->mesh->triangles[i]];
+    demi_free(w, place);
+    demi_free(w, first);
+    return first != 0;
+}
+/* Of triangles with the same corners one counts, of those that face the way of most; none, where as
+   many face each way: an inner wall. Nor does a triangle with a corner twice. 0: no memory. */
+static int demi_closed_equals(dem_world *w, demi_closed *c) {
+    const int n = c->mesh->triangle_count;
+    int32_t *key = (int32_t *)demi_alloc(w, 3*(size_t)n, sizeof *key), *first = 0, *most;
+    int i;
+    for (i = 0; key && i < n; i++) {
+        int32_t *k = key + 3*i, a = c->corner[3*i], b = c->corner[3*i + 1], d = c->corner[3*i + 2];
+        k[0] = DEMI_MIN(a, DEMI_MIN(b, d));
+        k[2] = DEMI_MAX(a, DEMI_MAX(b, d));
+        k[1] = DEMI_MAX(DEMI_MIN(a, b), DEMI_MIN(DEMI_MAX(a, b), d));
+        c->sign[i] = (signed char)(a == b || b == d || d == a ? 0 :
+                                   (a < b) + (b < d) + (d < a) == 2 ? 1 : -1);
+    }
+    if (key) first = demi_first_equal(w, key, (size_t)n, 3*sizeof *key);
+    most = key;                                 /* its keys are not needed any more */
+    if (first) memset(most, 0, (size_t)n*sizeof *most);
+    for (i = 0; first && i < n; i++) {
+        most[first[i]] += c->sign[i];
+        c->duplicates += first[i] != i;
+    }
+    for (i = 0; first && i < n; i++) {
+        const int32_t sum = most[first[i]];
+        if (c->sign[i]*sum <= 0) { c->sign[i] = 0; continue; }
+        most[first[i]] = 0;                     /* no other of them */
+        c->sign[i] = 1;
+    }
+    demi_free(w, key);
+    demi_free(w, first);
+    return first != 0;
+}
+/* Edges: how many triangles each has, and shells made of those that have two. 0: no memory. */
+static int demi_closed_join(dem_world *w, demi_closed *c) {
+    const size_t sides = 3*(size_t)c->mesh->triangle_count;
+    int32_t *key = (int32_t *)demi_alloc(w, 2*sides, sizeof *key), *all = key, *live;
+    size_t i;
+    for (i = 0; key && i < sides; i++) {        /* a triangle with a corner twice has no edges */
+        const int32_t *t = c->corner + i/3*3, a = t[i%3], b = t[(i + 1)%3];
+        const int none = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+        key[2*i] = none ? -1 : DEMI_MIN(a, b);
+        key[2*i + 1] = none ? -1 : DEMI_MAX(a, b);
+    }
+    c->edge = key ? demi_first_equal(w, key, sides, 2*sizeof *key) : 0;
+    if (!c->edge) { demi_free(w, key); return 0; }
+    for (i = 0; i < sides; i++) if (key[2*i] < 0) c->edge[i] = -1;
+    memset(key, 0, 2*sides*sizeof *key);        /* from here on: triangles at each edge */
+    live = key + sides;
+    for (i = 0; i < sides; i++) {
+        if (c->edge[i] < 0) continue;
+        all[c->edge[i]]++;
+        live[c->edge[i]] += c->sign[i/3] != 0;
+    }
+    for (i = 0; i < sides; i++) {
+        c->open += all[i] == 1;
+        c->crowded += all[i] > 2;
+        all[i] = -1;                            /* from here on: the first of the two */
+    }
+    for (i = 0; i < sides; i++) {
+        int32_t *other = all + DEMI_MAX(c->edge[i], 0);
+        int turned, its, a, b;
+        if (c->edge[i] < 0 || !c->sign[i/3] || live[c->edge[i]] != 2) continue;
+        if (*other < 0) { *other = (int32_t)i; continue; }
+        a = demi_closed_shell(c, (int)(i/3), &turned);
+        b = demi_closed_shell(c, *other/3, &its);
+        turned ^= its ^ (demi_closed_way(c, i) == demi_closed_way(c, (size_t)*other));
+        if (a == b) { c->twisted += turned; continue; }
+        c->parent[a] = b;
+        c->turned[a] = (unsigned char)turned;
+    }
+    demi_free(w, key);
+    return 1;
+}
+/* Finds shells, and what is wrong with them. 0: no memory; the caller frees in any case. */
+static int demi_closed_find(dem_world *w, const dem_mesh *mesh, demi_closed *c) {
+    const int n = mesh->triangle_count;
+    int32_t *turned;
+    int i, t;
+    memset(c, 0, sizeof *c);
+    c->mesh = mesh;
+    c->corner = (int32_t *)demi_alloc(w, 3*(size_t)n, sizeof *c->corner);
+    c->parent = (int32_t *)demi_alloc(w, (size_t)n, sizeof *c->parent);
+    c->turned = (unsigned char *)demi_alloc(w, (size_t)n, 1);
+    c->sign = (signed char *)demi_alloc(w, (size_t)n, 1);
+    if (!c->corner || !c->parent || !c->turned || !c->sign) return 0;
+    for (i = 0; i < n; i++) c->parent[i] = i;
+    if (!demi_closed_weld(w, c) || !demi_closed_equals(w, c) || !demi_closed_join(w, c)) return 0;
+    turned = (int32_t *)demi_alloc(w, 2*(size_t)n, sizeof *turned);    /* of each shell; and all */
+    if (!turned) return 0;
+    for (i = 0; i < n; i++) {
+        const int shell = demi_closed_shell(c, i, &t);
+        turned[2*shell] += t;
+        turned[2*shell + 1] += c->sign[i] != 0;
+    }
+    for (i = 0; i < n; i++) {
+        const int shell = demi_closed_shell(c, i, &t);
+        if (!c->sign[i]) continue;
+        t ^= 2*turned[2*shell] > turned[2*shell + 1];   /* most face the way they were written */
+        c->flipped += t;
+        c->sign[i] = (signed char)(t ? -1 : 1);
+        c->shells += shell == i;
+    }
+    demi_free(w, turned);
+    return 1;
+}
+static void demi_mesh_corner(const dem_mesh *mesh, int triangle, int k, double *x) {
+    const dem_vec3 v = demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]);
+    x[0] = (double)v.x; x[1] = (double)v.y; x[2] = (double)v.z;
+}
+/* Shells that are to be a body, outward ones with a positive volume. */
+typedef struct demi_shells {
+    int count;
+    int32_t *order, *start;        /* triangles by shell; count + 1 */
+    double *volume, *box;          /* m3, as written; m: 3 lowest and 3 highest coordinates */
+    int32_t *around, *depth;       /* the innermost shell around it, -1: none; how many are */
+} demi_shells;
+static void demi_shells_free(dem_world *w, demi_shells *s) {
+    demi_free(w, s->order);
+    demi_free(w, s->start);
+    demi_free(w, s->volume);
+    demi_free(w, s->box);
+    demi_free(w, s->around);
+    demi_free(w, s->depth);
+}
+/* Sides at which the triangles of a shell do not pair up, by shells as they are now: how many, and
+   the first. -1: no memory. */
+static int demi_closed_loose(dem_world *w, demi_closed *c, int *first_side) {
+    const size_t sides = 3*(size_t)c->mesh->triangle_count;
+    int32_t *key = (int32_t *)demi_alloc(w, 2*sides, sizeof *key), *first = 0;
+    int loose = 0, turned;
+    size_t i;
+    for (i = 0; key && i < sides; i++) {
+        key[2*i] = c->edge[i];
+        key[2*i + 1] = demi_closed_shell(c, (int)(i/3), &turned);
+    }
+    if (key) first = demi_first_equal(w, key, sides, 2*sizeof *key);
+    if (first) memset(key, 0, sides*sizeof *key);
+    for (i = 0; first && i < sides; i++)
+        if (c->edge[i] >= 0) key[first[i]] += c->sign[i/3]*demi_closed_way(c, i);
+    for (i = sides; first && i-- > 0;)
+        if (key[i]) { loose++; *first_side = (int)i; }
+    demi_free(w, key);
+    demi_free(w, first);
+    return first ? loose : -1;
+}
+/* Triangles by shell, and their volumes. 0: no memory. */
+static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
+    const int n = c->mesh->triangle_count;
+    int32_t *number = (int32_t *)demi_alloc(w, (size_t)n, sizeof *number);
+    int i, k, turned;
+    s->count = c->shells;
+    s->order = (int32_t *)demi_alloc(w, (size_t)n, sizeof *s->order);
+    s->start = (int32_t *)demi_alloc(w, (size_t)c->shells + 2, sizeof *s->start);
+    s->volume = (double *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->volume);
+    s->box = (double *)demi_alloc(w, 6*((size_t)c->shells + 1), sizeof *s->box);
+    s->around = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->around);
+    s->depth = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->depth);
+    if (!number || !s->order || !s->start || !s->volume || !s->box || !s->around || !s->depth) {
+        demi_free(w, number);
+        return 0;
+    }
+    for (k = 0; k < 6*s->count; k++) s->box[k] = k%6 < 3 ? 1e300 : -1e300;
+    for (i = k = 0; i < n; i++)
+        if (c->sign[i] && demi_closed_shell(c, i, &turned) == i) number[i] = k++;
+    for (i = 0; i < n; i++)
+        if (c->sign[i]) s->start[number[demi_closed_shell(c, i, &turned)] + 2]++;
+    for (k = 2; k <= s->count; k++) s->start[k] += s->start[k - 1];
+    for (i = 0; i < n; i++) {
+        double p[3], q[3], r[3], o[3];
+        int e;
+        if (!c->sign[i]) continue;
+        k = number[demi_closed_shell(c, i, &turned)];
+        s->order[s->start[k + 1]++] = i;
+        demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0, o);  /* near: round-off */
+        demi_mesh_corner(c->mesh, i, 0, p);
+        demi_mesh_corner(c->mesh, i, 1, q);
+        demi_mesh_corner(c->mesh, i, 2, r);
+        for (e = 0; e < 3; e++) {
+            double *lo = s->box + 6*k + e, *hi = lo + 3;
+            *lo = DEMI_MIN(*lo, DEMI_MIN(p[e], DEMI_MIN(q[e], r[e])));
+            *hi = DEMI_MAX(*hi, DEMI_MAX(p[e], DEMI_MAX(q[e], r[e])));
+            p[e] -= o[e];
+            q[e] -= o[e];
+            r[e] -= o[e];
+        }
+        s->volume[k] += c->sign[i]*(p[0]*(q[1]*r[2] - q[2]*r[1]) + p[1]*(q[2]*r[0] - q[0]*r[2]) +
+                                    p[2]*(q[0]*r[1] - q[1]*r[0]))/6;
+    }
+    demi_free(w, number);
+    return 1;
+}
+/* How often a shell goes round a point: about 0 outside, 1 or -1 inside. Sum of the solid angles of
+   its triangles, each by tan(angle/2) = a.(b x c)/(abc + a.b c + b.c a + c.a b), over 4 pi. */
+static double demi_shells_winding(const demi_closed *c, const demi_shells *s, int shell,
+                                  const double *x) {
+    double sum = 0;
+    int i, k, e;
+    for (i = s->start[shell]; i < s->start[shell + 1]; i++) {
+        double p[3][3], l[3], top, bottom;
+        for (k = 0; k < 3; k++) {
+            demi_mesh_corner(c->mesh, s->order[i], k, p[k]);
+            for (e = 0; e < 3; e++) p[k][e] -= x[e];
+            l[k] = sqrt(demi_dot3(p[k], p[k]));
+        }
+        top = p[0][0]*(p[1][1]*p[2][2] - p[1][2]*p[2][1]) +
+            p[0][1]*(p[1][2]*p[2][0] - p[1][0]*p[2][2]) +
+            p[0][2]*(p[1][0]*p[2][1] - p[1][1]*p[2][0]);
+        bottom = l[0]*l[1]*l[2] + demi_dot3(p[0], p[1])*l[2] + demi_dot3(p[1], p[2])*l[0] +
+            demi_dot3(p[2], p[0])*l[1];
+        sum += c->sign[s->order[i]]*2*demi_atan2(top, bottom);
+    }
+    return sum/(4*DEMI_PI);
+}
+/* Is shell a inside shell b? By some of its corners, those off b's surface. -1: they cross. */
+static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a, int b) {
+    const int n = s->start[a + 1] - s->start[a], looks = DEMI_MIN(n, (int)DEMI_CLOSED_LOOKS);
+    const double *mine = s->box + 6*a, *its = s->box + 6*b;
+    int i, in = 0, out = 0;
+    for (i = 0; i < 3; i++) if (mine[i] > its[i + 3] || its[i] > mine[i + 3]) return 0;
+    for (i = 0; i < looks; i++) {
+        double x[3], wind;
+        demi_mesh_corner(c->mesh, s->order[s->start[a] + (int)((int64_t)i*n/looks)], i%3, x);
+        wind = fabs(demi_shells_winding(c, s, b, x));
+        in += wind > 0.9;
+        out += wind < 0.1;
+    }
+    return in && out ? -1 : in > 0;
+}
+/* Which shells are inside which. 0, with an error message: two
+   cross, or one faces as that around it. */
+static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
+                            demi_shells *s) {
+    double x[3];
+    int a, b;
+    for (a = 0; a < s->count; a++)
+        for (b = 0; b < s->count; b++) {
+            const int in = a == b ? 0 : demi_shells_inside(c, s, a, b);
+            if (in < 0) {
+                demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
+                          "begins at (%g, %g, %g) m), must be apart or one inside the other; "
+                          "unite them in the program that exported them, or pass them as separate "
+                          "meshes", call, x[0], x[1], x[2]);
+                return 0;
+            }
+            s->depth[a] += in;
+        }
+    for (a = 0; a < s->count; a++) {
+        for (s->around[a] = -1, b = 0; b < s->count && s->depth[a]; b++)
+            if (b != a && s->depth[b] == s->depth[a] - 1 && demi_shells_inside(c, s, a, b) > 0)
+                s->around[a] = b;
+        if (s->around[a] < 0 || s->volume[a]*s->volume[s->around[a]] < 0) continue;
+        demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
+                  "lies inside another and faces the same way, must face the other way to be a "
+                  "cavity; reverse its triangles, or leave it out if it is a second body", call,
+                  x[0], x[1], x[2]);
+        return 0;
+    }
+    return 1;
+}
+/* Gives each triangle the sign with which outer shells face out and cavities in. 0, with an
+   error message: the mesh does not bound a body. */
+static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
+    demi_shells s;
+    double x[3] = {0, 0, 0};
+    int side = 0, a, i, good = 0;
+    const int loose = demi_closed_loose(w, c, &side);
+    if (loose < 0) { demi_no_memory(w, call); return 0; }
+    demi_mesh_corner(c->mesh, side/3, side%3, x);
+    if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
+        if (c->twisted)
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is one-sided, as a Moebius strip is "
+                      "(no winding fits at %d edges), so it has no inside; repair it in the "
+                      "program that exported it", call, c->twisted);
+        else if (loose)
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or has more than "
+                      "two triangles there (first near (%.4g, %.4g, %.4g) m), so it has no "
+                      "inside; close it in the program that exported it (dem_mesh_health counts "
+                      "such edges)", call, loose, x[0], x[1], x[2]);
+        else
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
+                      "%d; if it holds several bodies, pass them as separate meshes", call,
+                      c->shells, (int)DEMI_CLOSED_SHELLS);
+        return 0;
+    }
+    memset(&s, 0, sizeof s);
+    if (!demi_shells_make(w, c, &s)) demi_no_memory(w, call);
+    else good = demi_shells_nest(w, call, c, &s);
+    for (a = 0; a < s.count && good; a++) {
+        int root = a;
+        while (s.around[root] >= 0) root = s.around[root];
+        for (i = s.start[a]; i < s.start[a + 1] && s.volume[root] < 0; i++)
+            c->sign[s.order[i]] = (signed char)-c->sign[s.order[i]];
+    }
+    demi_shells_free(w, &s);
+    return good;
+}

@@ -1,0 +1,599 @@
+/* ---------------------------------------------------------------------------------------------
+   >>hulls
+   Convex polyhedra as shapes: the convex hull of points, its faces, and what follows from them.
+   The hull grows point by point, the farthest first, in triangles; those that lie in one plane are
+   then one face. Knows no contact: >>polyhedra. And copies of shapes.
+   --------------------------------------------------------------------------------------------- */
+
+/* (4 pi/3)^(1/3): the edge of a cube over the radius of the sphere of its volume. */
+#define DEMI_POLYHEDRON_SCALE 1.6119919540164696
+/* A triangle of a hull under way. */
+typedef struct demi_hull_face {
+    int32_t corner[3], beside[3];  /* points, counterclockwise from outside; across k to k + 1 */
+    int32_t state, face;           /* 0: free, 1: of the hull, 2: seen by the point that comes */
+    double n[3], at;               /* unit, outward; m: n.x of its plane */
+} demi_hull_face;
+/* Corners of a polyhedron of as many faces are 2 faces - 4 at most, its triangles 2 corners - 4;
+   room for those that come before those that they replace go. */
+enum { DEMI_HULL_CORNERS = 2*DEM_POLYHEDRON_FACES - 4, DEMI_HULL_ROOM = 4*DEMI_HULL_CORNERS };
+typedef struct demi_hull {
+    int count, used, corners;      /* points; triangles; points that are corners */
+    const double *x;               /* count x 3 */
+    double near;                   /* m: what is nearer than that to a plane lies in it */
+    int32_t *first;                /* count: a new triangle by the first corner of its outer side */
+    demi_hull_face *faces;         /* DEMI_HULL_ROOM */
+} demi_hull;
+
+static void demi_cross3(const double *a, const double *b, double *out) {
+    const double x = a[1]*b[2] - a[2]*b[1], y = a[2]*b[0] - a[0]*b[2], z = a[0]*b[1] - a[1]*b[0];
+    out[0] = x; out[1] = y; out[2] = z;
+}
+static void demi_sub3(const double *a, const double *b, double *out) {
+    out[0] = a[0] - b[0]; out[1] = a[1] - b[1]; out[2] = a[2] - b[2];
+}
+/* Makes n a unit vector; answers its length. */
+static double demi_unit3(double *n) {
+    const double l = sqrt(demi_dot3(n, n));
+    int k;
+    for (k = 0; k < 3; k++) n[k] = l > 0 ? n[k]/l : 0;
+    return l;
+}
+static double demi_hull_above(const demi_hull *h, const demi_hull_face *f, int point) {
+    return demi_dot3(f->n, h->x + 3*point) - f->at;
+}
+/* A new triangle; null: no room. */
+static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
+    const double *x = h->x + 3*a;
+    double u[3], v[3];
+    demi_hull_face *f;
+    int i;
+    for (i = 0; i < h->used && h->faces[i].state; i++) continue;
+    if (i == DEMI_HULL_ROOM) return 0;
+    h->used = DEMI_MAX(h->used, i + 1);
+    f = h->faces + i;
+    f->corner[0] = a; f->corner[1] = b; f->corner[2] = c;
+    demi_sub3(h->x + 3*b, x, u);
+    demi_sub3(h->x + 3*c, x, v);
+    demi_cross3(u, v, f->n);
+    demi_unit3(f->n);
+    f->at = demi_dot3(f->n, x);
+    f->state = 1;
+    f->face = -1;
+    return f;
+}
+/* The point farthest from the line through a and b (from a, where they are one), or from the plane
+   through a, b and c where that is not one of the two; m. */
+static double demi_hull_far(const demi_hull *h, int a, int b, int c, int *far) {
+    double u[3], v[3], n[3], most = 0;
+    int i;
+    demi_sub3(h->x + 3*b, h->x + 3*a, u);
+    demi_unit3(u);
+    if (c != a) {
+        demi_sub3(h->x + 3*c, h->x + 3*a, v);
+        demi_cross3(u, v, u);
+        demi_unit3(u);
+    }
+    for (i = 0; i < h->count; i++) {
+        double d;
+        demi_sub3(h->x + 3*i, h->x + 3*a, v);
+        demi_cross3(u, v, n);
+        d = c != a ? fabs(demi_dot3(u, v)) : a == b ? sqrt(demi_dot3(v, v))
+                                                    : sqrt(demi_dot3(n, n));
+        if (d > most) { most = d; *far = i; }
+    }
+    return most;
+}
+/* The first four triangles. 0: all points lie in a plane. */
+static int demi_hull_begin(demi_hull *h) {
+    static const int32_t beside[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    int p[4] = {0, 0, 0, 0}, i, k;
+    for (i = 0; i < DEMI_HULL_ROOM; i++) h->faces[i].state = 0;
+    h->used = 0;
+    if (!(demi_hull_far(h, 0, 0, 0, &p[0]) > h->near) ||
+        !(demi_hull_far(h, p[0], p[0], p[0], &p[1]) > h->near) ||
+        !(demi_hull_far(h, p[0], p[1], p[0], &p[2]) > h->near) ||
+        !(demi_hull_far(h, p[0], p[1], p[2], &p[3]) > h->near)) return 0;
+    demi_hull_new(h, p[0], p[1], p[2]);
+    if (demi_hull_above(h, h->faces, p[3]) > 0) {       /* the fourth lies below the first three */
+        h->faces[0].state = 0;
+        i = p[1]; p[1] = p[2]; p[2] = i;
+        demi_hull_new(h, p[0], p[1], p[2]);
+    }
+    demi_hull_new(h, p[1], p[0], p[3]);
+    demi_hull_new(h, p[2], p[1], p[3]);
+    demi_hull_new(h, p[0], p[2], p[3]);
+    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) h->faces[i].beside[k] = beside[i][k];
+    h->corners = 4;
+    return 1;
+}
+/* The point farthest outside, and the triangle it is farthest from; -1: none is outside. */
+static int demi_hull_next(const demi_hull *h, int *face) {
+    double most = h->near;
+    int i, k, next = -1;
+    for (k = 0; k < h->used; k++)
+        for (i = 0; h->faces[k].state && i < h->count; i++) {
+            const double d = demi_hull_above(h, h->faces + k, i);
+            if (d > most) { most = d; next = i; *face = k; }
+        }
+    return next;
+}
+/* Takes a point in: triangles that it sees, one beside the other, give way to those that join it to
+   their rim. 0: there is no room, or round-off has left a rim that is not one loop. */
+static int demi_hull_take(demi_hull *h, int point, int from) {
+    int32_t seen[DEMI_HULL_ROOM];
+    int i, k, count = 0, rim = 0;
+    h->faces[from].state = 2;
+    seen[count++] = from;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            const int32_t next = h->faces[seen[i]].beside[k];
+            if (h->faces[next].state != 1 ||
+                !(demi_hull_above(h, h->faces + next, point) > h->near)) continue;
+            h->faces[next].state = 2;
+            seen[count++] = next;
+        }
+    for (i = 0; i < h->count; i++) h->first[i] = -1;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            const demi_hull_face *f = h->faces + seen[i];
+            const int32_t out = f->beside[k], a = f->corner[k], b = f->corner[(k + 1)%3];
+            demi_hull_face *fresh;
+            int e;
+            if (h->faces[out].state != 1) continue;
+            fresh = demi_hull_new(h, a, b, point);
+            if (!fresh || h->first[a] >= 0) return 0;
+            h->first[a] = (int32_t)(fresh - h->faces);
+            fresh->beside[0] = out;
+            for (e = 0; e < 3 && h->faces[out].corner[e] != b; e++) continue;
+            if (e == 3) return 0;
+            h->faces[out].beside[e] = h->first[a];
+            rim++;
+        }
+    for (i = 0; i < h->count; i++) {
+        const int32_t here = h->first[i];
+        int32_t next;
+        if (here < 0) continue;
+        next = h->first[h->faces[here].corner[1]];
+        if (next < 0) return 0;
+        h->faces[here].beside[1] = next;
+        h->faces[next].beside[2] = here;
+    }
+    for (i = 0; i < count; i++) h->faces[seen[i]].state = 0;
+    h->corners++;
+    return rim > 2;
+}
+/* Is triangle k in the plane of f? */
+static int demi_hull_flush(const demi_hull *h, const demi_hull_face *f, int k) {
+    int e;
+    for (e = 0; e < 3; e++)
+        if (fabs(demi_hull_above(h, f, h->faces[k].corner[e])) > h->near) return 0;
+    return demi_dot3(f->n, h->faces[k].n) > 0.5;
+}
+/* Numbers the faces: triangles in one plane, one beside the other, the largest first. Answers how
+   many there are. */
+static int demi_hull_faces(demi_hull *h) {
+    int32_t row[DEMI_HULL_ROOM];
+    int faces = 0, i, k, count;
+    for (;; faces++) {
+        double most = -1;
+        int from = -1;
+        for (i = 0; i < h->used; i++) {
+            const demi_hull_face *f = h->faces + i;
+            double u[3], v[3], n[3], area;
+            if (f->state != 1 || f->face >= 0) continue;
+            demi_sub3(h->x + 3*f->corner[1], h->x + 3*f->corner[0], u);
+            demi_sub3(h->x + 3*f->corner[2], h->x + 3*f->corner[0], v);
+            demi_cross3(u, v, n);
+            area = demi_dot3(n, n);
+            if (area > most) { most = area; from = i; }
+        }
+        if (from < 0) return faces;
+        h->faces[from].face = faces;
+        row[0] = from;
+        for (i = 0, count = 1; i < count; i++)
+            for (k = 0; k < 3; k++) {
+                const int32_t next = h->faces[row[i]].beside[k];
+                if (h->faces[next].face >= 0 || !demi_hull_flush(h, h->faces + from, next))
+                    continue;
+                h->faces[next].face = faces;
+                row[count++] = next;
+            }
+    }
+}
+/* The corners of a face in their order, as point numbers. 0: its rim is not one loop. */
+static int demi_hull_loop(const demi_hull *h, int face, int32_t *loop) {
+    int i, k, sides = 0, begin = -1, count = 0;
+    for (i = 0; i < h->used; i++)
+        for (k = 0; k < 3 && h->faces[i].state == 1 && h->faces[i].face == face; k++)
+            if (h->faces[h->faces[i].beside[k]].face != face) {
+                h->first[h->faces[i].corner[k]] = h->faces[i].corner[(k + 1)%3];
+                begin = h->faces[i].corner[k];
+                sides++;
+            }
+    for (k = begin; count < sides; k = h->first[k]) loop[count++] = k;
+    for (i = 1; i < count; i++) if (loop[i] == begin) return 0;
+    return k == begin && sides > 2 ? sides : 0;
+}
+/* Normal and height of a loop of corners (Newell): twice its area. */
+static double demi_loop_plane(const double *x, const int32_t *loop, int n, double *plane) {
+    double twice;
+    int i, k;
+    for (k = 0; k < 4; k++) plane[k] = 0;
+    for (i = 1; i + 1 < n; i++) {
+        double u[3], v[3], c[3];
+        demi_sub3(x + 3*loop[i], x + 3*loop[0], u);
+        demi_sub3(x + 3*loop[i + 1], x + 3*loop[0], v);
+        demi_cross3(u, v, c);
+        for (k = 0; k < 3; k++) plane[k] += c[k];
+    }
+    twice = demi_unit3(plane);
+    for (i = 0; i < n; i++) plane[3] += demi_dot3(plane, x + 3*loop[i])/n;
+    return twice;
+}
+/* Is no point outside, and every corner of a face in its plane, but for some round-off? */
+static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
+    const int32_t *loops = rim + faces + 1;
+    int f, i;
+    for (f = 0; f < faces; f++) {
+        double plane[4];
+        if (!(demi_loop_plane(h->x, loops + rim[f], rim[f + 1] - rim[f], plane) > 0)) return 0;
+        for (i = 0; i < h->count; i++)
+            if (demi_dot3(plane, h->x + 3*i) - plane[3] > 20*h->near) return 0;
+        for (i = rim[f]; i < rim[f + 1]; i++)
+            if (demi_dot3(plane, h->x + 3*loops[i]) - plane[3] < -20*h->near) return 0;
+    }
+    return 1;
+}
+/* The faces of the hull into rim (faces + 1 starts, then corners, as point numbers): how many; 0:
+   round-off has spoilt it; -1: points lie in a plane; more than DEM_POLYHEDRON_FACES: that many or
+   more. */
+static int demi_hull_of(demi_hull *h, int32_t *rim) {
+    int faces, face = 0, next, f, n = 0;
+    if (!demi_hull_begin(h)) return -1;
+    while ((next = demi_hull_next(h, &face)) >= 0) {
+        if (h->corners == h->count) return 0;
+        if (h->corners == DEMI_HULL_CORNERS) return DEM_POLYHEDRON_FACES + 1;
+        if (!demi_hull_take(h, next, face)) return 0;
+    }
+    faces = demi_hull_faces(h);
+    if (faces > DEM_POLYHEDRON_FACES) return faces;
+    for (f = 0; f < faces; f++) {
+        const int sides = demi_hull_loop(h, f, rim + faces + 1 + n);
+        if (!sides) return 0;
+        rim[f] = n;
+        n += sides;
+    }
+    rim[faces] = n;
+    return demi_hull_holds(h, rim, faces) ? faces : 0;
+}
+/* Adds the tetrahedron of the origin and a triangle: exact moments. */
+static void demi_moments_tetrahedron(demi_moments *m, const double *a, const double *b,
+                                     const double *c) {
+    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
+    double n[3], v, s[3];
+    int k;
+    demi_cross3(b, c, n);
+    v = demi_dot3(a, n)/6;
+    m->one += v;
+    for (k = 0; k < 3; k++) {
+        s[k] = a[k] + b[k] + c[k];
+        m->x[k] += v*s[k]/4;
+    }
+    for (k = 0; k < 6; k++)
+        m->xx[k] += v*(s[one[k]]*s[two[k]] + a[one[k]]*a[two[k]] + b[one[k]]*b[two[k]] +
+                       c[one[k]]*c[two[k]])/20;
+}
+static void demi_polyhedron_moments(const double *x, const int32_t *rim, int faces,
+                                    demi_moments *m) {
+    const int32_t *loops = rim + faces + 1;
+    int f, i;
+    memset(m, 0, sizeof *m);
+    for (f = 0; f < faces; f++)
+        for (i = rim[f] + 1; i + 1 < rim[f + 1]; i++)
+            demi_moments_tetrahedron(m, x + 3*loops[rim[f]], x + 3*loops[i], x + 3*loops[i + 1]);
+}
+/* Corners that are in use, numbered anew, into the principal frame; then the planes. */
+static void demi_polyhedron_lay(demi_shape *s, const double *x, int32_t *number) {
+    int32_t *loops = s->rim + s->faces + 1;
+    int i, k, f;
+    for (i = 0; i < s->rim[s->faces]; i++) {
+        const double *at = x + 3*loops[i];
+        double *corner = s->hull + 4*s->faces + 3*s->corners;
+        dem_vec3 c;
+        if (number[loops[i]] < 0) {
+            number[loops[i]] = s->corners++;
+            c = dem_quat_unrotate(s->frame, demi_sub(demi_v((dem_real)at[0], (dem_real)at[1],
+                                                            (dem_real)at[2]), s->centre));
+            corner[0] = (double)c.x; corner[1] = (double)c.y; corner[2] = (double)c.z;
+        }
+        loops[i] = number[loops[i]];
+    }
+    for (f = 0; f < s->faces; f++) {
+        double *plane = s->hull + 4*f;
+        demi_loop_plane(s->hull + 4*s->faces, loops + s->rim[f], s->rim[f + 1] - s->rim[f], plane);
+        for (k = 0; k < 3; k++) plane[k] /= plane[3];
+    }
+}
+/* Radii, arms, and how light it may seem: where a face lies on a plane the overlap grows with
+   slope^2 = area/(2 (4 pi/3)^(1/3) r h) for every m (>>polyhedra), and by turning with its arms. */
+static void demi_polyhedron_bounds(demi_shape *s) {
+    const double *corners = s->hull + 4*s->faces;
+    const int32_t *loops = s->rim + s->faces + 1;
+    const dem_vec3 I = s->inertia;
+    const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    const double r = demi_pow(s->volume*3/(4*DEMI_PI), 1.0/3);
+    int f, i;
+    s->radius = s->moment_arm = 0;
+    s->thin = (dem_real)r;
+    s->blunt = (dem_real)r;
+    s->light = 1;
+    for (i = 0; i < s->corners; i++)
+        s->radius = DEMI_MAX(s->radius, (dem_real)sqrt(demi_dot3(corners + 3*i, corners + 3*i)));
+    for (f = 0; f < s->faces; f++) {
+        const double h = s->hull[4*f + 3];
+        double plane[4], arm = 0, slope;
+        const double area = demi_loop_plane(corners, loops + s->rim[f], s->rim[f + 1] - s->rim[f],
+                                            plane)/2;
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const double *x = corners + 3*loops[i];
+            arm = DEMI_MAX(arm, demi_dot3(x, x) - h*h);
+        }
+        slope = area/(2*DEMI_POLYHEDRON_SCALE*r*h);
+        s->thin = DEMI_MIN(s->thin, (dem_real)h);
+        s->moment_arm = DEMI_MAX(s->moment_arm, (dem_real)sqrt(arm));
+        s->light = DEMI_MIN(s->light, 1/(DEMI_MAX(slope, 1)*(1 + arm/least)));
+    }
+}
+/* The hull of points whose middle is the origin, m apart at most, as a shape: 0 with a sentence. */
+static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, double size,
+                                demi_shape *shape) {
+    int32_t rim[7*DEM_POLYHEDRON_FACES];
+    demi_moments m;
+    int faces = 0, i;
+    for (h->near = (DEMI_SINGLE ? 1e-6 : 1e-10)*size; h->near < 2e-5*size; h->near *= 10) {
+        const int now = demi_hull_of(h, rim);
+        if (now || !faces) faces = now;
+        if (faces && faces <= DEM_POLYHEDRON_FACES) break;
+    }
+    if (faces < 0)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d points lie in one plane within %.1g m; a "
+                  "polyhedron needs four points that do not", call, h->count, h->near);
+    else if (faces > DEM_POLYHEDRON_FACES)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points has more than %d faces; "
+                  "give fewer points, or use an ellipsoid or a cluster of spheres for a round body",
+                  call, h->count, DEM_POLYHEDRON_FACES);
+    else if (!faces)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points does not close, likely "
+                  "because many points lie nearly, but not exactly, in one plane or on one line; "
+                  "give only the corners", call, h->count);
+    if (faces < 1 || faces > DEM_POLYHEDRON_FACES) return 0;
+    demi_polyhedron_moments(h->x, rim, faces, &m);
+    demi_shape_principal(shape, &m);
+    if (!(shape->inertia.x > 0 && shape->inertia.y > 0 && shape->inertia.z > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points is so flat that its volume "
+                  "is %.2g m3; give it some thickness", call, h->count, shape->volume);
+        return 0;
+    }
+    shape->faces = faces;
+    shape->hull = (double *)demi_hold(w, DEMI_SCENE, (size_t)(4*faces + 3*h->corners),
+                                      sizeof(double));
+    shape->rim = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)(faces + 1 + rim[faces]),
+                                      sizeof(int32_t));
+    if (!shape->hull || !shape->rim) { demi_no_memory(w, call); return 0; }
+    memcpy(shape->rim, rim, (size_t)(faces + 1 + rim[faces])*sizeof(int32_t));
+    for (i = 0; i < h->count; i++) h->first[i] = -1;
+    demi_polyhedron_lay(shape, h->x, h->first);
+    return 1;
+}
+/* The hull of points, complete but for being one of the world's shapes; 0 with a sentence. */
+static int demi_polyhedron_of(dem_world *w, const char *call, int count, const dem_real *points,
+                              demi_shape *shape) {
+    dem_vec3 lo, hi, middle;
+    demi_hull h;
+    double *x;
+    int i, k, made = 0;
+    if (count < 4 || count > 10000 || !points) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
+                  "3)", call, count);
+        return 0;
+    }
+    lo = hi = demi_at(points);
+    for (i = 0; i < count; i++) {
+        const dem_vec3 p = demi_at(points + 3*i);
+        if (!demi_finite3(p)) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g, %g) m, must be finite", call,
+                      i, (double)p.x, (double)p.y, (double)p.z);
+            return 0;
+        }
+        lo = demi_v(DEMI_MIN(lo.x, p.x), DEMI_MIN(lo.y, p.y), DEMI_MIN(lo.z, p.z));
+        hi = demi_v(DEMI_MAX(hi.x, p.x), DEMI_MAX(hi.y, p.y), DEMI_MAX(hi.z, p.z));
+    }
+    memset(&h, 0, sizeof h);
+    memset(shape, 0, sizeof *shape);
+    shape->kind = DEMI_POLYHEDRON;
+    h.count = count;
+    middle = demi_scale(demi_add(lo, hi), DEM_R(0.5));
+    x = (double *)demi_alloc(w, 3*(size_t)count, sizeof(double));
+    h.x = x;
+    h.first = (int32_t *)demi_alloc(w, (size_t)count, sizeof(int32_t));
+    h.faces = (demi_hull_face *)demi_alloc(w, DEMI_HULL_ROOM, sizeof(demi_hull_face));
+    if (!x || !h.first || !h.faces) demi_no_memory(w, call);
+    else {
+        for (i = 0; i < count; i++)
+            for (k = 0; k < 3; k++)
+                x[3*i + k] = (double)points[3*i + k] -
+                    (double)(k == 0 ? middle.x : k == 1 ? middle.y : middle.z);
+        made = demi_polyhedron_make(w, call, &h, (double)demi_length(demi_sub(hi, lo)), shape);
+    }
+    demi_free(w, x);
+    demi_free(w, h.first);
+    demi_free(w, h.faces);
+    if (!made) { demi_shape_free(w, shape); return 0; }
+    demi_polyhedron_bounds(shape);
+    shape->centre = demi_add(shape->centre, middle);
+    return 1;
+}
+DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
+    const char *call = "dem_shape_polyhedron_add";
+    demi_shape shape;
+    if (demi_null(w, call, w, "world") || demi_shape_planar(w, call)) return demi_no_shape;
+    if (!demi_polyhedron_of(w, call, count, points, &shape)) return demi_no_shape;
+    return demi_shape_adopt(w, call, &shape);
+}
+/* How far below the faces of a shape a place of its own frame is, m. */
+static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
+    const dem_vec3 x = dem_quat_unrotate(s->frame, demi_sub(at, s->centre));
+    double least = 1e300;
+    int f;
+    for (f = 0; f < s->faces; f++) {
+        const double *a = s->hull + 4*f;
+        const double u = 1 - (a[0]*(double)x.x + a[1]*(double)x.y + a[2]*(double)x.z);
+        least = DEMI_MIN(least, u*a[3]);
+    }
+    return (dem_real)least;
+}
+/* 0 with a sentence where vertices are none, far off, or not there. */
+static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const dem_real *xyz,
+                           int per_vertex, int elements, const int32_t *corners,
+                           int per_element) {
+    int i;
+    if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
+        (per_element && !corners)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: there are %d vertices and %d elements; there must "
+                  "be at least one and at most %d of each, with pointers to them; was the file "
+                  "read?", call, vertices, elements, INT_MAX/8);
+        return 0;
+    }
+    for (i = 0; i < vertices*per_vertex; i++)
+        if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
+                      "finite and between -%g and %g; check that the file was read completely and "
+                      "is in metres", call, i/per_vertex, (double)xyz[i], DEMI_FARTHEST,
+                      DEMI_FARTHEST);
+            return 0;
+        }
+    for (i = 0; i < elements*per_element; i++)
+        if (corners[i] < 0 || corners[i] >= vertices) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; "
+                      "are vertices numbered from 1 in the file?", call, i/per_element,
+                      (int)corners[i], vertices - 1);
+            return 0;
+        }
+    return 1;
+}
+/* The hull of a mesh that bounds a body, of those vertices that its triangles have. 0 with an error
+   message. */
+static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, demi_shape *shape) {
+    const size_t count = (size_t)mesh->vertex_count;
+    dem_real *points = (dem_real *)demi_alloc(w, 3*count, sizeof *points);
+    unsigned char *taken = (unsigned char *)demi_alloc(w, count, 1);
+    demi_closed c;
+    int i, n = 0, made = 0;
+    if (!demi_closed_find(w, mesh, &c) || !points || !taken) demi_no_memory(w, call);
+    else if (demi_closed_body(w, call, &c)) {
+        for (i = 0; i < 3*mesh->triangle_count; i++) {
+            if (taken[c.corner[i]]) continue;
+            taken[c.corner[i]] = 1;
+            demi_put(points + 3*n++, demi_at(mesh->vertices + 3*c.corner[i]));
+        }
+        made = demi_polyhedron_of(w, call, n, points, shape);
+    }
+    demi_closed_free(w, &c);
+    demi_free(w, points);
+    demi_free(w, taken);
+    return made;
+}
+DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
+    const char *call = "dem_shape_mesh_add";
+    demi_shape shape;
+    dem_vec3 place = demi_v(0, 0, 0);
+    dem_real most = 0;
+    int i, k;
+    if (demi_null(w, call, mesh, "mesh") || demi_shape_planar(w, call)) return demi_no_shape;
+    if (!(dent >= 0) || !demi_finite(dent)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: dent is %g m, must be >= 0 and finite", call,
+                  (double)dent);
+        return demi_no_shape;
+    }
+    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+                         mesh->triangles, 3)) return demi_no_shape;
+    if (!demi_mesh_hull(w, call, mesh, &shape)) return demi_no_shape;
+    for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, sides' middles, triangles' */
+        const int32_t *t = mesh->triangles + i/3*3;
+        dem_vec3 x[3], at[3];
+        for (k = 0; k < 3; k++) x[k] = demi_at(mesh->vertices + 3*t[(i + k)%3]);
+        at[0] = x[0];
+        at[1] = demi_scale(demi_add(x[0], x[1]), DEM_R(0.5));
+        at[2] = demi_scale(demi_add(demi_add(x[0], x[1]), x[2]), DEM_R(1)/3);
+        for (k = 0; k < 3; k++) {
+            const dem_real deep = demi_polyhedron_depth(&shape, at[k]);
+            if (deep > most) { most = deep; place = at[k]; }
+        }
+    }
+    if (most > dent + shape.radius*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-8))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is not convex: at (%g, %g, %g) m it lies "
+                  "%.3g m inside its hull, more than the allowed dent of %g m; cut it into convex "
+                  "pieces, use a cluster of spheres, or increase dent to use the hull", call,
+                  (double)place.x, (double)place.y, (double)place.z, (double)most, (double)dent);
+        demi_shape_free(w, &shape);
+        return demi_no_shape;
+    }
+    return demi_shape_adopt(w, call, &shape);
+}
+
+static size_t demi_shape_hull_reals(const demi_shape *s) {
+    return 4*(size_t)s->faces + 3*(size_t)s->corners;
+}
+static size_t demi_shape_rim_ints(const demi_shape *s) {
+    return (size_t)s->faces + 1 + (size_t)s->rim[s->faces];
+}
+/* Copies of its arrays in another world; 0 when memory ran out. */
+static int demi_shape_copy(dem_world *to, demi_shape *shape) {
+    const demi_shape from = *shape;
+    const size_t parts = 4*(size_t)from.count, pieces = (size_t)from.pieces;
+    shape->parts = 0;
+    shape->piece = 0;
+    shape->hull = 0;
+    shape->rim = 0;
+    if (parts) {
+        shape->parts = (dem_real *)demi_hold(to, DEMI_SCENE, parts, sizeof(dem_real));
+        if (shape->parts) memcpy(shape->parts, from.parts, parts*sizeof(dem_real));
+    }
+    if (pieces) {
+        shape->piece = (demi_piece *)demi_hold(to, DEMI_SCENE, pieces, sizeof(demi_piece));
+        if (shape->piece) memcpy(shape->piece, from.piece, pieces*sizeof(demi_piece));
+    }
+    if (from.faces) {
+        const size_t reals = demi_shape_hull_reals(&from), ints = demi_shape_rim_ints(&from);
+        shape->hull = (double *)demi_hold(to, DEMI_SCENE, reals, sizeof(double));
+        shape->rim = (int32_t *)demi_hold(to, DEMI_SCENE, ints, sizeof(int32_t));
+        if (shape->hull) memcpy(shape->hull, from.hull, reals*sizeof(double));
+        if (shape->rim) memcpy(shape->rim, from.rim, ints*sizeof(int32_t));
+    }
+    if ((!parts || shape->parts) && (!pieces || shape->piece) &&
+        (!from.faces || (shape->hull && shape->rim))) return 1;
+    demi_shape_free(to, shape);
+    return 0;
+}
+
+/* --- what it tells of itself (DEMI_SHAPES) --- */
+
+static dem_real demi_polyhedron_support(const demi_shape *s, dem_vec3 n) {
+    const double e[3] = {(double)n.x, (double)n.y, (double)n.z}, *x = s->hull + 4*s->faces;
+    double far = -1e300;
+    int i;
+    for (i = 0; i < s->corners; i++) far = DEMI_MAX(far, demi_dot3(e, x + 3*i));
+    return (dem_real)far;
+}
+static dem_real demi_polyhedron_thin(const demi_part *p) { return p->shape->thin*p->scale; }
+static double demi_polyhedron_equal(const demi_part *p) {
+    return (double)(p->shape->equal*p->scale);
+}
+static double demi_polyhedron_curve(const demi_part *p, double h) {
+    (void)h;
+    return demi_polyhedron_equal(p);
+}
+/* The ellipsoid of its moments. */
+static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
+    return demi_scale(demi_shape_alike(p->shape), p->scale);
+}

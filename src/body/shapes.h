@@ -1,0 +1,899 @@
+/* ---------------------------------------------------------------------------------------------
+   >>shapes
+   Ellipsoids and rigid clusters of spheres: mass properties, support heights, contact of two
+   ellipsoids. A shape is stored in its principal frame about its centre of mass, per unit of mass
+   and scale. A body has a position, a quaternion and the radius of its bounding sphere, which gives
+   its scale. Uses no material and no law.
+   --------------------------------------------------------------------------------------------- */
+DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle) {
+    const dem_vec3 e = demi_unit(axis);
+    const dem_real s = (dem_real)demi_sin((double)angle/2);
+    return dem_quat_make((dem_real)demi_cos((double)angle/2), s*e.x, s*e.y, s*e.z);
+}
+static dem_quat demi_quat_at(const dem_real *p) { return dem_quat_make(p[0], p[1], p[2], p[3]); }
+static void demi_quat_put(dem_real *p, dem_quat q) {
+    p[0] = q.w; p[1] = q.x; p[2] = q.y; p[3] = q.z;
+}
+static dem_quat demi_quat_conjugate(dem_quat q) { return dem_quat_make(q.w, -q.x, -q.y, -q.z); }
+static int demi_quat_finite(dem_quat q) {
+    return demi_finite(q.w) && demi_finite(q.x) && demi_finite(q.y) && demi_finite(q.z);
+}
+/* The largest of its components. */
+static double demi_quat_most(dem_quat q) {
+    const double a = fabs((double)q.w), b = fabs((double)q.x), c = fabs((double)q.y);
+    const double d = fabs((double)q.z), ab = DEMI_MAX(a, b), cd = DEMI_MAX(c, d);
+    return DEMI_MAX(ab, cd);
+}
+/* Made a unit one; not for zero. */
+static dem_quat demi_quat_unit(dem_quat q) {
+    const double most = demi_quat_most(q);      /* first: squares may be too large or small */
+    const double w = (double)q.w/most, x = (double)q.x/most, y = (double)q.y/most;
+    const double z = (double)q.z/most, l = sqrt(w*w + x*x + y*y + z*z);
+    return dem_quat_make((dem_real)(w/l), (dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
+}
+/* A rotation as a matrix, in double precision. */
+static void demi_rotation_of(dem_quat q, double *R) {
+    const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
+    R[0] = 1 - 2*(y*y + z*z); R[1] = 2*(x*y - w*z);     R[2] = 2*(x*z + w*y);
+    R[3] = 2*(x*y + w*z);     R[4] = 1 - 2*(x*x + z*z); R[5] = 2*(y*z - w*x);
+    R[6] = 2*(x*z - w*y);     R[7] = 2*(y*z + w*x);     R[8] = 1 - 2*(x*x + y*y);
+}
+/* Of the rotation whose matrix has these columns (Shepperd): the largest component comes first, so
+   that nothing small is divided by. */
+static dem_quat demi_quat_of(double R[3][3]) {
+    const double t = R[0][0] + R[1][1] + R[2][2];
+    double q[4];
+    int i = 0, j, k;
+    if (t > R[0][0] && t > R[1][1] && t > R[2][2]) {
+        q[0] = 1 + t;
+        q[1] = R[2][1] - R[1][2]; q[2] = R[0][2] - R[2][0]; q[3] = R[1][0] - R[0][1];
+    } else {
+        if (R[1][1] > R[i][i]) i = 1;
+        if (R[2][2] > R[i][i]) i = 2;
+        j = (i + 1)%3;
+        k = (i + 2)%3;
+        q[0] = R[k][j] - R[j][k];
+        q[1 + i] = 1 + R[i][i] - R[j][j] - R[k][k];
+        q[1 + j] = R[j][i] + R[i][j];
+        q[1 + k] = R[k][i] + R[i][k];
+    }
+    return demi_quat_unit(dem_quat_make((dem_real)q[0], (dem_real)q[1], (dem_real)q[2],
+                                        (dem_real)q[3]));
+}
+
+/* --- mass properties --- */
+
+/* Eigenvalues of a symmetric matrix, on its diagonal afterwards, and eigenvectors, as columns of E,
+   by Jacobi's rotations. E is a rotation. */
+static void demi_jacobi3(double M[3][3], double E[3][3]) {
+    int i, j, k, sweep;
+    for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) E[i][j] = i == j;
+    for (sweep = 0; sweep < 30; sweep++) {
+        const double off = M[0][1]*M[0][1] + M[0][2]*M[0][2] + M[1][2]*M[1][2];
+        const double all = M[0][0]*M[0][0] + M[1][1]*M[1][1] + M[2][2]*M[2][2];
+        if (off <= 1e-30*all) return;
+        for (i = 0; i < 2; i++)
+            for (j = i + 1; j < 3; j++) {
+                double t, c, s, theta;
+                if (!(fabs(M[i][j]) > 0)) continue;
+                theta = (M[j][j] - M[i][i])/(2*M[i][j]);
+                t = (theta < 0 ? -1 : 1)/(fabs(theta) + sqrt(theta*theta + 1));
+                c = 1/sqrt(t*t + 1);
+                s = t*c;
+                for (k = 0; k < 3; k++) {
+                    const double a = M[k][i], b = M[k][j];
+                    M[k][i] = c*a - s*b;
+                    M[k][j] = s*a + c*b;
+                }
+                for (k = 0; k < 3; k++) {
+                    const double a = M[i][k], b = M[j][k];
+                    M[i][k] = c*a - s*b;
+                    M[j][k] = s*a + c*b;
+                }
+                for (k = 0; k < 3; k++) {
+                    const double a = E[k][i], b = E[k][j];
+                    E[k][i] = c*a - s*b;
+                    E[k][j] = s*a + c*b;
+                }
+            }
+    }
+}
+
+/* Parts of a body: the spheres of a cluster, or the one it is. */
+typedef struct demi_part {
+    int kind;                      /* DEMI_BALL, ... */
+    dem_real radius;               /* m, of the bounding sphere: a ball's own */
+    dem_vec3 centre;               /* m, from the body's */
+    dem_vec3 axes;                 /* m, of all but balls: lengths as its kind has them */
+    dem_quat q;                    /* of all but balls */
+    const demi_shape *shape;       /* of all but balls; its lengths times scale */
+    dem_real scale;
+} demi_part;
+/* What a kind of part tells of itself, and how two keep apart; what touches stands in >>meets. */
+typedef struct demi_shape_row {
+    const char *name;
+    dem_real (*support)(const demi_shape *s, dem_vec3 n);     /* m, how far along n (unit) */
+    dem_real (*thin)(const demi_part *p);               /* m, smallest radius */
+    double (*equal)(const demi_part *p);                /* m, radius of the sphere of its volume */
+    double (*curve)(const demi_part *p, double h);      /* m, of curvature where its height is h */
+    dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes of what files show */
+    dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
+} demi_shape_row;
+#define DEMI_SHAPE_DECLARE(KIND, NAME, WORD, GAP, TOUCH) \
+    static dem_real demi_##NAME##_support(const demi_shape *s, dem_vec3 n); \
+    static dem_real demi_##NAME##_thin(const demi_part *p); \
+    static double demi_##NAME##_equal(const demi_part *p); \
+    static double demi_##NAME##_curve(const demi_part *p, double h); \
+    static dem_vec3 demi_##NAME##_drawn(const demi_part *p); \
+    static dem_real GAP(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
+DEMI_SHAPES(DEMI_SHAPE_DECLARE)
+#define DEMI_SHAPE_ROW(KIND, NAME, WORD, GAP, TOUCH) \
+    {WORD, demi_##NAME##_support, demi_##NAME##_thin, demi_##NAME##_equal, demi_##NAME##_curve, \
+     demi_##NAME##_drawn, GAP},
+static const demi_shape_row demi_shape_rows[] = {DEMI_SHAPES(DEMI_SHAPE_ROW)};
+static int demi_shape_kind(const demi_shape *shape) { return shape ? shape->kind : DEMI_BALL; }
+/* "a sphere", "an ellipsoid". */
+static const char *demi_an(const char *name) { return strchr("aeiou", name[0]) ? "n" : ""; }
+
+/* Volume, first and second moments of matter about the origin: 1, x y z, xx yy zz xy xz yz. */
+typedef struct demi_moments { double one, x[3], xx[6]; } demi_moments;
+/* Adds matter of volume v about c; own: its mean square extent along an axis, about its own
+   centre. */
+static void demi_moments_add(demi_moments *m, double v, const double *c, double own) {
+    int k;
+    m->one += v;
+    for (k = 0; k < 3; k++) {
+        m->x[k] += v*c[k];
+        m->xx[k] += v*(c[k]*c[k] + own);
+    }
+    m->xx[3] += v*c[0]*c[1];
+    m->xx[4] += v*c[0]*c[2];
+    m->xx[5] += v*c[1]*c[2];
+}
+/* The union of spheres by rays along x through the middles of rays x rays squares of their outline:
+   along a ray the union of intervals is exact. 512 rays: a few 1e-6 for three spheres. room: two
+   doubles per sphere. */
+static void demi_moments_union(const demi_shape *shape, int rays, double *room, demi_moments *m) {
+    double lo[2], hi[2], step[2];
+    int i, j, k, e, n;
+    lo[0] = lo[1] = 1e300;
+    hi[0] = hi[1] = -1e300;
+    for (i = 0; i < shape->count; i++)
+        for (e = 0; e < 2; e++) {
+            const double c = (double)shape->parts[4*i + 1 + e], r = (double)shape->parts[4*i + 3];
+            lo[e] = DEMI_MIN(lo[e], c - r);
+            hi[e] = DEMI_MAX(hi[e], c + r);
+        }
+    for (e = 0; e < 2; e++) step[e] = (hi[e] - lo[e])/rays;
+    for (j = 0; j < rays; j++)
+        for (k = 0; k < rays; k++) {
+            double c[3], from, to;
+            c[1] = lo[0] + (j + 0.5)*step[0];
+            c[2] = lo[1] + (k + 0.5)*step[1];
+            for (i = n = 0; i < shape->count; i++) {     /* intervals, sorted as they come */
+                const double y = c[1] - (double)shape->parts[4*i + 1];
+                const double z = c[2] - (double)shape->parts[4*i + 2];
+                const double r = (double)shape->parts[4*i + 3], h = r*r - y*y - z*z;
+                if (h <= 0) continue;
+                from = (double)shape->parts[4*i] - sqrt(h);
+                to = (double)shape->parts[4*i] + sqrt(h);
+                for (e = n++; e > 0 && room[2*e - 2] > from; e--) {
+                    room[2*e] = room[2*e - 2];
+                    room[2*e + 1] = room[2*e - 1];
+                }
+                room[2*e] = from;
+                room[2*e + 1] = to;
+            }
+            for (i = 0; i < n; i = e) {
+                from = room[2*i];
+                to = room[2*i + 1];
+                for (e = i + 1; e < n && room[2*e] <= to; e++) to = DEMI_MAX(to, room[2*e + 1]);
+                c[0] = (from + to)/2;
+                demi_moments_add(m, (to - from)*step[0]*step[1], c, 0);
+                m->xx[0] += step[0]*step[1]*(to - from)*(to - from)*(to - from)/12;
+                m->xx[1] += (to - from)*step[0]*step[1]*step[0]*step[0]/12;
+                m->xx[2] += (to - from)*step[0]*step[1]*step[1]*step[1]/12;
+            }
+        }
+}
+
+/* Turns moments into the shape's volume, centre, principal frame and moments per mass. */
+static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
+    double M[3][3], E[3][3], c[3], trace, I[6];
+    int i, k;
+    shape->volume = m->one;
+    for (k = 0; k < 3; k++) c[k] = m->x[k]/m->one;
+    shape->centre = demi_v((dem_real)c[0], (dem_real)c[1], (dem_real)c[2]);
+    for (k = 0; k < 6; k++) I[k] = m->xx[k]/m->one;
+    for (k = 0; k < 3; k++) I[k] -= c[k]*c[k];
+    I[3] -= c[0]*c[1]; I[4] -= c[0]*c[2]; I[5] -= c[1]*c[2];
+    M[0][0] = I[0]; M[1][1] = I[1]; M[2][2] = I[2];
+    M[0][1] = M[1][0] = I[3]; M[0][2] = M[2][0] = I[4]; M[1][2] = M[2][1] = I[5];
+    trace = I[0] + I[1] + I[2];                 /* spread of matter -> moments of inertia */
+    for (i = 0; i < 3; i++)                     /* round-off is no reason to turn the frame */
+        for (k = 0; k < 3; k++) if (i != k && fabs(M[i][k]) < 1e-12*trace) M[i][k] = 0;
+    demi_jacobi3(M, E);
+    shape->inertia = demi_v((dem_real)(trace - M[0][0]), (dem_real)(trace - M[1][1]),
+                           (dem_real)(trace - M[2][2]));
+    shape->frame = demi_quat_of(E);
+}
+
+/* What the search and the time step want to know of a shape: how far it reaches, how far from the
+   centre a contact's force may pass, its smallest radius, and how light and blunt it may seem in a
+   contact: mass 1/g over (l/h)^2 at worst, g = n.K n of its own half. */
+static void demi_cluster_bounds(demi_shape *shape) {
+    const dem_vec3 I = shape->inertia;
+    const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    int i;
+    shape->radius = shape->moment_arm = shape->blunt = 0;
+    shape->thin = shape->parts[3];
+    for (i = 0; i < shape->count; i++) {
+        const dem_real l = demi_length(demi_at(shape->parts + 4*i)), r = shape->parts[4*i + 3];
+        shape->radius = DEMI_MAX(shape->radius, l + r);
+        shape->moment_arm = DEMI_MAX(shape->moment_arm, l);
+        shape->thin = DEMI_MIN(shape->thin, r);
+        shape->blunt = DEMI_MAX(shape->blunt, r);
+    }
+    shape->light = 1/(1 + (double)shape->moment_arm*(double)shape->moment_arm/least);
+}
+static void demi_ellipsoid_bounds(demi_shape *shape) {
+    const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
+                         (double)shape->inertia.z};
+    const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
+    const double l = demi_pow(a[0]*a[1]*a[2], 1.0/3);
+    int i, k, j;
+    shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
+    shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
+    shape->moment_arm = shape->radius - shape->thin;
+    shape->blunt = (dem_real)(l*l*l)/(shape->thin*shape->thin);
+    shape->light = 1;
+    for (k = 0; k < 3; k++)                     /* normals in the three principal planes */
+        for (i = 0; i <= 64; i++) {
+            const double n0 = demi_cos(DEMI_PI/2*i/64), n1 = demi_sin(DEMI_PI/2*i/64);
+            const double u = a[k], v = a[(k + 1)%3], h = sqrt(n0*n0*u*u + n1*n1*v*v);
+            const double arm = n0*n1*(u*u - v*v)/h;
+            j = (k + 2)%3;
+            shape->light = DEMI_MIN(shape->light, h*h/(l*l)/(1 + arm*arm/I[j]));
+        }
+}
+
+/* Takes over a prepared shape (its array included) or frees it. */
+static void demi_shape_free(dem_world *w, demi_shape *shape) {
+    demi_free(w, shape->parts);
+    demi_free(w, shape->piece);
+    demi_free(w, shape->hull);
+    demi_free(w, shape->rim);
+}
+/* Do parts of these two kinds know each other? (>>meets) */
+static int demi_meet_known(int kind, int other);
+/* 1 with a sentence when a shape that is to be added does not know another, its like or spheres. */
+static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
+    int i, other;
+    for (i = -1; i <= w->shape_count; i++) {
+        other = i < 0 ? DEMI_BALL : i < w->shape_count ? w->shapes[i].kind : kind;
+        if (demi_meet_known(kind, other)) continue;
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts between shape %d, a%s %s, and shape %d, "
+                  "a%s %s, are not available, so a world can hold only one of the two; nothing "
+                  "was added", call, w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
+                  demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
+                  demi_shape_rows[other].name);
+        return 1;
+    }
+    return 0;
+}
+static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *shape) {
+    dem_shape id = demi_no_shape;
+    if (demi_shapes_strange(w, call, shape->kind)) { demi_shape_free(w, shape); return id; }
+    if (!demi_grow(w, DEMI_SCENE, &w->shapes, sizeof *w->shapes, (size_t)w->shape_count + 1)) {
+        demi_shape_free(w, shape);
+        demi_no_memory(w, call);
+        return id;
+    }
+    if (!(shape->equal > 0))                    /* a polygon's is not that of its volume */
+        shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
+    w->shapes[w->shape_count++] = *shape;
+    demi_built(w, call);
+    id.id = w->shape_count;
+    return id;
+}
+/* 1 with a sentence where bodies are flat: shapes are of three dimensions. */
+static int demi_shape_planar(dem_world *w, const char *call) {
+    if (!w->desc.planar) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar and holds only discs and polygons; "
+              "set planar to 0, or use discs and dem_shape_polygon_add", call);
+    return 1;
+}
+
+DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
+    if (demi_null(w, "dem_shape_ellipsoid_add", w, "world")) return demi_no_shape;
+    demi_shape shape;
+    const double lo = (double)DEMI_MIN(a.x, DEMI_MIN(a.y, a.z));
+    const double hi = (double)DEMI_MAX(a.x, DEMI_MAX(a.y, a.z));
+    if (demi_shape_planar(w, "dem_shape_ellipsoid_add")) return demi_no_shape;
+    if (!demi_finite3(a) || !(lo > 0) || !(hi <= 1000.001*lo)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_ellipsoid_add: semi-axes are %g, %g and %g m, "
+                  "must be > 0 and the longest at most 1000 times the shortest; give half "
+                  "lengths, in metres", (double)a.x, (double)a.y, (double)a.z);
+        return demi_no_shape;
+    }
+    memset(&shape, 0, sizeof shape);
+    shape.kind = DEMI_ELLIPSOID;
+    shape.axes = a;
+    shape.volume = 4*DEMI_PI/3*(double)a.x*(double)a.y*(double)a.z;
+    shape.inertia = demi_v((a.y*a.y + a.z*a.z)/5, (a.x*a.x + a.z*a.z)/5, (a.x*a.x + a.y*a.y)/5);
+    shape.frame = dem_quat_make(1, 0, 0, 0);
+    demi_ellipsoid_bounds(&shape);
+    return demi_shape_adopt(w, "dem_shape_ellipsoid_add", &shape);
+}
+
+/* Do no two spheres overlap? Then there is nothing to count twice. */
+static int demi_cluster_apart(const demi_shape *shape) {
+    int i, j;
+    for (i = 0; i < shape->count; i++)
+        for (j = i + 1; j < shape->count; j++) {
+            const dem_real sum = shape->parts[4*i + 3] + shape->parts[4*j + 3];
+            const dem_vec3 d = demi_sub(demi_at(shape->parts + 4*j), demi_at(shape->parts + 4*i));
+            if (demi_dot(d, d) < sum*sum*DEM_R(0.999999)) return 0;
+        }
+    return 1;
+}
+/* Moments of a cluster, by the way its desc asks for. 0 when memory ran out. ([MIL] gives its
+   tetrahedra the inertia of a sphere, and updates spins without the gyroscopic part.) */
+static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
+                                demi_moments *m) {
+    int i, k;
+    memset(m, 0, sizeof *m);
+    if (desc->mass == DEM_CLUSTER_GIVEN) {
+        const double v = (double)desc->volume, c[3] = {(double)desc->centre.x,
+            (double)desc->centre.y, (double)desc->centre.z};
+        const double half = (double)(desc->inertia[0] + desc->inertia[1] + desc->inertia[2])/2;
+        demi_moments_add(m, v, c, 0);
+        for (k = 0; k < 3; k++) m->xx[k] += half - (double)desc->inertia[k];
+        for (k = 3; k < 6; k++) m->xx[k] -= (double)desc->inertia[k];
+        return 1;
+    }
+    if (desc->mass == DEM_CLUSTER_SUM || demi_cluster_apart(shape)) {
+        for (i = 0; i < shape->count; i++) {
+            const double r = (double)shape->parts[4*i + 3], v = 4*DEMI_PI/3*r*r*r;
+            double c[3];
+            for (k = 0; k < 3; k++) c[k] = (double)shape->parts[4*i + k];
+            demi_moments_add(m, v, c, r*r/5);
+        }
+        return 1;
+    } else {
+        const size_t n = 2*(size_t)shape->count;
+        double *room = (double *)demi_alloc(w, n, sizeof(double));
+        if (!room) return 0;
+        demi_moments_union(shape, desc->rays > 0 ? desc->rays : 512, room, m);
+        demi_free(w, room);
+        return 1;
+    }
+}
+/* 0 with a sentence when the desc is not right. */
+static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
+    const char *call = "dem_shape_cluster_add";
+    const dem_real *I = desc->inertia;
+    int i;
+    if (desc->count < 1 || desc->count > 1000 || !desc->positions || desc->rays < 0 ||
+        desc->rays > 4096 || (desc->rays > 0 && desc->rays < 16)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and rays is %d; count must be 1 to 1000 "
+                  "with positions (count x 3), rays 0 or 16 to 4096", call, desc->count,
+                  desc->rays);
+        return 0;
+    }
+    for (i = 0; i < desc->count; i++) {
+        const dem_real r = desc->radii ? desc->radii[i] : desc->radius;
+        if (demi_finite(r) && r > 0 && demi_place(demi_at(desc->positions + 3*i))) continue;
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g) m; the "
+                  "radius must be > 0 and finite, coordinates at most 1e15 m; fill in radii or "
+                  "radius", call, i, (double)r, (double)desc->positions[3*i],
+                  (double)desc->positions[3*i + 1], (double)desc->positions[3*i + 2]);
+        return 0;
+    }
+    if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: mass is %d, must be a DEM_CLUSTER_ value; start from "
+                  "DEM_CLUSTER_DESC", call, (int)desc->mass);
+        return 0;
+    }
+    if (desc->mass != DEM_CLUSTER_GIVEN) return 1;
+    if (desc->volume > 0 && demi_finite(desc->volume) && demi_place(desc->centre) && I[0] > 0 &&
+        I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
+        demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
+        demi_finite(I[0] + I[1] + I[2])) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per "
+              "density); all must be > 0, no moment above the sum of the other two, and the "
+              "centre within 1e15 m", call, (double)desc->volume, (double)I[0], (double)I[1],
+              (double)I[2]);
+    return 0;
+}
+/* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
+static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
+                               dem_real least) {
+    const int rays = desc->rays > 0 ? desc->rays : 512;
+    double side = 0;
+    int i, j, e;
+    if (desc->mass != DEM_CLUSTER_UNION || demi_cluster_apart(shape)) return 0;
+    for (i = 0; i < shape->count; i++)
+        for (j = 0; j < shape->count; j++)
+            for (e = 1; e < 3; e++) {
+                const double to = (double)(shape->parts[4*i + e] + shape->parts[4*i + 3]);
+                side = DEMI_MAX(side, to - (double)(shape->parts[4*j + e] - shape->parts[4*j + 3]));
+            }
+    if (side/rays <= (double)least/4) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so rays are %.3g m "
+              "apart, more than a quarter of the smallest radius, %g m; set rays to %.0f or more, "
+              "at most 4096, or give the moments", rays, side/rays, (double)least,
+              ceil(4*side/(double)least));
+    return 1;
+}
+DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *desc) {
+    if (demi_null(w, "dem_shape_cluster_add", desc, "desc")) return demi_no_shape;
+    demi_shape shape;
+    demi_moments m;
+    dem_shape none;
+    dem_vec3 about = demi_v(0, 0, 0);
+    dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
+    int i;
+    none.id = 0;
+    if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
+    memset(&shape, 0, sizeof shape);
+    shape.kind = DEMI_BALL;
+    shape.count = desc->count;
+    shape.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)shape.count, sizeof(dem_real));
+    if (!shape.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
+    /* a frame may be far off */
+    if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
+    for (i = 0; i < shape.count; i++) {
+        demi_put(shape.parts + 4*i, demi_sub(demi_at(desc->positions + 3*i), about));
+        shape.parts[4*i + 3] = desc->radii ? desc->radii[i] : desc->radius;
+        least = DEMI_MIN(least, shape.parts[4*i + 3]);
+    }
+    if (demi_cluster_coarse(w, desc, &shape, least)) { demi_shape_free(w, &shape); return none; }
+    if (!demi_cluster_moments(w, desc, &shape, &m)) {
+        demi_shape_free(w, &shape);
+        demi_no_memory(w, "dem_shape_cluster_add");
+        return none;
+    }
+    demi_shape_principal(&shape, &m);
+    if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0)) {
+        demi_shape_free(w, &shape);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of inertia is "
+                  "not > 0; %s", desc->mass == DEM_CLUSTER_GIVEN
+                  ? "the given off-diagonal moments are too large" : "use more rays");
+        return none;
+    }
+    for (i = 0; i < shape.count; i++)
+        demi_put(shape.parts + 4*i,
+                 dem_quat_unrotate(shape.frame, demi_sub(demi_at(shape.parts + 4*i),
+                                                                        shape.centre)));
+    shape.centre = demi_add(shape.centre, about);
+    demi_cluster_bounds(&shape);
+    return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
+}
+
+/* Index of a shape, or -1 with a sentence. */
+static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
+    if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
+              "dem_shape_ellipsoid_add and the like and check the id that this returns", call,
+              (int)shape.id, w->shape_count);
+    return -1;
+}
+/* Semi-axes of the ellipsoid that has its moments, m. */
+static dem_vec3 demi_shape_alike(const demi_shape *s) {
+    const dem_vec3 I = s->inertia;
+    if (s->kind == DEMI_ELLIPSOID) return s->axes;
+    return demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
+                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
+                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
+}
+DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
+    if (demi_null_look(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_shape_index((dem_world *)world, "dem_shape_get", shape);
+    const demi_shape *s;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    s = &world->shapes[i];
+    info->spheres = s->count;
+    info->corners = s->corners;
+    info->faces = s->faces;
+    info->volume = (dem_real)s->volume;
+    info->centre = s->centre;
+    info->frame = s->frame;
+    info->inertia = demi_scale(s->inertia, (dem_real)s->volume);
+    info->semi_axes = demi_shape_alike(s);
+    info->radius = s->radius;
+    info->pieces = s->pieces;
+    return DEM_OK;
+}
+
+/* --- a body and its shape --- */
+
+DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
+    return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
+}
+DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
+    return w->bodies.pos[4*body + 3]/shape->radius;
+}
+/* Of a shape: per mass and scale, once and for all; of a sphere or disc: the textbook's. */
+static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
+    const demi_shape *shape = demi_shape_of(w, body);
+    const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
+    dem_real one;
+    if (shape) {
+        one = demi_scale_of(w, body, shape);
+        return demi_scale(shape->inertia, (dem_real)m*one*one);
+    }
+    one = (dem_real)(w->desc.planar ? m*r*r/2 : 0.4*m*r*r);
+    return demi_v(one, one, one);
+}
+/* Angular momentum of a body, of its spin at the full step; kg m2/s. */
+static dem_vec3 demi_angular_of(const dem_world *w, int body) {
+    const dem_vec3 I = demi_moments_of(w, body), spin = demi_at(w->bodies.spin + 4*body);
+    dem_quat q;
+    dem_vec3 own;
+    if (!demi_shape_of(w, body)) return demi_scale(spin, I.x);
+    q = demi_quat_at(w->bodies.orient + 4*body);
+    own = dem_quat_unrotate(q, spin);
+    return dem_quat_rotate(q, demi_v(I.x*own.x, I.y*own.y, I.z*own.z));
+}
+/* How far a body reaches from its centre in direction n (unit), m. */
+static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    dem_real scale, far = -1;
+    dem_vec3 e;
+    int i;
+    if (!shape) return w->bodies.pos[4*body + 3];
+    scale = demi_scale_of(w, body, shape);
+    e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
+    for (i = 0; i < shape->pieces; i++) {
+        const demi_piece *piece = shape->piece + i;
+        const demi_shape *one = &w->shapes[piece->shape];
+        const dem_real s = demi_dot(piece->at, e) +
+            demi_shape_rows[one->kind].support(one, dem_quat_unrotate(piece->q, e));
+        far = i && far > s ? far : s;
+    }
+    if (!shape->count && !shape->pieces) far = demi_shape_rows[shape->kind].support(shape, e);
+    for (i = 0; i < shape->count; i++) {
+        const dem_real s = demi_dot(demi_at(shape->parts + 4*i), e) + shape->parts[4*i + 3];
+        far = i && far > s ? far : s;
+    }
+    return scale*far;
+}
+
+/* --- where two ellipsoids meet. Perram and Wertheim's function [PW85] of two ellipsoids
+         (x - xA).QA^-1 (x - xA) <= 1, Q = R diag(a^2, b^2, c^2) R^T, r = xB - xA, 0 < l < 1:
+             K = (1 - l) QA + l QB,  s = K^-1 r,  f(l) = l (1 - l) r.s
+       has one maximum, W0^2: scaled by W0 the two touch in xA + (1 - l) QA s, with the normal
+       s/|s|. There fA = (1 - l)^2 s.QA s and fB = l^2 s.QB s are equal. We solve ln(fA/fB)/2 = 0 by
+       Newton's method, with slope -C ((1 - l)/fA + l/fB), C = s.QA K^-1 QB s, kept in a bracket.
+       Any f(l) > 1 shows that the two are apart. No inverse of Q appears: needles and discs are
+       safe. Shrinking both by W until they part [RUB15] 3.2 ends at this point and normal exactly,
+       and its line V2 V3 has the direction QA K^-1 QB s. Checked by the test "quartic and
+       eigenvectors of [RUB15] converge to the same contact". --- */
+typedef struct demi_meet {
+    double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
+    double s[3], a[3], b[3];       /* s, QA s, QB s */
+    double v[3];                   /* K^-1 QB s */
+    int iterations;
+} demi_meet;
+
+static void demi_sym_times(const double *Q, const double *x, double *out) {  /* xx yy zz xy xz yz */
+    out[0] = Q[0]*x[0] + Q[3]*x[1] + Q[4]*x[2];
+    out[1] = Q[3]*x[0] + Q[1]*x[1] + Q[5]*x[2];
+    out[2] = Q[4]*x[0] + Q[5]*x[1] + Q[2]*x[2];
+}
+static double demi_dot3(const double *a, const double *b) {
+    return a[0]*b[0] + a[1]*b[1] + a[2]*b[2];
+}
+/* Q of an ellipsoid. */
+static void demi_ellipsoid_matrix(dem_quat q, dem_vec3 axes, double *Q) {
+    const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
+    const double A = (double)axes.x*(double)axes.x, B = (double)axes.y*(double)axes.y;
+    const double C = (double)axes.z*(double)axes.z;
+    const double R[9] = {1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
+                         2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
+                         2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)};
+    Q[0] = A*R[0]*R[0] + B*R[1]*R[1] + C*R[2]*R[2];
+    Q[1] = A*R[3]*R[3] + B*R[4]*R[4] + C*R[5]*R[5];
+    Q[2] = A*R[6]*R[6] + B*R[7]*R[7] + C*R[8]*R[8];
+    Q[3] = A*R[0]*R[3] + B*R[1]*R[4] + C*R[2]*R[5];
+    Q[4] = A*R[0]*R[6] + B*R[1]*R[7] + C*R[2]*R[8];
+    Q[5] = A*R[3]*R[6] + B*R[4]*R[7] + C*R[5]*R[8];
+}
+static void demi_ball_matrix(dem_real r, double *Q) {
+    Q[0] = Q[1] = Q[2] = (double)r*(double)r;
+    Q[3] = Q[4] = Q[5] = 0;
+}
+/* Where to begin: exact for spheres and for ellipsoids that are alike and parallel. */
+static double demi_meet_start(const double *A, const double *B, const double *r) {
+    double t[3], ha, hb;
+    demi_sym_times(A, r, t);
+    ha = sqrt(demi_dot3(r, t));
+    demi_sym_times(B, r, t);
+    hb = sqrt(demi_dot3(r, t));
+    return ha + hb > 0 ? ha/(ha + hb) : 0.5;
+}
+/* The last step is so small that s may follow it along ds/dl = K^-1 (QA - QB) s = (s - v)/(1 - l),
+   v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more
+   would add is of the order of the step squared. */
+static void demi_meet_finish(const double *A, double C, double step, demi_meet *m) {
+    const double rate = step/(1 - m->l);
+    int k;
+    m->f += ((m->fa - m->fb) - C*step)*step;
+    for (k = 0; k < 3; k++) m->s[k] += rate*(m->s[k] - m->v[k]);
+    m->l += step;
+    m->fa = m->fb = m->f;
+    demi_sym_times(A, m->s, m->a);
+}
+/* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where
+   f(l) exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100),
+   and as cheap as it gets; docs/shapes.md has the numbers. */
+#define DEMI_MEET_NEAR 1e-4
+/* Newton's method on ln(fa/fb), kept between lo and hi: where both are alike, the ellipsoids,
+   scaled by their root, touch at one point. Ends early with f > enough: then they are apart,
+   whatever the rest would say. */
+static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
+                            double near, demi_meet *m) {
+    double lo = 0, hi = 1, l = m->l;
+    int k;
+    for (m->iterations = 1;; m->iterations++) {
+        double K[6], J[6], t, C, u, sum, step;
+        for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
+        J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
+        J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
+        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);
+        for (k = 0; k < 6; k++) J[k] *= t;      /* K^-1, by cofactors: one quotient */
+        demi_sym_times(J, r, m->s);
+        m->l = l;
+        m->f = l*(1 - l)*demi_dot3(r, m->s);
+        demi_sym_times(A, m->s, m->a);
+        demi_sym_times(B, m->s, m->b);
+        m->fa = (1 - l)*(1 - l)*demi_dot3(m->s, m->a);
+        m->fb = l*l*demi_dot3(m->s, m->b);
+        if (m->f > enough) return;
+        demi_sym_times(J, m->b, m->v);
+        sum = m->fa + m->fb;
+        if (!(sum > 0)) return;
+        u = (m->fa - m->fb)/sum;
+        if (u > 0) lo = l; else hi = l;
+        /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
+        C = demi_dot3(m->a, m->v);
+        step = u*(15 - 4*u*u)*m->fa*m->fb/
+            ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
+        if (fabs(u) < near || m->iterations >= 100 || hi - lo < 1e-15) {
+            demi_meet_finish(A, C, step, m);
+            return;
+        }
+        l += step;
+        if (!(l > lo && l < hi)) l = (lo + hi)/2;
+    }
+}
+/* Heights along the normal, and its length undone. */
+static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double *hb) {
+    const double l = sqrt(demi_dot3(m->s, m->s));
+    int k;
+    for (k = 0; k < 3; k++) n[k] = m->s[k]/l;
+    *ha = sqrt(m->fa)/((1 - m->l)*l);
+    *hb = sqrt(m->fb)/(m->l*l);
+}
+/* [RUB15] 3.2: the piece of the line through the contact along V2 V3 that lies in both: it leaves A
+   at the larger root of (x + t d).QA^-1 (x + t d) = 1 and enters B at the smaller one of B's. */
+static double demi_meet_chord(const demi_meet *m, const double *A) {
+    double d[3], u[3], ds, dv, du, out, in;
+    int k;
+    if (!(m->f < 1)) return 0;
+    demi_sym_times(A, m->v, d);
+    for (k = 0; k < 3; k++) u[k] = (m->s[k] - m->l*m->v[k])/(1 - m->l);
+    ds = demi_dot3(d, m->s);
+    dv = demi_dot3(d, m->v);
+    du = demi_dot3(d, u);
+    out = (-(1 - m->l)*ds + sqrt((1 - m->l)*(1 - m->l)*ds*ds + dv*(1 - m->fa)))/dv;
+    in = (m->l*ds - sqrt(m->l*m->l*ds*ds + du*(1 - m->fb)))/du;
+    return (out - in)*sqrt(demi_dot3(d, d));
+}
+DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
+                                                         const dem_ellipsoid *b,
+                                                         dem_real lambda) {
+    dem_ellipsoid_contact out = {0, 0, {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0};
+    if (!a || !b) return out;
+    const dem_quat none = dem_quat_make(1, 0, 0, 0);
+    const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
+    const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
+    const dem_vec3 gap = demi_sub(b->position, a->position);
+    double A[6], B[6], r[3], n[3], ha, hb, w0;
+    demi_meet m;
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    demi_ellipsoid_matrix(qa, a->semi_axes, A);
+    demi_ellipsoid_matrix(qb, b->semi_axes, B);
+    if (!(demi_dot3(r, r) > 0)) {               /* centres coincide: any direction is as good */
+        r[2] = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
+    }
+    m.l = lambda > 0 && lambda < 1 ? (double)lambda : demi_meet_start(A, B, r);
+    demi_meet_solve(A, B, r, 1e300, 1e-12, &m);
+    demi_meet_heights(&m, n, &ha, &hb);
+    w0 = sqrt(m.f);
+    out.scale = (dem_real)w0;
+    out.lambda = (dem_real)m.l;
+    out.iterations = m.iterations;
+    out.normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    out.point = demi_add(a->position, demi_v((dem_real)((1 - m.l)*m.a[0]),
+        (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
+    out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
+    out.depth_chord = (dem_real)demi_meet_chord(&m, A);
+    out.depth_conservative = (dem_real)((1 - w0)*
+        (demi_pow((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z, 1.0/3) +
+         demi_pow((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z, 1.0/3)));
+    return out;
+}
+
+/* --- parts of bodies, and how far apart they are --- */
+
+static int demi_parts_count(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
+}
+/* Part k as the body is turned now, worked out from its quaternion. */
+static demi_part demi_part_of(const dem_world *w, int body, int k) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    demi_part p;
+    memset(&p, 0, sizeof p);
+    p.kind = demi_shape_kind(shape);
+    p.radius = w->bodies.pos[4*body + 3];
+    if (shape) {
+        const dem_real scale = demi_scale_of(w, body, shape);
+        p.q = demi_quat_at(w->bodies.orient + 4*body);
+        p.shape = shape;
+        p.scale = scale;
+        if (shape->count) {
+            p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), scale);
+            p.radius = shape->parts[4*k + 3]*scale;
+        } else if (shape->pieces) {
+            const demi_piece *piece = shape->piece + k;
+            p.shape = &w->shapes[piece->shape];
+            p.kind = p.shape->kind;
+            p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), scale);
+            p.q = dem_quat_multiply(p.q, piece->q);
+            p.radius = p.shape->radius*scale;
+            p.axes = demi_scale(p.shape->axes, scale);
+        } else p.axes = demi_scale(shape->axes, scale);
+    }
+    return p;
+}
+/* The spheres of a cluster, as they are turned now: rows of centre and radius. */
+static const dem_real *demi_centres_of(const dem_world *w, int body) {
+    return w->bodies.centre + 4*w->bodies.centre_start[body];
+}
+/* Spheres of one cluster after it has turned: once a step, not once a contact. */
+static void demi_centres_rotate(dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
+    const dem_real scale = demi_scale_of(w, body, shape);
+    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body];
+    int k;
+    for (k = 0; k < shape->count; k++, sphere += 4) {
+        demi_put(sphere, demi_scale(dem_quat_rotate(q, demi_at(shape->parts + 4*k)), scale));
+        sphere[3] = shape->parts[4*k + 3]*scale;
+    }
+}
+/* Lays all of them. 0 when memory ran out. */
+static int demi_centres_lay(dem_world *w) {
+    int32_t *start;
+    int i, n = 0;
+    if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
+    start = w->bodies.centre_start;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        start[i] = n;
+        if (shape && n > INT_MAX/8 - shape->count) return 0;
+        n += shape ? shape->count : 0;
+    }
+    if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1))) return 0;
+    w->bodies.centres_valid = 1;
+    for (i = 0; i < w->bodies.count; i++)
+        if (demi_shape_of(w, i) && demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
+    return 1;
+}
+static void demi_part_matrix(const demi_part *p, double *Q) {
+    if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
+    else demi_ellipsoid_matrix(p->q, p->axes, Q);
+}
+/* --- what a kind of part tells of itself (DEMI_SHAPES) --- */
+
+static dem_real demi_ball_support(const demi_shape *s, dem_vec3 n) { (void)n; return s->radius; }
+static dem_real demi_ball_thin(const demi_part *p) { return p->radius; }
+static double demi_ball_equal(const demi_part *p) { return (double)p->radius; }
+static double demi_ball_curve(const demi_part *p, double h) { (void)h; return (double)p->radius; }
+static dem_vec3 demi_ball_drawn(const demi_part *p) {
+    return demi_v(p->radius, p->radius, p->radius);
+}
+static dem_real demi_ellipsoid_support(const demi_shape *s, dem_vec3 n) {
+    return demi_length(demi_v(n.x*s->axes.x, n.y*s->axes.y, n.z*s->axes.z));
+}
+static dem_real demi_ellipsoid_thin(const demi_part *p) {
+    return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
+}
+static double demi_ellipsoid_equal(const demi_part *p) {
+    return demi_pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
+}
+/* Gauss's: a b c/h^2. */
+static double demi_ellipsoid_curve(const demi_part *p, double h) {
+    return (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
+}
+static dem_vec3 demi_ellipsoid_drawn(const demi_part *p) { return p->axes; }
+/* By the table of kinds. */
+static dem_real demi_part_thin(const demi_part *p) { return demi_shape_rows[p->kind].thin(p); }
+static double demi_part_equal(const demi_part *p) { return demi_shape_rows[p->kind].equal(p); }
+/* The radius that a contact's stiffness is worked out with. A stiffness that changes as the two
+   roll would make or lose energy (Hertz: 1 % a collision at aspect ratio 3): where energy is to be
+   conserved it is that of equal volume. */
+static double demi_part_round(const dem_world *w, const demi_part *p, double h) {
+    return w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE ? demi_part_equal(p)
+        : demi_shape_rows[p->kind].curve(p, h);
+}
+
+/* Part k of a body as demi_part_of has it, from the centres that are turned already. */
+DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    demi_part p;
+    const dem_real *sphere;
+    if (shape && !shape->count) return demi_part_of(w, body, k);
+    sphere = shape ? demi_centres_of(w, body) + 4*k : w->bodies.pos + 4*body;
+    p.kind = DEMI_BALL;
+    p.centre = shape ? demi_at(sphere) : demi_v(0, 0, 0);
+    p.radius = sphere[3];
+    p.axes = demi_v(0, 0, 0);
+    p.q = dem_quat_make(1, 0, 0, 0);
+    p.shape = shape;
+    p.scale = 1;
+    return p;
+}
+static dem_real demi_balls_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                               dem_real enough) {
+    (void)enough;
+    return demi_length(gap) - p->radius - q->radius;
+}
+/* Two ellipsoids, or one and a sphere. */
+static dem_real demi_ellipsoids_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                                    dem_real enough) {
+    double A[6], B[6], r[3], n[3], ha, hb;
+    demi_meet m;
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    if (!(demi_length(gap) > 0)) return -enough;
+    demi_part_matrix(p, A);
+    demi_part_matrix(q, B);
+    m.l = demi_meet_start(A, B, r);
+    demi_meet_solve(A, B, r, 1e300, DEMI_MEET_NEAR, &m);
+    demi_meet_heights(&m, n, &ha, &hb);
+    return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
+}
+/* A lower bound of the distance between two parts, gap = from centre to centre; -`enough` where the
+   centres coincide. */
+static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                               dem_real enough) {
+    return demi_shape_rows[DEMI_MAX(p->kind, q->kind)].gap(p, q, gap, enough);
+}
+/* The same for two bodies; shift leads from b to the image of it that is nearest to a. */
+static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real *shift,
+                                dem_real enough) {
+    const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                         demi_at(w->bodies.pos + 4*a)), demi_at(shift));
+    const dem_real d = demi_length(r), rb = w->bodies.pos[4*b + 3];
+    const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
+    dem_real least = enough;
+    int i, j;
+    if (d > 0) {
+        const dem_vec3 n = demi_scale(r, 1/d);
+        const dem_real first = d - demi_support(w, a, n) - demi_support(w, b, demi_scale(n, -1));
+        if (first >= enough) return first;
+    }
+    for (i = 0; i < na; i++) {
+        const demi_part p = demi_part_now(w, a, i);
+        const dem_vec3 to = demi_sub(r, p.centre);
+        if (na > 1 && demi_length(to) - p.radius - rb >= least) continue;
+        for (j = 0; j < nb; j++) {
+            const demi_part q = demi_part_now(w, b, j);
+            least = DEMI_MIN(least, demi_parts_gap(&p, &q, demi_add(to, q.centre), least));
+        }
+    }
+    return least;
+}

@@ -1,0 +1,605 @@
+/* ---------------------------------------------------------------------------------------------
+   >>kept-respond
+   The law's answers to kept contacts, a tile of them at a time: coefficients and memory of each,
+   rows in which the stages of >>respond work out what laws answer, forces on both ends, walls'
+   sums, energies, rates of the user's numbers; and the forces on far ends, which wait in slots, of
+   all contacts. Owns what goes from step to step in a contact; pushes bodies.
+   --------------------------------------------------------------------------------------------- */
+
+/* What a body adds to 1/M, 1/kg, where a stiffness follows masses: as light as any contact may find
+   it, which is what the time step is chosen for. */
+static double demi_give_at_most(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return (double)w->bodies.inv_mass[body]/(shape ? shape->light : 1);
+}
+/* Coefficients of a contact, as yet without its slope, and what goes by the root of m_eff. */
+static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
+                            dem_real *root) {
+    const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
+    const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
+    /* there a grain of a wall has mass */
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
+    const double half = mill && grains ? 0.5 : 1;
+    const int shaped = demi_shape_of(w, k->a) || (k->b >= 0 && demi_shape_of(w, k->b));
+    const double give = shaped ? demi_give_at_most(w, k->a) +
+        (k->b >= 0 ? demi_give_at_most(w, k->b) : 0) : 0;
+    demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
+                             wall ? wall->material : w->bodies.material[k->b] - 1,
+                             (double)k->r_eff, half*(shaped ? 1/give : (double)k->m_eff),
+                             wall && !grains, out, root);
+    root[0] *= (dem_real)sqrt(half);
+    root[1] *= (dem_real)sqrt(half);
+}
+/* Velocity of a body at an arm: now, or its mean over the step. */
+static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int body, dem_vec3 arm) {
+    return demi_add(demi_at(v + 4*body), demi_cross(demi_at(spin + 4*body), arm));
+}
+static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
+    return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
+}
+/* What contact c takes over from the one it continues: memory, and coefficients, where its radius
+   is as it was. Answers that one; c itself when it is new: then nothing has turned. */
+DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
+                                             demi_kept *c) {
+    const demi_kept *old = c->from < 0 ? c : now + c->from;
+    const int fits = old != c && old->wall == c->wall &&
+        !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
+    if (c->b < 0 && !demi_shape_of(w, c->a))    /* which touch does not fetch */
+        c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
+    if (fits) {
+        memcpy(c->coef, old->coef, sizeof *c - offsetof(demi_kept, coef));
+        return old;
+    }
+    memset(c->coef, 0, sizeof *c - offsetof(demi_kept, coef));
+    if (old != c) memcpy(c->memory, old->memory, sizeof c->memory);
+    demi_kept_coefs(w, c, c->coef, c->root);
+    c->coef_r = c->r_eff;
+    return old;
+}
+/* Springs of friction and rolling that come to count more than they did (contacts that are shared,
+   places of a surface) keep their force, those that count less their length: the other way about
+   they would make energy. What ended in this one joins it first, as the mean of both springs, which
+   holds no more than they did. */
+static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *c) {
+    const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
+    const dem_real held = c->held < 0 ? now[c->from].grip : c->held, more = ended ? ended->grip : 0;
+    const dem_real all = held + more;
+    const dem_real left = c->grip > all ? all/c->grip : 1;
+    int k;
+    if (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)) return;
+    for (k = 0; k < w->laws.memory; k++) {
+        if (!(w->laws.vectors >> k & 1)) continue;
+        if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
+        c->memory[k] *= left;
+    }
+}
+/* m: radii of what touches, together: spheres, those of clusters, too; bounding ones of other
+   shapes. Of a wall none. */
+static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
+    return demi_part_now(w, k->a, k->part_a).radius +
+        (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
+}
+/* Who touches, for a law that wants to know. */
+static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
+                          dem_contact_who *who) {
+    const demi_periods periods = demi_periods_of(w);
+    who->a = dem_body_id_get(w, k->a);
+    who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
+    who->mass_a = w->bodies.mass[k->a];
+    if (k->b >= 0) {
+        who->b = dem_body_id_get(w, k->b);
+        who->radius_b = demi_part_now(w, k->b, k->part_b).radius;
+        who->mass_b = w->bodies.mass[k->b];
+    } else if (demi_wall_is(&w->walls[k->wall], DEMI_BALLS))
+        who->radius_b = w->walls[k->wall].radius;
+    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*k->a), k->arm_a));
+    who->time = w->clock.time;
+    demi_who_reals(w, k->a, k->b, k->wall, rates, who);
+}
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
+/* Contacts under work, a tile of them: what only these have, and rows for the stages of >>respond.
+   A wall is a body b without an arm: the others are against its surface there. */
+typedef struct demi_kept_tile {
+    demi_rows arm[2], mid[2];      /* m, of a and b: now, in the middle of the step */
+    demi_rows spin[2], spun[2];    /* rad/s, of a and b: the same */
+    dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: less share */
+    dem_real still[DEMI_ROOM];      /* N, the elastic force, where any is lifted */
+    dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 less inset */
+    dem_real root[2][DEMI_ROOM];
+    /* where bodies are no spheres: of a and b, what follows from them for 1/m_eff */
+    demi_rows felt[2];             /* m; 0: nothing turns */
+    dem_real q[2][4][DEMI_ROOM], I[2][3][DEMI_ROOM], inv[2][DEMI_ROOM];
+    /* the others: here, so that all rows begin on cache lines */
+    demi_tile rows;
+    demi_kept *contact[DEMI_TILE];
+    const demi_kept *old[DEMI_TILE];               /* what each continues; itself, if new */
+    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* where a wall is touched, m; its speed, m/s */
+    int count, lifted, shaped;     /* is still wanted? are there bodies that are no spheres? */
+} demi_kept_tile;
+DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {
+    DEMI_XY(rows, 0, q) = v.x;
+    DEMI_XY(rows, 1, q) = v.y;
+    rows->z[q] = v.z;
+}
+DEM_INLINE dem_vec3 demi_middle(dem_vec3 a, dem_vec3 b) {
+    return demi_scale(demi_add(a, b), DEM_R(0.5));
+}
+/* Row q of what is against a wall. */
+DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_vec3 mid,
+                                     demi_kept_tile *t, int q) {
+    const dem_world *w = r->w;
+    const demi_wall *wall = &w->walls[k->wall];
+    const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+    const dem_vec3 uh = demi_at(w->bodies.half_vel + 4*k->a);
+    t->at[q] = demi_add(x, k->arm_a);
+    t->surface[q] = demi_surface_at(&wall->pose, t->at[q]);
+    demi_rows_put(&t->rows.rate, q, demi_sub(demi_at(w->bodies.vel + 4*k->a), t->surface[q]));
+    demi_rows_put(&t->arm[1], q, demi_v(0, 0, 0));
+    demi_rows_put(&t->spin[1], q, wall->pose.spin);
+    if (!r->following) return;
+    /* where the contact was in the middle of the step */
+    demi_rows_put(&t->rows.gone, q,
+                  demi_sub(uh, demi_surface_at(&wall->mid,
+                      demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2))))));
+    demi_rows_put(&t->mid[1], q, demi_v(0, 0, 0));
+    demi_rows_put(&t->spun[1], q, wall->mid.spin);
+}
+/* Row q of two bodies. */
+DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, const demi_kept *old,
+                                     demi_kept_tile *t, int q) {
+    const dem_world *w = r->w;
+    const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
+    demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
+    demi_rows_put(&t->arm[1], q, k->arm_b);
+    demi_rows_put(&t->spin[1], q, demi_at(w->bodies.spin + 4*k->b));
+    if (!r->following) return;
+    demi_rows_minus(&t->rows.gone, (size_t)q, uh + 4*k->a, uh + 4*k->b);
+    demi_rows_put(&t->mid[1], q, demi_middle(k->arm_b, old->arm_b));
+    demi_rows_put(&t->spun[1], q, demi_at(w->bodies.half_spin + 4*k->b));
+}
+/* Row q: what body `who`, of side 0 or 1, gives way by where it is pushed. */
+DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, int side,
+                                     demi_kept_tile *t, int q) {
+    const dem_real inv = who < 0 ? 0 : w->bodies.inv_mass[who];
+    const int turns = inv > 0 && demi_shape_of(w, who);
+    int e;
+    t->inv[side][q] = inv;
+    demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
+    for (e = 0; e < 4; e++) t->q[side][e][q] = turns ? w->bodies.orient[4*who + e] : 0;
+    for (e = 0; e < 3; e++) t->I[side][e][q] = turns ? w->bodies.moment[4*who + e] : 1;
+}
+/* Row q: a contact, and the one of a step ago that it continues. */
+static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
+                            demi_kept_tile *t, int q) {
+    const dem_world *w = r->w;
+    const dem_vec3 mid = demi_middle(k->arm_a, old->arm_a);
+    const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
+    int e;
+    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = k->memory[e];
+    demi_row_put(t->rows.normal, q, k->normal);
+    t->rows.overlap[q] = k->overlap;
+    demi_rows_put(&t->arm[0], q, k->arm_a);
+    demi_rows_put(&t->spin[0], q, demi_at(w->bodies.spin + 4*k->a));
+    if (r->following) {
+        demi_row_put(t->rows.turn, q, demi_sub(k->normal, old->normal));
+        demi_rows_put(&t->mid[0], q, mid);
+        demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*k->a));
+    }
+    if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
+    else demi_kept_fetch_pair(r, k, old, t, q);
+    for (e = 0; e < DEMI_COEFS; e++) t->rows.coef[e][q] = coef[e];
+    t->rows.coef[DEMI_KN][q] *= slope;
+    t->rows.coef[DEMI_CN][q] *= slope;
+    t->rows.coef[DEMI_K_UN][q] *= slope;
+    t->rows.coef[DEMI_K_AD][q] *= slope;
+    t->rows.coef[DEMI_M_EFF][q] = k->m_eff;
+    t->root[0][q] = slope*k->root[0];
+    t->root[1][q] = k->root[1];
+    t->share[q] = k->share;
+    t->grip[q] = k->grip;
+    t->lift[q] = k->lift - k->share;
+    t->couple[q] = k->couple;
+    t->outset[q] = 1 - k->inset;
+    if (!t->shaped) return;
+    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
+    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
+}
+/* The last group of a tile is filled up with copies of its last contact, in every row that is
+   fetched: nobody reads what comes of it, but it is arithmetic like any other. */
+static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
+    dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
+        t->rows.memory[0], t->rows.coef[0], t->share, t->grip, t->lift, t->couple, t->outset,
+        t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
+    const int counts[] = {3, 1, 3, keep, DEMI_PAIR_COLUMNS, 1, 1, 1, 1, 1,
+        2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
+    demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
+        t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
+    const int last = t->count - 1;
+    int k, e, q;
+    for (k = 0; k < (int)(sizeof rows/sizeof *rows); k++)
+        for (e = 0; e < counts[k]; e++)
+            for (q = last + 1; q < full; q++)
+                rows[k][e*DEMI_ROOM + q] = rows[k][e*DEMI_ROOM + last];
+    for (k = 0; k < (int)(sizeof triples/sizeof *triples) - (t->shaped ? 0 : 2); k++)
+        for (q = last + 1; q < full; q++)
+            demi_rows_put(triples[k], q, demi_rows_at(triples[k], last));
+}
+/* 1/mass that a force along n, at its arm, feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
+DEM_INLINE dem_real demi_kept_give(demi_kept_tile *DEMI_RESTRICT t, int side, int q) {
+    const dem_vec3 c = demi_cross(demi_rows_at(&t->felt[side], q), demi_row(t->rows.normal, q));
+    const dem_vec3 v = dem_quat_unrotate(dem_quat_make(t->q[side][0][q], t->q[side][1][q],
+                                                       t->q[side][2][q], t->q[side][3][q]), c);
+    return t->inv[side][q] + (v.x*v.x/t->I[side][0][q] + v.y*v.y/t->I[side][1][q] +
+                              v.z*v.z/t->I[side][2][q]);
+}
+/* m*, of two bodies and where they touch, but where it is known. */
+DEM_INLINE void demi_kept_mass_one(demi_kept_tile *DEMI_RESTRICT t, int q) {
+    const dem_real known = t->rows.coef[DEMI_M_EFF][q];
+    const dem_real m = 1/(demi_kept_give(t, 0, q) + demi_kept_give(t, 1, q));
+    t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
+}
+/* How the two move against each other where they touch: now, and over the step just taken. */
+DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                     int following) {
+    const dem_vec3 n = demi_row(t->rows.normal, q);
+    const dem_vec3 wa = demi_rows_at(&t->spin[0], q), wb = demi_rows_at(&t->spin[1], q);
+    const dem_vec3 apart = demi_sub(wa, wb);
+    const dem_vec3 u = demi_sub(demi_add(demi_rows_at(&t->rows.rate, q),
+                                         demi_cross(wa, demi_rows_at(&t->arm[0], q))),
+                                demi_cross(wb, demi_rows_at(&t->arm[1], q)));
+    const dem_real closing = demi_dot(u, n);
+    demi_row_put(t->rows.slip, q, demi_sub(u, demi_scale(n, closing)));
+    demi_rows_put(&t->rows.apart, q, apart);
+    t->rows.coef[DEMI_CN][q] += t->root[0][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    t->rows.coef[DEMI_CT][q] += t->root[1][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    /* a moment about the normal does work, too */
+    t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
+    if (following) {
+        const dem_real per = s->dt > 0 ? 1/s->dt : 0;
+        const dem_vec3 way = demi_row(t->rows.turn, q);
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+        const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
+        const dem_vec3 turn = demi_scale(way, per);
+        dem_vec3 gone = demi_sub(demi_add(demi_rows_at(&t->rows.gone, q),
+                                          demi_cross(sa, demi_rows_at(&t->mid[0], q))),
+                                 demi_cross(sb, demi_rows_at(&t->mid[1], q)));
+        gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
+        demi_row_put(t->rows.slip_step, q, demi_sub(gone, demi_scale(n, demi_dot(gone, n))));
+        demi_row_put(t->rows.turn, q, demi_sub(turn, demi_scale(n, demi_dot(turn, n))));
+        demi_rows_put(&t->rows.parted, q, demi_sub(sa, sb));
+        t->rows.twist[q] = demi_dot(demi_add(sa, sb), n)/2;
+    }
+}
+/* Forces and moments, each part as often as it counts. */
+DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int rolls) {
+    const dem_vec3 n = demi_row(t->rows.normal, q);
+    const dem_real press = t->share[q]*t->rows.repulsion[q] + t->lift[q]*t->still[q];
+    const dem_vec3 push = demi_scale(n, press);
+    const dem_vec3 force = demi_sub(demi_scale(demi_row(t->rows.tangent, q), t->grip[q]), push);
+    dem_vec3 moment = demi_scale(push, -t->couple[q]);
+    if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
+    demi_row_put(t->rows.force, q, force);
+    demi_row_put(t->rows.moment, q, moment);
+    demi_row_put(t->rows.torque[0], q,
+                 demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
+                                     demi_add(force, demi_scale(push, t->outset[q]))), moment));
+    demi_row_put(t->rows.torque[1], q,
+                 demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
+}
+#define DEMI_KEPT_STAGE(NAME, ONE) \
+    DEMI_CLONES static void NAME(demi_kept_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
+        const demi_same s = r->same; \
+        (void)s; \
+        DEMI_ROWS(full) ONE; DEMI_ROWS_END \
+    }
+DEMI_KEPT_STAGE(demi_kept_mass, demi_kept_mass_one(t, q))
+DEMI_KEPT_STAGE(demi_kept_motion, demi_kept_motion_one(t, &s, q, 0))
+DEMI_KEPT_STAGE(demi_kept_motion_following, demi_kept_motion_one(t, &s, q, 1))
+DEMI_KEPT_STAGE(demi_kept_answer, demi_kept_answer_one(t, q, 0))
+DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
+#undef DEMI_KEPT_STAGE
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
+
+/* Whether the elastic force counts more, or less, than what dissipates. */
+DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
+    return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
+}
+/* Row q as a law sees it that is called by itself. */
+static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
+                          dem_contact *c) {
+    const demi_kept *k = t->contact[q];
+    demi_tile_contact(&t->rows, &r->same, q, c);
+    if (!w->desc.law) return;
+    demi_who_clear(&c->who);
+    c->range = r->ranged ? demi_range(w, demi_kept_radii(w, k)) : 0;
+    c->material_a = w->bodies.material[k->a];
+    c->material_b = k->b >= 0 ? w->bodies.material[k->b] : w->walls[k->wall].material + 1;
+    c->wall = k->b >= 0 ? 0 : w->walls[k->wall].id;
+    c->user = w->desc.law_user;
+    if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
+}
+/* Laws contact by contact: the user's, or where they are few. */
+static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
+    dem_real m[DEMI_MEMORY];
+    dem_contact_force f;
+    dem_contact c;
+    int q;
+    for (q = 0; q < t->count; q++) {
+        t->still[q] = 0;
+        if (demi_kept_lifted(t->contact[q])) {  /* as if it stood still, with a copy of memory */
+            demi_kept_see(w, t, r, q, &c);
+            demi_recall(&t->rows, q, 0, r->keep, m);
+            c.closing_speed = 0;
+            demi_law(w, &c, m, &f);
+            t->still[q] = f.normal;
+        }
+        demi_kept_see(w, t, r, q, &c);
+        demi_recall(&t->rows, q, 0, r->keep, m);
+        demi_law(w, &c, m, &f);
+        demi_keep(&t->rows, q, 0, r->keep, m);
+        demi_normal_put(&t->rows, &r->same, q, &f, 2);
+        demi_tangent_put(&t->rows, &r->same, q, &f, 2);
+        demi_rolling_put(&t->rows, &r->same, q, &f, 2);
+    }
+}
+/* The elastic force alone, N: what the normal law answers where nothing moves. */
+static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
+    const int at = r->same.at_normal;
+    dem_real closing[DEMI_TILE], memory[DEMI_MEMORY][DEMI_TILE];
+    int e, q;
+    for (q = 0; q < full; q++) {
+        closing[q] = t->rows.closing[q];
+        t->rows.closing[q] = 0;
+        for (e = at; e < r->keep; e++) memory[e][q] = t->rows.memory[e][q];
+    }
+    r->stage[0](&t->rows, r, full);
+    for (q = 0; q < full; q++) {
+        t->still[q] = t->rows.repulsion[q];
+        t->rows.closing[q] = closing[q];
+        for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
+    }
+}
+DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
+    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
+}
+/* What a force at a place, with a moment, adds to its wall's sums. */
+DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
+                              dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
+    const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
+    const dem_vec3 torque = demi_add(demi_cross(arm, force), moment);
+    sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y;
+    sum->force[2] -= (double)force.z;
+    sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
+    sum->torque[2] -= (double)torque.z;
+    sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
+}
+/* m/s, by how much a and b (or a wall: < 0) closed faster than predicted */
+DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
+    const dem_vec3 late = demi_at(w->bodies.late + 4*a);
+    return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
+}
+/* What the contact of row q did with energy. Friction and rolling may count differently from the
+   rest: demi_kept_lift. */
+static void demi_kept_book(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
+    const demi_tile *rows = &t->rows;
+    const demi_kept *c = t->contact[q];
+    const dem_real share = c->share, grip = c->grip, slope = c->slope;
+    const dem_real late = !w->bodies.booked ? 0
+        : demi_late_share(demi_late_of(w, c->a, c->b), c->normal, rows->closing[q]);
+    /* V = k overlap^2/2; the law was given k slope */
+    energy[DEMI_E_DASHPOT] += (double)(share*(rows->part[0][q]*(1 + late) +
+                                              rows->part[6][q]/slope));
+    energy[DEMI_E_ELASTIC] += (double)(share*(rows->part[1][q]/slope));
+    energy[DEMI_E_SHEAR_WORK] += (double)(grip*rows->part[2][q]);
+    energy[DEMI_E_SLIDE] += (double)(grip*rows->part[3][q]);
+    energy[DEMI_E_SHEAR_STORED] += (double)(grip*rows->part[4][q]);
+    energy[DEMI_E_ROLL] += (double)(grip*rows->part[5][q]);
+}
+
+/* What a law has answered for the users' numbers of contact c: as often as it counts. */
+static DEMI_APART void demi_kept_rates(dem_world *w, int d, const demi_kept *c,
+                                       const dem_real *rates) {
+    const int n = w->bodies.real_count;
+    double *wall = c->b >= 0 ? 0 : w->wall_rates +
+        (size_t)n*((size_t)d*(size_t)w->wall_count + (size_t)c->wall);
+    dem_real *b = c->b < 0 ? 0 : c->send ? w->cross_rate + (size_t)n*(size_t)(c->send - 1)
+        : w->bodies.rates + n*c->b;
+    int k;
+    for (k = 0; k < n; k++) {
+        const dem_real gain = c->share*rates[DEM_BODY_REALS + k];
+        w->bodies.rates[n*c->a + k] += c->share*rates[k];
+        if (b) b[k] += gain;
+        else wall[k] += (double)gain;
+    }
+}
+/* A body that a contact will soon read and push. */
+DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
+    DEMI_FETCH(w->bodies.vel + 4*body);
+    DEMI_FETCH(w->bodies.half_vel + 4*body);
+    DEMI_FETCH(w->bodies.spin + 4*body);
+    DEMI_FETCH(w->bodies.half_spin + 4*body);
+    DEMI_FETCH(w->bodies.force + 4*body);
+    DEMI_FETCH(w->bodies.torque + 4*body);
+}
+/* The force across the normal on the contact's ball, which goes round something: to both. */
+static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
+    const demi_kept *c = t->contact[q];
+    const dem_vec3 aside = demi_scale(c->aside, t->still[q]);
+    const dem_vec3 arm = demi_sub(demi_part_now(w, c->a, c->part_a).centre, c->arm_a);
+    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->along;
+    const dem_vec3 far = demi_sub(arm, demi_scale(c->normal, 1/turn));
+    const dem_vec3 moment = demi_cross(far, aside);
+    demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
+    demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q), moment));
+    demi_row_put(t->rows.torque[0], q,
+                 demi_add(demi_row(t->rows.torque[0], q),
+                          demi_cross(demi_add(c->arm_a, arm), aside)));
+    demi_row_put(t->rows.torque[1], q,
+                 demi_sub(demi_row(t->rows.torque[1], q),
+                          demi_add(demi_cross(c->arm_b, aside), moment)));
+}
+/* The force of row q to both ends. */
+static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
+    const demi_kept *c = t->contact[q];
+    const dem_vec3 force = demi_row(t->rows.force, q);
+    demi_force_add(w->bodies.force + 4*c->a, force);
+    demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
+    if (c->b >= 0) {                            /* several may go by one near pair */
+        dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
+        demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
+        demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
+    } else
+        demi_wall_sum_add(w, &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall],
+                          c->wall, t->at[q], force, demi_row(t->rows.moment, q), t->surface[q]);
+}
+/* Fills in what the tile's contacts answer. Where they are few, one by one, since a group costs as
+   much for one as for all that fit in. Bits are the same. */
+static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
+    const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    const int few = t->count < 4, rolls = w->desc.law || w->laws.rolling->law;
+    int q, k;
+    for (q = 0; q < t->count; q++)
+        demi_kept_fetch(r, t->contact[q], t->old[q], t, q);
+    if (few) {
+        for (q = 0; q < t->count && t->shaped; q++) demi_kept_mass_one(t, q);
+        for (q = 0; q < t->count; q++) demi_kept_motion_one(t, &r->same, q, r->following);
+        demi_kept_laws(w, t, r);
+        for (q = 0; q < t->count; q++) demi_kept_answer_one(t, q, rolls);
+        return;
+    }
+    demi_kept_fill_up(t, r->keep, full);
+    if (t->shaped) demi_kept_mass(t, r, full);
+    (r->following ? demi_kept_motion_following : demi_kept_motion)(t, r, full);
+    if (w->desc.law) demi_kept_laws(w, t, r);
+    else {
+        if (t->lifted) demi_kept_still(t, r, full);
+        for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](&t->rows, r, full);
+    }
+    (rolls ? demi_kept_answer_rolling : demi_kept_answer)(t, r, full);
+}
+/* The whole tile: law, forces on both ends, walls' sums, energies, memory. */
+static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_kept_tile *t) {
+    demi_domain *domain = &w->domains[d];
+    demi_tile *rows = &t->rows;
+    int q, e;
+    demi_kept_tile_answer(w, r, t);
+    for (q = 0; q < t->count; q++) {
+        demi_kept *c = t->contact[q];
+        for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
+        if (t->lifted && demi_dot(c->aside, c->aside) > 0) demi_kept_aside_add(w, t, q);
+        c->force = demi_row(rows->force, q);
+        demi_kept_push(w, d, t, q);
+        if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
+        if (r->ledger) demi_kept_book(w, t, q, domain->energy);
+    }
+    t->count = t->lifted = t->shaped = 0;
+}
+/* What a contact that is asked about counts for its domain; fresh: it begins to touch. */
+static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) {
+    demi_domain *domain = &w->domains[d];
+    const int touches = c->overlap > 0;
+    if (touches && fresh) {
+        const int a = w->bodies.material[c->a] - 1;
+        const int b = c->b >= 0 ? w->bodies.material[c->b] - 1 : w->walls[c->wall].material;
+        domain->met[DEMI_MIN(a, b)] |= UINT64_C(1) << DEMI_MAX(a, b);
+    }
+    domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
+    if (c->b >= 0) {
+        domain->contacts += touches && !c->corner;
+        return;
+    }
+    w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall].contacts +=
+        touches && !c->corner;
+    domain->kept_walls += touches;
+}
+/* What a contact will soon take over. */
+DEM_INLINE void demi_kept_fetch_old(const demi_kept *k) {
+    DEMI_FETCH(&k->normal);
+    DEMI_FETCH(k->coef);
+    DEMI_FETCH(k->coef + 8);
+    DEMI_FETCH(k->memory);
+}
+/* All contacts of one domain, in the order of their list. */
+static void demi_kept_respond(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
+    const demi_kept *now = demi_kept_of(w, d);
+    DEMI_ALIGNED demi_kept_tile tile;
+    demi_run run = demi_run_begin(w, dt);
+    int i, q;
+    domain->kept_walls = 0;
+    if (!domain->kept_next) return;
+    if (!w->desc.law) demi_run_laws(w, &run, 0);
+    tile.count = tile.lifted = tile.shaped = 0;
+    for (q = 0; q < DEMI_TILE && q < domain->kept_next + DEMI_LANES; q++) {
+        tile.rows.touch[q] = 1;
+        tile.rows.memory[DEMI_MEMORY][q] = 0;
+        tile.still[q] = 0;                      /* where none is lifted */
+        demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* where no law answers it */
+        tile.rows.slope[0][q] = tile.rows.slope[1][q] = tile.rows.kt[1][q] = (dem_real)NAN;
+    }
+    if (run.ledger) memset(tile.rows.part, 0, sizeof tile.rows.part);
+    for (i = 0; i < domain->kept_next; i++) {
+        demi_kept *c = w->kept_next + w->kept_first[d] + i;
+        const demi_kept *old;
+        if (i + 2 < domain->kept_next) {
+            demi_body_fetch(w, c[2].a);
+            if (c[2].from >= 0) demi_kept_fetch_old(now + c[2].from);
+        }
+        old = demi_kept_recall(w, now, c);
+        if (!demi_kept_asked(w, c)) {           /* under way through a reduced hole */
+            c->force = demi_v(0, 0, 0);
+            domain->kept_walls += c->b < 0;
+            continue;
+        }
+        tile.contact[tile.count] = c;
+        tile.old[tile.count++] = old;
+        tile.lifted |= demi_kept_lifted(c);
+        tile.shaped |= !(c->m_eff > 0);
+        demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
+        if (c->from >= 0) demi_kept_hold(w, now, c);
+        if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);
+    }
+    if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
+}
+/* Slots of far ends are summed into: cleared before. */
+static void demi_kept_clear(dem_world *w, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
+    const size_t first = (size_t)d*(size_t)w->cross.stride +
+                         (size_t)(domain->near_end - domain->near_cross);
+    const size_t rates = demi_exchanges(w) ? (size_t)w->bodies.real_count : 0;
+    if (pairs > 0) memset(w->cross_force + 6*first, 0, 6*(size_t)pairs*sizeof(dem_real));
+    if (pairs > 0 && rates)
+        memset(w->cross_rate + rates*first, 0, rates*(size_t)pairs*sizeof(dem_real));
+}
+
+/* The far ends of pairs that lead into domain d from domains before it. */
+static void demi_cross_gather(dem_world *w, int d) {
+    const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
+    const int stride = w->cross.stride;
+    int k, e, p, shaped, from = 0;
+    for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
+        const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
+        const dem_real *force;
+        size_t slot;
+        while (entry >= (from + 1)*stride) from++;
+        p = w->cross.place[entry] - 1;
+        if (p < 0) continue;
+        shaped = p >= w->domains[from].near_shaped;
+        p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
+        slot = (size_t)(from*stride + p - w->domains[from].near_cross);
+        force = w->cross_force + 6*slot;
+        for (e = 0; e < 3; e++) {
+            w->bodies.force[j + e] += force[e];
+            if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
+        }
+        for (e = 0; e < rates; e++)
+            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)rates*slot + (size_t)e];
+    }
+}

@@ -1,0 +1,219 @@
+/* ---------------------------------------------------------------------------------------------
+   >>meets
+   Where parts of two bodies touch: geometry only, into a contact that >>kept has begun. Spheres by
+   their centres, ellipsoids by Perram and Wertheim's point, polyhedra by what they share
+   (>>polyhedra) or by gaps (>>gaps), and what is unlike by the nearest point. Then the table of who
+   meets whom.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown. spots: several
+       points, from p's centre, where the contact has a gap for each; else its count stays 0 --- */
+typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
+                            dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots);
+/* Two spheres of radii r and s, about places x and y from the centres of their bodies, share the
+   distance as their radii do. */
+DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_vec3 y, dem_real s,
+                               dem_vec3 gap, demi_kept *c) {
+    const dem_real d = demi_length(gap), sum = r + s;
+    if (!(d < sum + demi_range(w, sum))) return 0;
+    c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
+    c->overlap = sum - d;
+    c->deep = c->overlap/DEMI_MIN(r, s);
+    c->r_eff = r*s/sum;
+    c->arm_a = demi_add(x, demi_scale(c->normal, d*r/sum));
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(x, gap), y));
+    c->bend = -1/DEMI_MAX(d, sum/10);
+    return 1;
+}
+static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                            dem_vec3 gap, double lambda, demi_kept *c,
+                            demi_spots *spots) {
+    (void)lambda; (void)spots;
+    return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
+}
+/* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. Apart, their gap is that
+   of the points of either that come to it when both are scaled by W0, d (1 - 1/W0): never less
+   than the distance, by which lists are made. */
+static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                 dem_vec3 gap, double lambda, demi_kept *c,
+                                 demi_spots *spots) {
+    const dem_real d = demi_length(gap), range = demi_range(w, p->radius + q->radius);
+    const double most = 1 + (double)range/(double)(demi_part_thin(p) + demi_part_thin(q));
+    double A[6], B[6], r[3], n[3], ha, hb, w0, ra, rb;
+    demi_meet m;
+    (void)spots;
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    if (!(d > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
+    demi_part_matrix(p, A);
+    demi_part_matrix(q, B);
+    m.l = lambda > 0 ? lambda : demi_meet_start(A, B, r);
+    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, &m);
+    if (!(m.f < 1) && !((double)d*(1 - 1/sqrt(m.f)) < (double)range)) return 0;
+    w0 = sqrt(m.f);
+    demi_meet_heights(&m, n, &ha, &hb);
+    c->lambda = m.l;
+    c->normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    c->deep = (dem_real)((1 - w0)*(ha + hb)/DEMI_MIN(ha, hb));
+    c->overlap = (dem_real)((1 - w0)*(ha + hb));
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
+        const double l = demi_part_equal(p) + demi_part_equal(q);
+        c->overlap = (dem_real)((1 - w0)*l);
+        c->slope = (dem_real)(l/(ha + hb));
+    } else if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD)
+        c->overlap = (dem_real)demi_meet_chord(&m, A);
+    ra = demi_part_round(w, p, ha);
+    rb = demi_part_round(w, q, hb);
+    c->r_eff = (dem_real)(ra*rb/(ra + rb));
+    c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - m.l)*m.a[0]),
+        (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
+    /* from b's centre to the same point, to the bit: angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    return 1;
+}
+/* An ellipsoid's overlap and arm at a normal, by what is `left` of it, 1 - W0, as it shrinks: as
+   with other ellipsoids, l (1 - W0), with the sphere of a wall's grain, of radius edge, in l, or
+   along the normal. The arm is to the point that lies deepest, as a sphere's is; what is
+   l (1 - W0)'s gradient passes through the point of the wall, at W0 of it. */
+static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real left, dem_real edge,
+                             demi_kept *c) {
+    const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
+    c->overlap = left*(h + edge);
+    c->deep = c->overlap/h;
+    c->r_eff = (dem_real)demi_part_round(w, p, (double)h);
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
+        const dem_real l = (dem_real)demi_part_equal(p) + edge;
+        c->overlap = left*l;
+        c->slope = l/(h + edge);
+        c->inset = 1 - left;
+    }
+}
+/* A sphere and a polyhedron, whose nearest point it is pushed away from; the sphere's radius is R*,
+   as on a plane. */
+static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                 dem_vec3 gap, demi_kept *c) {
+    const int first = p->kind == DEMI_BALL;
+    const demi_part *ball = first ? p : q;
+    const double x[3] = {0, 0, 0};
+    double at[3], off;
+    demi_solid s;
+    demi_solid_of(first ? q : p, first ? gap : demi_scale(gap, -1), &s);
+    off = demi_solid_near(&s, x, at);
+    c->overlap = ball->radius - (dem_real)off;
+    if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
+    c->normal = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
+                                   : demi_unit(gap);
+    c->deep = c->overlap/ball->radius;
+    c->r_eff = ball->radius;
+    c->arm_a = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    if (!first) {
+        c->normal = demi_scale(c->normal, -1);
+        c->arm_a = demi_add(c->arm_a, gap);
+    }
+    return 1;
+}
+/* An ellipsoid and a polyhedron: as it touches walls, at the point that comes to it first when it
+   is scaled, by W0. */
+static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                dem_vec3 gap, demi_kept *c) {
+    const int first = p->kind == DEMI_ELLIPSOID;
+    const demi_part *egg = first ? p : q;
+    const double x[3] = {0, 0, 0};
+    dem_vec3 at, n;
+    double near[3], W0;
+    demi_solid s;
+    demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
+    W0 = demi_solid_near(&s, x, near);
+    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
+        return 0;
+    at = demi_v((dem_real)near[0]*egg->axes.x, (dem_real)near[1]*egg->axes.y,
+                (dem_real)near[2]*egg->axes.z);
+    n = demi_v((dem_real)near[0]/egg->axes.x, (dem_real)near[1]/egg->axes.y,
+               (dem_real)near[2]/egg->axes.z);
+    c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
+    demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
+    /* the gradient passes through the polyhedron's point */
+    c->arm_a = dem_quat_rotate(egg->q, at);
+    c->inset = 1;
+    if (!first) {
+        c->normal = demi_scale(c->normal, -1);
+        c->arm_a = demi_add(c->arm_a, gap);
+    }
+    return 1;
+}
+static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                  dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
+    const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
+    (void)lambda; (void)spots;
+    if (!(ball ? demi_solid_ball_touch : demi_solid_egg_touch)(w, p, q, gap, c)) return 0;
+    c->arm_a = demi_add(c->arm_a, p->centre);
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    return 1;
+}
+/* Two polyhedra by the points that keep them off: all that impulses ask; for a law with a range,
+   while nothing presses, the nearest one, four times, as many as a pressure will have. */
+static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const demi_part *q,
+                               dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+    const double ra = demi_part_equal(p), rb = demi_part_equal(q);
+    const double range = (double)demi_range(w, p->radius + q->radius);
+    const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
+    const double guess[3] = {(double)from.x, (double)from.y, (double)from.z};
+    demi_simplex tells;
+    demi_solid a, b;
+    int k, nearest = 0;
+    demi_solid_of(p, demi_v(0, 0, 0), &a);
+    demi_solid_of(q, gap, &b);
+    if (!demi_solids_spots(&a, &b, 0, range, guess, &tells, spots)) return 0;
+    c->normal = demi_v((dem_real)spots->normal[0], (dem_real)spots->normal[1],
+                       (dem_real)spots->normal[2]);
+    c->r_eff = (dem_real)(ra*rb/(ra + rb));
+    c->arm_a = p->centre;
+    c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
+    if (demi_impulsive(w)) return 1;
+    for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
+    for (k = 0; k < 4; k++) {
+        if (k != nearest) memcpy(spots->x[k], spots->x[nearest], sizeof *spots->x);
+        spots->gap[k] = spots->gap[nearest];
+    }
+    spots->count = 4;
+    return spots->gap[0] > 0;
+}
+/* Two polyhedra, by what they share; the first of four points by which they touch. */
+static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
+    const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
+    demi_solid a, b;
+    demi_patch at;
+    demi_pressure s;
+    double overlap;
+    (void)lambda;
+    if (demi_impulsive(w)) return demi_polyhedra_near(w, p, q, gap, c, spots);
+    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)))
+        return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
+    demi_solid_of(p, demi_v(0, 0, 0), &a);
+    demi_solid_of(q, gap, &b);
+    if (w->desc.planar)                         /* whichever: the same as long as they touch */
+        demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
+    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &at)
+        ? demi_shared_overlap(s.shared, r_eff) : 0;
+    if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
+    c->normal = at.normal;
+    c->overlap = (dem_real)overlap;
+    c->slope = (dem_real)demi_shared_slope(at.force, r_eff, overlap);
+    c->deep = (dem_real)s.deep;
+    c->r_eff = (dem_real)r_eff;
+    c->couple = at.couple;
+    c->corners = 4;
+    c->spread = at.spread[0];
+    c->aside = at.spread[1];       /* until demi_kept_spread */
+    c->arm_a = demi_add(p->centre, at.point);
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    return 1;
+}
+/* Who meets whom: kinds of parts, the later one first. */
+#define DEMI_SHAPE_MEET(KIND, NAME, WORD, GAP, TOUCH) DEMI_LIST TOUCH,
+static const demi_meet_fn demi_meets[][DEMI_SHAPE_KINDS] = {DEMI_SHAPES(DEMI_SHAPE_MEET)};
+DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
+    return demi_meets[DEMI_MAX(kind, other)][DEMI_MIN(kind, other)];
+}
+static int demi_meet_known(int kind, int other) { return demi_meet_of(kind, other) != 0; }

@@ -1,0 +1,559 @@
+/* ---------------------------------------------------------------------------------------------
+   >>on-walls
+   Where parts of bodies touch walls: geometry only; first spheres, clusters being many of them;
+   then ellipsoids, which share what is done on surfaces of facets; and how the normals turn there.
+   What becomes of the places that are found stands in >>kept.
+   --------------------------------------------------------------------------------------------- */
+
+/* m: which gaps, of when the list was made, may have closed, or come within the law's range: any
+   grain and any wall may have come so far towards each other since. */
+DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
+    return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
+}
+/* Room in which the places of one body and one wall are found. candidates: how many there are. */
+DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
+    const demi_domain *domain = &w->domains[d];
+    demi_places p;
+    memset(&p, 0, sizeof p);
+    p.at = w->touching + domain->touching_first;
+    if (candidates > 10) {
+        uint32_t size = 64;
+        while (size < 2*7*(uint32_t)candidates) size *= 2;
+        p.table = w->touching_table + 4*domain->touching_first;
+        p.mask = size - 1;
+        memset(p.table, 0, size*sizeof *p.table);
+    }
+    return p;
+}
+/* Candidates from k on that see the wall from the same image of their body: the end of them. */
+DEM_INLINE int demi_image_end(const dem_world *w, int base, int k, int last) {
+    const dem_real *s = w->wall_shift + 3*(size_t)(base + k);
+    int end = k + 1;
+    if (!w->repeating) return last;
+    while (end < last && !memcmp(s, w->wall_shift + 3*(size_t)(base + end), 3*sizeof *s)) end++;
+    return end;
+}
+/* Can candidate k, an element of a wall, be nearer than `within` to a place? No where its gap has
+   not closed, or its plane is farther off. */
+DEM_INLINE int demi_facet_near(const dem_world *w, const demi_wall *wall, int k, dem_real gone,
+                               dem_vec3 x, dem_real within) {
+    const dem_real *plane = DEMI_AT(wall->planes, w->wall_element[k]);
+    const dem_real off = plane[0]*x.x + plane[1]*x.y + plane[2]*x.z - plane[3];
+    return !(w->wall_gap[k] > gone) &&
+           !(DEMI_ABS(off) > within*DEM_R(1.001) + wall->plane_slack);
+}
+/* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
+   the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
+   measure, r less the distance or 1 - W0, as overlaps; range: what is nearer than that, too, with
+   overlaps below 0. In the world. */
+static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                             dem_vec3 at, dem_real r, const demi_part *part, dem_real range,
+                             demi_touching **out) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const dem_real touch = part ? DEM_R(1) : r;
+    const dem_real within = touch + (part ? range/demi_part_thin(part) : range);
+    demi_places p = demi_places_begin(w, d, last - first);
+    const int numbers = wall->number_count;
+    int k, q, from, end, one, reached;
+    for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        from = p.count;
+        end = demi_image_end(w, base, k, last);
+        for (q = k, one = end, reached = 0; q < end && !part; q++) {
+            if (!demi_facet_near(w, wall, base + q, gone, x, within)) continue;
+            if (!reached++) one = q;
+        }
+        if (reached == 1 && wall->lone) {
+            demi_facet_alone(wall, w->wall_element[base + one], x, within, &p);
+            if (p.count > from) p.at[from].shift = shift;
+            continue;
+        }
+        for (q = one; q < end; q++)             /* spheres have a copy of the code for them */
+            if (demi_facet_near(w, wall, base + q, gone, x, within))
+                demi_facet_places(wall, w->wall_element[base + q], x, 0, within, &p);
+        for (q = k; q < end && part; q++)
+            if (!(w->wall_gap[base + q] > gone))
+                demi_facet_places(wall, w->wall_element[base + q], x, part, within, &p);
+        for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
+        if (q < p.count)                        /* something takes away: more than it should? */
+            demi_places_rings(wall, w->wall_element + base + k, end - k, x, part, within,
+                              demi_normal_is(w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
+                              w->touching_links +
+                              w->domains[d].touching_first, &p);
+        for (q = from; q < p.count; q++) p.at[q].shift = shift;
+    }
+    if (p.count > 1 || (p.count && p.at->share < 1))
+        demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
+    for (k = 0; k < p.count; k++) {
+        demi_touching *t = p.at + k;
+        dem_vec3 to = t->point, n = t->point;
+        t->element %= numbers;
+        if (part) {
+            const dem_vec3 a = part->axes;
+            to = dem_quat_rotate(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
+            n = dem_quat_rotate(part->q, demi_v(n.x/a.x, n.y/a.y, n.z/a.z));
+        }
+        n = t->overlap > 0 ? demi_scale(n, 1/demi_length(n)) : demi_v(0, 0, -1);
+        t->overlap = touch - t->overlap;
+        t->normal = demi_rotate(R, n);
+        t->point = demi_add(at, demi_rotate(R, to));
+    }
+    *out = p.at;
+    return p.count;
+}
+/* --- where one part of a body, a sphere or an ellipsoid, touches one wall, from the candidates
+       first .. last - 1 of its body, those no farther than `gone`: normals, points, overlaps (of an
+       ellipsoid 1 - W0) and shares, in the world. at: its centre. --- */
+typedef int (*demi_touch_fn)(const dem_world *w, int d, int first, int last, dem_real gone,
+                             dem_vec3 at, const demi_part *part, demi_touching **places);
+static int demi_facets_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                               dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0,
+                             demi_range(w, part->radius), places);
+}
+/* Where a sphere touches a surface of revolution: pieces between their ends, rings where it lies
+   beyond the ends of all pieces that meet there; a ring between two pieces that it touches takes
+   away, as where rows of a sieve cross: so the second begins, in an inner corner, without a jump
+   however deep the sphere is in the first. Elements: pieces, then rings. */
+static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, demi_touching *out) {
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    const int pieces = wall->ring_count - 1;
+    int k, end, part, before = 1, count = 0;    /* before: did the last piece end in this ring? */
+    for (k = 0; k <= pieces; k++) {
+        dem_real a = wall->ring_radius[k], b = wall->ring_height[k], dist = 0;
+        int how;                                /* 1: it counts, -1: it takes away, 0: neither */
+        end = -1;
+        if (k < pieces) dist = demi_ring_piece(wall, k, l, x.z, &a, &b, &end);
+        for (part = 0; part < 2; part++) {      /* the piece, then the ring where it begins */
+            how = part ? (before > 0 && end < 0) - (k && !before && !end) : k < pieces && !end;
+            if (!how) continue;
+            if (part) {
+                a = wall->ring_radius[k];
+                b = wall->ring_height[k];
+                dist = DEMI_SQRT((l - a)*(l - a) + (x.z - b)*(x.z - b));
+            }
+            if (!(r - dist > 0)) continue;
+            out[count].element = part ? pieces + k : k;
+            out[count].share = wall->share*(dem_real)how;
+            out[count].overlap = r - dist;
+            out[count].point = demi_v(d.x*a, d.y*a, b);
+            out[count].normal = dist > 0
+                ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
+            count++;
+        }
+        before = end;
+    }
+    return count;
+}
+/* A sphere and a wall each of whose elements it may touch, or be within the range of (as a sphere
+   of so much larger a radius finds them); how: 0: as it is near to them, 1: as
+   segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
+   are. */
+DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                                  dem_vec3 at, dem_real radius, demi_touching **places, int how,
+                                  demi_near_fn near) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation, range = demi_range(w, radius), r = radius + range;
+    demi_touching *out;
+    int k, q, end, count = 0;
+    *places = out = w->touching + w->domains[d].touching_first;
+    for (k = first; k < last; k = end) {
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        const int from = count;
+        end = demi_image_end(w, base, k, last);
+        if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, range, out + count);
+        else if (how == 3) count += demi_revolved_touch(wall, x, r, out + count);
+        else for (; k < end; k++) {
+            demi_touching *c = &out[count];
+            if (w->wall_gap[base + k] > gone) continue;
+            c->element = w->wall_element[base + k];
+            c->share = wall->share;
+            if (how == 1) {
+                c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
+                                              &c->overlap);
+                if (!(c->share > 0)) continue;
+            } else {
+                c->overlap = near(wall, c->element, x, r, &c->normal, &c->point);
+                if (!(c->overlap > 0)) continue;
+            }
+            count++;
+        }
+        for (q = from; q < count; q++) {
+            out[q].overlap -= range;
+            out[q].normal = demi_rotate(R, out[q].normal);
+            out[q].point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, out[q].point)),
+                                    shift);
+            out[q].shift = shift;
+        }
+    }
+    return count;
+}
+static int demi_plane_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                              dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
+                              demi_plane_near);
+}
+static int demi_cylinder_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
+                              demi_cylinder_near);
+}
+/* Any other wall of elements. */
+static int demi_elements_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                               dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const int kind = w->walls[w->wall_id[d*w->wall_stride + first]].kind;
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
+                              demi_nears[kind]);
+}
+static int demi_segments_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                               dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1, 0);
+}
+static int demi_revolved_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 3, 0);
+}
+static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                              dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2, 0);
+}
+
+/* --- an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
+
+/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or of
+   n.x - h (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse
+   of Q's first two rows about x: by Newton's method, uphill where the curve bends up. n: the
+   direction. */
+static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
+                                 double *n) {
+    int k;
+    for (k = 0;; k++) {
+        const double c = demi_cos(angle), s = demi_sin(angle);
+        const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
+        const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
+        const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
+        const double slope = -s*x + c*y + out*cross/h;
+        const double bend = -(c*x + s*y) +
+            out*((Q[0] + Q[1])/h - 2*h - cross*cross/(h*h*h));
+        const int still = fabs(slope) < 1e-14*size;
+        double step;
+        n[0] = c;
+        n[1] = s;
+        if (k == 60 || (still && bend < 1e-9*size)) return best;
+        /* where it bends up: away from the lowest point, never more than half a radian */
+        step = still ? 0.01 : bend < 0 ? -slope/bend : slope > 0 ? 0.3 : -0.3;
+        angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
+    }
+}
+/* Height of an ellipsoid in direction n, and the arm to its surface point there: Q n/h. */
+static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm) {
+    const dem_vec3 e = dem_quat_unrotate(p->q, n), a = p->axes;
+    const dem_vec3 s = demi_v(a.x*e.x, a.y*e.y, a.z*e.z);
+    const dem_real h = demi_length(s);
+    *arm = demi_scale(dem_quat_rotate(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
+    return h;
+}
+/* Half its width along n, across the axis. */
+static double demi_ellipse_height(const double *Q, const double *n) {
+    return sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
+}
+/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
+   outside, beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis.
+   Newton's method on W, whose far end goes with its height there; from W = 1, where n has been
+   found. Once the centre has come to the wall it is next to a point there: W0 falls on below 0
+   behind the wall, so that what has gone through is seen. */
+static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
+                                  double far, double *n) {
+    const double from_axis = sqrt(x*x + y*y);
+    double W = 1;
+    int k;
+    for (k = 0; k < 20; k++) {
+        const double step = out*(R - far)/demi_ellipse_height(Q, n);
+        double S[6];
+        int e;
+        W += step;
+        if (!(W > 1e-3) && from_axis > 0) {
+            n[0] = x/from_axis;
+            n[1] = y/from_axis;
+            return 1 - out*(R - from_axis)/demi_ellipse_height(Q, n);
+        }
+        for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
+        far = demi_ellipse_far(S, x, y, out, demi_atan2(n[1], n[0]), n);
+        if (fabs(step) < 1e-15) break;
+    }
+    return 1 - W;
+}
+/* --- one ellipsoid, turned into the wall's frame, against one element, centre x: fills in normal
+       and point, answers 1 - W0, 0 or less when apart; farther than `range` (m) off, any number
+       that says so: below 1 - W0 of there --- */
+typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
+                                      dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                      dem_vec3 *point);
+/* 1 - W0 of what is farther off than any range. */
+#define DEMI_FAR_OFF DEM_R(-1e30)
+/* Its lowest point; W0 is the height of its centre over its own. */
+static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
+                                        dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                        dem_vec3 *point) {
+    dem_vec3 arm;
+    dem_real h;
+    (void)wall; (void)element; (void)range;
+    *normal = demi_v(0, 0, -1);
+    h = demi_ellipsoid_arm(p, *normal, &arm);
+    *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
+    return 1 - x.z/h;
+}
+/* Inside, either end of a long body may touch: element 0 and 1. */
+static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
+                                           dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                           dem_vec3 *point) {
+    double Q[6], n[3], far, left;
+    dem_vec3 arm;
+    demi_ellipsoid_matrix(p->q, p->axes, Q);
+    far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
+                             ? demi_atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                             : demi_atan2((double)x.y, (double)x.x), n);
+    left = far - (double)wall->radius;
+    if (!(wall->inside ? left > -(double)range : left < (double)range)) return DEMI_FAR_OFF;
+    left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
+                               (double)wall->radius, far, n);
+    *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
+    if (!wall->inside) *normal = demi_scale(*normal, -1);
+    demi_ellipsoid_arm(p, *normal, &arm);
+    *point = demi_v((dem_real)n[0]*wall->radius, (dem_real)n[1]*wall->radius,
+                    x.z + arm.z*(dem_real)(1 - left));
+    return (dem_real)left;
+}
+static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, const demi_part *p,
+                                        dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                        dem_vec3 *point) {
+    const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
+    const double most = 1 + (double)range/(double)(demi_part_thin(p) + wall->radius);
+    double Q[6], B[6], r[3], n[3], ha, hb;
+    demi_meet m;
+    demi_ellipsoid_matrix(p->q, p->axes, Q);
+    demi_ball_matrix(wall->radius, B);
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
+    m.l = demi_meet_start(Q, B, r);
+    demi_meet_solve(Q, B, r, most*most, DEMI_MEET_NEAR, &m);
+    if (!(m.f < most*most)) return DEMI_FAR_OFF;
+    demi_meet_heights(&m, n, &ha, &hb);
+    *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
+                                (dem_real)((1 - m.l)*m.a[2])));
+    return (dem_real)(1 - sqrt(m.f));
+}
+/* A part as a frame of axes R, a wall's or a wire's, sees it. */
+static demi_part demi_part_local(const dem_real *R, const demi_part *p) {
+    demi_part local = *p;
+    double turn[3][3];
+    int i, e;
+    for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
+    local.q = demi_quat_unit(dem_quat_multiply(demi_quat_of(turn), p->q));
+    return local;
+}
+static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + first]];
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
+    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, demi_range(w, part->radius),
+                             places);
+}
+/* An ellipsoid and a wall, element by element. */
+static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places,
+                                demi_ellipsoid_fn on) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
+    const dem_real range = demi_range(w, part->radius);
+    const int two = wall->inside;
+    demi_touching *out;
+    dem_vec3 x, shift;
+    int i, count = 0;
+    *places = out = w->touching + w->domains[d].touching_first;
+    for (i = first; i < last + two; i++) {
+        demi_touching *c = &out[count];
+        if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
+        shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
+        x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        c->element = i < last ? w->wall_element[base + i] : 1;
+        c->overlap = on(wall, c->element, &local, x, range, &c->normal, &c->point);
+        if (!(c->overlap > 0) && !(c->overlap > -range/demi_part_thin(&local))) continue;
+        c->normal = demi_rotate(R, c->normal);
+        if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
+        c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
+        c->shift = shift;
+        c->share = wall->share;
+        count++;
+    }
+    return count;
+}
+static int demi_plane_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_plane);
+}
+static int demi_cylinder_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                   dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places,
+                                demi_ellipsoid_on_cylinder);
+}
+static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
+}
+
+/* --- how the normal of a ball's contact with a wall turns as the ball moves, all in the wall's
+       frame. It turns by `turn` times the way that the ball goes, but for ways along the normal and
+       along the axis, if there is one; there by `along`. among: the elements where the contact,
+       with this number, was found. --- */
+typedef struct demi_bend {
+    int number;
+    dem_real dist;                 /* m, > 0: from the ball's centre to the surface */
+    dem_vec3 normal, point;        /* unit, towards the wall; m, nearest point of the surface */
+    dem_real turn, along;          /* 1/m; zeros before */
+    dem_vec3 axis;                 /* unit, or 0: none; 0 before */
+} demi_bend;
+typedef void (*demi_bend_fn)(const demi_wall *wall, const int32_t *among, int count, demi_bend *b);
+static void demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int count,
+                               demi_bend *b) {
+    const dem_real out = wall->inside ? b->dist - wall->radius : b->dist + wall->radius;
+    (void)among; (void)count;
+    b->axis.z = 1;
+    b->turn = out < 0 || out > 0 ? -1/out : 0;
+}
+/* About the axis of revolution pieces and rings turn the normal as it points outward; up and down
+   the surface rings do, as corners. */
+static void demi_revolved_bend(const demi_wall *wall, const int32_t *among, int count,
+                               demi_bend *b) {
+    const dem_vec3 x = demi_sub(b->point, demi_scale(b->normal, b->dist));
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    const dem_real out = demi_dot(b->normal, d);
+    (void)among; (void)count;
+    b->axis = demi_unit(demi_v(-b->normal.z*d.x, -b->normal.z*d.y, out));
+    b->along = b->number < wall->ring_count - 1 ? 0 : -1/b->dist;
+    b->turn = l > 0 ? out/l : 0;
+}
+/* Grains, and what else goes round a point. */
+static void demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
+    demi_cylinder_bend(wall, among, count, b);
+    b->axis.z = 0;
+}
+/* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
+static void demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
+                              demi_bend *b) {
+    (void)among; (void)count;
+    b->axis.z = 1;
+    b->turn = b->number < wall->element_count ? 0 : -1/b->dist;
+}
+/* Faces do not turn the normal; an edge does, about itself; a corner, every way. */
+static void demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
+    const int edges = wall->element_count, corners = edges + wall->edge_count, number = b->number;
+    int k, q, found = 0;
+    if (number < edges) return;
+    b->turn = -1/b->dist;
+    for (k = 0; k < count && !found && (number < corners ||
+         number >= corners + wall->vertex_count); k++) {
+        const int e = among[k];
+        dem_vec3 y[3];
+        demi_wall_corners(wall, e, y);
+        for (q = 0; q < 3 && !found; q++)
+            if ((found = edges + wall->edges[3*e + q] == number) != 0)
+                b->axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
+        for (q = wall->cut_start ? wall->cut_start[e] : 0;
+             wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
+            if ((found = wall->cuts[q].number == number) != 0)
+                b->axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
+    }
+}
+/* On a curve the normal n turns by -1/dist across it; along it, with K the curve's second
+   derivative by its length, the nearest point goes 1/(1 + dist n.K) of the way, so that n turns by
+   -n.K/(1 + dist n.K); below 0 where that point is the farthest one. tangent: unit; nK: 1/m. */
+static void demi_curve_bend(demi_bend *b, dem_vec3 tangent, dem_real nK) {
+    const dem_real left = 1 + b->dist*nK;
+    b->turn = -1/b->dist;
+    b->axis = tangent;
+    b->along = -nK/(left < 0 ? DEMI_MIN(left, DEM_R(-0.1)) : DEMI_MAX(left, DEM_R(0.1)));
+}
+/* The rim of radius R about (0, 0) of what is `at` the nearest point; where that is the upright
+   side of a plate, there is nothing to turn about but the rim's own axis. */
+static void demi_rim_bend(demi_bend *b, dem_real R, dem_vec3 at, int upright) {
+    const dem_real nK = -(b->normal.x*at.x + b->normal.y*at.y)/(R*R);
+    demi_curve_bend(b, demi_v(-at.y/R, at.x/R, 0), nK);
+    if (upright) b->turn = 0;
+}
+/* The edge where the surfaces X^2 + (Z - h)^2 = q^2 and Y^2 + (Z + h)^2 = q^2 of two wires meet: of
+   their gradients g and f its tangent t is the cross product, and along it
+       K.g = t_y^2 - 1,   K.f = t_x^2 - 1 */
+static void demi_wires_bend(demi_bend *b, const dem_sieve_desc *s) {
+    const dem_real pitch = s->aperture + s->bar, h = s->lift/2, q2 = s->bar*s->bar/4;
+    const dem_vec3 p = b->point;
+    const dem_real X = p.x - ((dem_real)floor((double)(p.x/pitch)) + DEM_R(0.5))*pitch;
+    const dem_real Y = p.y - ((dem_real)floor((double)(p.y/pitch)) + DEM_R(0.5))*pitch;
+    const dem_vec3 g = demi_v(X, 0, p.z - h), f = demi_v(0, Y, p.z + h);
+    const dem_real gf = demi_dot(g, f), det = q2*q2 - gf*gf;
+    const dem_real ng = demi_dot(b->normal, g), nf = demi_dot(b->normal, f);
+    b->turn = -1/b->dist;
+    if (det > DEM_R(1e-6)*q2*q2) {         /* det n = (ng q2 - nf gf) g + (nf q2 - ng gf) f */
+        const dem_vec3 t = demi_unit(demi_cross(g, f));
+        const dem_real Kg = t.y*t.y - 1, Kf = t.x*t.x - 1;
+        demi_curve_bend(b, t, ((ng*q2 - nf*gf)*Kg + (nf*q2 - ng*gf)*Kf)/det);
+    }
+}
+/* Rows turn it about themselves and not at all where they are flat, ends of wires and corners of
+   plates every way, upright corners about themselves. */
+static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
+    const dem_sieve_desc *s = &wall->sieve;
+    const dem_vec3 n = b->normal, p = b->point;
+    const dem_real R = s->radius, hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
+    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int upright = !wires && s->thickness > 0 && DEMI_ABS(n.z) < hair;
+    const int corner = b->number == DEMI_SIEVE_RIM + 1;      /* of a strip, or on the rim between */
+    const int cross = b->number < DEMI_SIEVE_FACE && (b->number & DEMI_SIEVE_CROSS);
+    const int ring = b->number == DEMI_SIEVE_RIM ||
+        (corner && DEMI_ABS(n.x*p.y - n.y*p.x) < R*DEM_R(1e-5));
+    const dem_real edge = wires && !cross ? s->bar/2 : DEM_R(0);
+    const dem_vec3 foot = demi_add(p, demi_scale(n, edge));
+    const int end = R > 0 && !(foot.x*foot.x + foot.y*foot.y < R*R*DEM_R(0.999999));
+    (void)among; (void)count;
+    if (b->number == DEMI_SIEVE_FACE) return;
+    if (!ring && s->kind == DEM_SIEVE_ROUND) {         /* its hole's middle lies against n */
+        const dem_real l = DEMI_SQRT(n.x*n.x + n.y*n.y), a = s->aperture/2;
+        if (l > 0) demi_rim_bend(b, a, demi_v(n.x*a/l, n.y*a/l, 0), upright);
+    } else if (wires && cross) demi_wires_bend(b, s);
+    else if (ring || (end && !wires && !corner && !cross)) demi_rim_bend(b, R, foot, upright);
+    else {
+        const int row = !end && !corner && !cross;
+        if (row && (upright || (b->number & DEMI_SIEVE_ABOVE))) return;
+        b->turn = -1/(b->dist + edge);
+        if (row) b->axis = b->number & DEMI_SIEVE_SET ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
+        else if (upright) b->axis = demi_v(0, 0, 1);
+    }
+}
+#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
+static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
+/* By the table of kinds. point: of the wall's surface, for the body's image that the wall meets. */
+static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
+                           dem_vec3 point, demi_kept *c) {
+    const dem_real *R = wall->pose.rotation;
+    demi_bend b;
+    if (!demi_bends[wall->kind]) return;
+    memset(&b, 0, sizeof b);
+    b.number = c->element;
+    b.dist = dist;
+    b.normal = demi_unrotate(R, c->normal);
+    b.point = demi_unrotate(R, demi_sub(point, wall->pose.position));
+    demi_bends[wall->kind](wall, among, count, &b);
+    c->bend = b.turn;
+    c->along = b.along;
+    c->axis = demi_rotate(R, b.axis);
+}

@@ -1,0 +1,882 @@
+/* ---------------------------------------------------------------------------------------------
+   >>respond
+   The loops that bring near pairs, touch and law together. Grain-grain, a tile of pairs at a
+   time: what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
+   numbers that lie together is cheaper than three gathers); then stages run over the rows, one
+   after the other: touch, motion, normal law, friction, rolling, answer (vectorised: groups of a
+   constant length, which compilers turn into vectors at -O2 too); pushes are added to both bodies.
+   A scene runs the stages that it calls for, so that any combination of laws costs the sum of its
+   parts; the commonest ones have a stage for all of it, which saves the rows in between. Pairs that
+   lead out of a domain leave that force in a slot of its own; the other domain fetches it after all
+   are done, in the order of the list. So every body's sum has one order whatever the number of
+   threads.
+   --------------------------------------------------------------------------------------------- */
+/* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. */
+/* What is copied one by one. For gcc with x and y side by side, which one instruction moves (5 % of
+   a step in single precision, 2 in double); clang takes such rows apart badly. */
+#if defined(__GNUC__) && !defined(__clang__)
+typedef struct demi_rows { dem_real xy[DEMI_ROOM][2], z[DEMI_ROOM]; } demi_rows;
+#define DEMI_XY(rows, e, q) (rows)->xy[q][e]
+#else
+typedef struct demi_rows { dem_real xy[2][DEMI_ROOM], z[DEMI_ROOM]; } demi_rows;
+#define DEMI_XY(rows, e, q) (rows)->xy[e][q]
+#endif
+typedef struct demi_tile {
+    /* fetched */
+    demi_rows gap;                 /* m, from a to b */
+    demi_rows rate, gone;          /* m/s, difference of velocities: now, over the last step */
+    demi_rows late;                /* m/s, difference of what predictions fell short by: ledger */
+    demi_rows around, turned;      /* rad/s, sum of spins: the same */
+    demi_rows apart, parted;       /* rad/s, difference of spins: the same */
+    dem_real radius[2][DEMI_ROOM];
+    dem_real memory[DEMI_MEMORY + 1][DEMI_ROOM];           /* the last: where sliding is not kept */
+    dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROOM];
+    /* touch and motion */
+    dem_real length[DEMI_ROOM], over_d[DEMI_ROOM], overlap[DEMI_ROOM], deep[DEMI_ROOM];
+    dem_real touch[DEMI_ROOM];      /* 1 where the two touch, or are within a law's range; else 0 */
+    dem_real normal[3][DEMI_ROOM], turn[3][DEMI_ROOM];      /* unit, 1/s */
+    dem_real slip[3][DEMI_ROOM], slip_step[3][DEMI_ROOM];   /* m/s */
+    dem_real lean[DEMI_ROOM];       /* m, from the middle to the contact, towards b */
+    dem_real closing[DEMI_ROOM], twist[DEMI_ROOM];
+    /* laws: what each leaves for the next (see dem_contact_force), what does not touch included */
+    dem_real repulsion[DEMI_ROOM], load[DEMI_ROOM], slope[2][DEMI_ROOM], kt[2][DEMI_ROOM];
+    dem_real ct[DEMI_ROOM], tangent[3][DEMI_ROOM], moment[3][DEMI_ROOM];
+    dem_real part[7][DEMI_ROOM];                           /* energies */
+    /* answer */
+    dem_real force[3][DEMI_ROOM], torque[2][3][DEMI_ROOM];  /* torque on a, on b */
+    /* the last, so that rows begin on cache lines (3 % of a step) */
+    int row;                       /* of species_coef: all of coef holds it; -1: no row does */
+    dem_real gains[DEMI_ROOM][2*DEM_BODY_REALS];   /* 1/s, of the user's numbers */
+} demi_tile;
+/* Where the pairs of a tile stand in the near list. */
+typedef struct demi_span {
+    const int32_t *a, *b;
+    const unsigned char *image;
+    dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
+    const int32_t *row;            /* of the table of species, or null: */
+    const dem_real *coef;          /* columns likewise; neither where all are alike */
+    size_t stride;
+    int count;
+} demi_span;
+/* Where `count` near pairs of domain d, from entry p on, have their numbers. */
+static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
+    const demi_near *near = &w->near;
+    const size_t stride = (size_t)near->stride, at = (size_t)d*stride + (size_t)p;
+    demi_span s;
+    s.a = near->a + at;
+    s.b = near->b + at;
+    s.image = near->image + at;
+    s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
+    s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
+    s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
+    s.stride = stride;
+    s.count = count;
+    return s;
+}
+
+/* Coefficients of pair q. */
+static void demi_span_coefs(const dem_world *w, const demi_span *s, int q, dem_real *coef) {
+    const int row = s->row ? s->row[q] : 0;
+    int e;
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+        coef[e] = s->coef ? s->coef[(size_t)e*s->stride + (size_t)q]
+            : w->species_coef[DEMI_PAIR_COLUMNS*row + e];
+}
+
+DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROOM], int q) {
+    return demi_v(rows[0][q], rows[1][q], rows[2][q]);
+}
+DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROOM], int q, dem_vec3 v) {
+    rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
+}
+/* count: whole groups */
+static void demi_row_copy(dem_real *DEMI_RESTRICT to, const dem_real *DEMI_RESTRICT from,
+                          int count) {
+    int q, l;
+    for (q = 0; q < count; q += DEMI_LANES)
+        for (l = 0; l < DEMI_LANES; l++) to[q + l] = from[q + l];
+}
+/* Rows of a tile are filled from bodies here and below: a - b, a + b, a - b + shift. */
+DEM_INLINE void demi_rows_minus(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
+                                const dem_real *b) {
+    const dem_real x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    DEMI_XY(rows, 0, q) = x;
+    DEMI_XY(rows, 1, q) = y;
+    rows->z[q] = z;
+}
+DEM_INLINE void demi_rows_plus(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
+                               const dem_real *b) {
+    const dem_real x = a[0] + b[0], y = a[1] + b[1], z = a[2] + b[2];
+    DEMI_XY(rows, 0, q) = x;
+    DEMI_XY(rows, 1, q) = y;
+    rows->z[q] = z;
+}
+DEM_INLINE void demi_rows_shifted(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
+                                  const dem_real *b, const dem_real *shift) {
+    const dem_real x = a[0] - b[0] + shift[0], y = a[1] - b[1] + shift[1];
+    const dem_real z = a[2] - b[2] + shift[2];
+    DEMI_XY(rows, 0, q) = x;
+    DEMI_XY(rows, 1, q) = y;
+    rows->z[q] = z;
+}
+DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
+    return demi_v(DEMI_XY(rows, 0, q), DEMI_XY(rows, 1, q), rows->z[q]);
+}
+
+/* A law sees predicted velocities, and a ledger wants those of the path (demi_late_note). By how
+   much faster than predicted do two close, as a share of how fast? As the last prediction had it,
+   for the forces of this step are not known yet. */
+DEM_INLINE dem_real demi_late_share(dem_vec3 late, dem_vec3 normal, dem_real closing) {
+    return demi_dot(late, normal)/(closing > 0 || closing < 0 ? closing : 1);
+}
+
+/* What is the same for all pairs of a run: a stage takes a copy, so that compilers see that nothing
+   changes it. */
+typedef struct demi_same {
+    dem_real dt, radius, inv_radius;
+    dem_real range, range_radii;   /* m: of a law that is asked before touch; else 0 */
+    int tension, friction_load, slider;
+    int at_rolling, at_normal;     /* where their memory begins */
+    int at_sliding;                /* the row of memory that says whether friction slides */
+} demi_same;
+/* What a scene calls for. */
+typedef struct demi_run demi_run;
+typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full);
+enum { DEMI_STAGES = 6 };
+struct demi_run {
+    const dem_world *w;
+    const demi_span *span;         /* the pairs under work; null: kept contacts are */
+    int alike, ledger, keep;       /* are the two of a pair alike? keep: reals of memory */
+    int turning, parting;          /* are spins, differences of spins wanted? */
+    int following;                 /* is the motion over the last step wanted? */
+    int ranged;                    /* is the law asked before touch? */
+    demi_same same;
+    demi_stage stage[DEMI_STAGES]; /* in this order; null: the end */
+};
+
+/* Copies what the stages will see of the bodies into the rows. */
+DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t, int uniform,
+                           int turning, int parting, int following) {
+    const dem_world *w = r->w;
+    const dem_real *DEMI_RESTRICT x = w->bodies.pos, *DEMI_RESTRICT shift = w->image_shift;
+    const dem_real *DEMI_RESTRICT u = w->bodies.vel, *DEMI_RESTRICT s = w->bodies.spin;
+    const dem_real *DEMI_RESTRICT uh = w->bodies.half_vel, *DEMI_RESTRICT sh = w->bodies.half_spin;
+    const int32_t *DEMI_RESTRICT la = r->span->a, *DEMI_RESTRICT lb = r->span->b;
+    const unsigned char *DEMI_RESTRICT image = r->span->image;
+    int n;
+    for (n = 0; n < count; n++) {
+        size_t q = (size_t)n;
+        const dem_real *a, *b, *c;
+        uint32_t i, j;
+        DEMI_ONE_BY_ONE(q);
+        i = (uint32_t)la[q]; j = (uint32_t)lb[q];
+        if (n + DEMI_TILE/2 < count) {          /* neighbours may lie far apart */
+            const uint32_t next = (uint32_t)lb[q + DEMI_TILE/2];
+            DEMI_FETCH(DEMI_AT(u, next));
+            if (turning) DEMI_FETCH(DEMI_AT(s, next));
+            if (following) { DEMI_FETCH(DEMI_AT(uh, next)); DEMI_FETCH(DEMI_AT(sh, next)); }
+        }
+        a = DEMI_AT(x, i); b = DEMI_AT(x, j); c = shift + image[q];
+        demi_rows_shifted(&t->gap, q, b, a, c);
+        if (!uniform) { t->radius[0][q] = a[3]; t->radius[1][q] = b[3]; }
+        demi_rows_minus(&t->rate, q, DEMI_AT(u, i), DEMI_AT(u, j));
+        if (turning) demi_rows_plus(&t->around, q, DEMI_AT(s, i), DEMI_AT(s, j));
+        if (parting) demi_rows_minus(&t->apart, q, DEMI_AT(s, i), DEMI_AT(s, j));
+        if (!following) continue;
+        demi_rows_minus(&t->gone, q, DEMI_AT(uh, i), DEMI_AT(uh, j));
+        demi_rows_plus(&t->turned, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
+        if (parting) demi_rows_minus(&t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
+    }
+}
+/* What the scene asks for is known before the tile: a copy of the loop for each case, without a
+   question inside. */
+static void demi_tile_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t) {
+    /* where differences of spins are wanted, radii cost little, even those of alike bodies */
+    if (r->parting && r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
+    else if (r->parting) demi_fetch(r, count, t, 0, 1, 1, 0);
+    else if (r->following) demi_fetch(r, count, t, 1, 1, 0, 1);
+    else demi_fetch(r, count, t, r->alike, r->turning, 0, 0);
+}
+
+/* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
+   means of the step, so the normal they are taken across is that of its middle. Rigid motion of
+   both gives zero. */
+DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone, dem_vec3 around) {
+    const dem_vec3 t = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
+    const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
+    return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
+}
+
+/* --- stages: each runs over all pairs of a tile before the next begins. Processors then have
+   several pairs under way at once, where one long chain of roots and quotients would keep them
+   waiting. `full` is a whole number of groups; pairs to fill up the last one are nobody's. --- */
+#define DEMI_ROWS(full) { int g, l; \
+    for (g = 0; g < (full); g += DEMI_LANES) { \
+        DEMI_VECTOR \
+        for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
+#define DEMI_ROWS_END }}}
+
+/* m: gap up to which a law is asked about pair q. */
+DEM_INLINE dem_real demi_tile_range(const demi_tile *t, const demi_same *s, int q, int uniform) {
+    return s->range + s->range_radii*(uniform ? 2*s->radius : t->radius[0][q] + t->radius[1][q]);
+}
+/* touch: distance, normal, overlap; ranged: is the law asked before the two touch? */
+DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
+                               int ranged) {
+    const dem_vec3 gap = demi_rows_at(&t->gap, q);
+    const dem_real d = DEMI_SQRT(demi_dot(gap, gap)), over_d = 1/(d + DEMI_TINY);
+    dem_real overlap, least = 0;
+    t->length[q] = d;
+    t->over_d[q] = over_d;
+    demi_row_put(t->normal, q, demi_scale(gap, over_d));
+    if (uniform) {
+        overlap = 2*s->radius - d;
+        t->deep[q] = overlap*s->inv_radius;
+    } else {
+        const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
+        overlap = ra + rb - d;
+        t->deep[q] = overlap*(1/(ra < rb ? ra : rb));
+        t->lean[q] = (ra - rb)/(ra + rb)*d/2;   /* the contact divides d as the radii do */
+    }
+    if (ranged) least = -demi_tile_range(t, s, q, uniform);
+    t->touch[q] = overlap > least ? DEM_R(1) : DEM_R(0);
+    t->overlap[q] = overlap > least ? overlap : 0;
+}
+/* motion: how the two move at the contact, now and over the step just taken */
+DEM_INLINE void demi_motion_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
+                                int turning, int following) {
+    const dem_vec3 n = demi_row(t->normal, q), rate = demi_rows_at(&t->rate, q);
+    const dem_real d = t->length[q], closing = demi_dot(rate, n);
+    t->closing[q] = closing;
+    if (turning) {          /* la wa + lb wb, from sum and difference */
+        dem_vec3 arm = demi_scale(demi_rows_at(&t->around, q), d/2);
+        if (!uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->apart, q), t->lean[q]));
+        demi_row_put(t->slip, q, demi_add(demi_sub(rate, demi_scale(n, closing)),
+                                          demi_cross(arm, n)));
+    }
+    if (following) {
+        const dem_vec3 gone = demi_rows_at(&t->gone, q), turned = demi_rows_at(&t->turned, q);
+        const dem_vec3 turn = demi_scale(demi_sub(gone, demi_scale(n, demi_dot(gone, n))),
+                                         -t->over_d[q]);
+        const dem_vec3 mid = demi_sub(n, demi_scale(turn, s->dt/2));
+        dem_vec3 arm = demi_scale(turned, d/2);
+        if (!uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->parted, q), t->lean[q]));
+        demi_row_put(t->turn, q, turn);
+        demi_row_put(t->slip_step, q, demi_slip_step(n, mid, gone, arm));
+        t->twist[q] = demi_dot(turned, n)/2;
+    }
+}
+#define DEMI_MOTION_STAGE(NAME, UNIFORM, TURNING, FOLLOWING, RANGED) \
+    DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                              int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) demi_touch_one(t, &s, q, UNIFORM, RANGED); DEMI_ROWS_END \
+        DEMI_ROWS(full) demi_motion_one(t, &s, q, UNIFORM, TURNING, FOLLOWING); DEMI_ROWS_END \
+    }
+DEMI_MOTION_STAGE(alike_bare, 1, 0, 0, 0)
+DEMI_MOTION_STAGE(mixed_bare, 0, 0, 0, 0)
+DEMI_MOTION_STAGE(alike_turning, 1, 1, 0, 0)
+DEMI_MOTION_STAGE(mixed_turning, 0, 1, 0, 0)
+DEMI_MOTION_STAGE(alike_following, 1, 1, 1, 0)
+DEMI_MOTION_STAGE(mixed_following, 0, 1, 1, 0)
+DEMI_MOTION_STAGE(mixed_ranged, 0, 1, 1, 1)
+
+/* Pair q as a law sees it; compilers leave out what the law does not look at. */
+DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                  dem_contact *c) {
+    c->normal = demi_row(t->normal, q);
+    c->overlap = t->overlap[q];
+    c->range = 0;
+    c->closing_speed = t->closing[q];
+    c->slip = demi_row(t->slip, q);
+    c->spin = demi_rows_at(&t->apart, q);
+    c->slip_step = demi_row(t->slip_step, q);
+    c->spin_step = demi_rows_at(&t->parted, q);
+    c->normal_rate = demi_row(t->turn, q);
+    c->twist = t->twist[q];
+    c->dt = s->dt;
+    c->kn = t->coef[DEMI_KN][q]; c->cn = t->coef[DEMI_CN][q];
+    c->kt = t->coef[DEMI_KT][q]; c->ct = t->coef[DEMI_CT][q];
+    c->kun = t->coef[DEMI_K_UN][q]; c->kad = t->coef[DEMI_K_AD][q];
+    c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
+    c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
+    c->sliding = t->memory[s->at_sliding][q];
+    c->r_eff = t->coef[DEMI_R_EFF][q];
+    c->m_eff = t->coef[DEMI_M_EFF][q];
+    c->tension = s->tension;
+    c->friction_load = s->friction_load;
+    c->slider = s->slider;
+    c->wall = 0;
+}
+/* A law's memory of pair q: `count` reals from `at` on. What does not touch forgets. */
+#define DEMI_RECALL(e) m[e] = e < count ? t->memory[at + e][q] : 0
+#define DEMI_KEEP(e) if (e < count) t->memory[at + e][q] = m[e]*t->touch[q]
+DEM_INLINE void demi_recall(demi_tile *DEMI_RESTRICT t, int q, int at, int count, dem_real *m) {
+    int e;
+    DEMI_EIGHT(DEMI_RECALL);
+    for (e = 8; e < count; e++) m[e] = t->memory[at + e][q];
+}
+DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
+                          const dem_real *m) {
+    int e;
+    DEMI_EIGHT(DEMI_KEEP);
+    for (e = 8; e < count; e++) t->memory[at + e][q] = m[e]*t->touch[q];
+}
+#undef DEMI_RECALL
+#undef DEMI_KEEP
+/* What a law says of energy, for the ledger. */
+DEM_INLINE void demi_normal_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
+    t->part[0][q] = f->energy.dashpot*t->touch[q];
+    t->part[6][q] = f->energy.sag*t->touch[q];
+    t->part[1][q] = f->energy.elastic*t->touch[q];
+}
+DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
+    t->part[2][q] = f->energy.shear_work*t->touch[q];
+    t->part[3][q] = f->energy.slide*t->touch[q];
+    t->part[4][q] = f->energy.shear_stored*t->touch[q];
+}
+/* What a law has answered, for the next; `all`: 1: also what only some ask for, 2: and energies. */
+DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                const dem_contact_force *f, int all) {
+    (void)s;
+    t->repulsion[q] = f->normal;
+    t->load[q] = f->load;
+    t->kt[0][q] = f->kt;
+    t->ct[q] = f->ct;
+    if (!all) return;
+    t->kt[1][q] = f->kt_step;
+    t->slope[0][q] = f->slope;
+    t->slope[1][q] = f->slope_step;
+    if (all > 1) demi_normal_energy(t, q, f);
+}
+/* What the normal law has told, for the laws that come after it. */
+DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_force *f) {
+    demi_force_clear(f);
+    f->load = t->load[q];
+    f->kt = t->kt[0][q]; f->kt_step = t->kt[1][q];
+    f->slope = t->slope[0][q]; f->slope_step = t->slope[1][q];
+    f->ct = t->ct[q];
+}
+DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                 const dem_contact_force *f, int all) {
+    demi_row_put(t->tangent, q, f->tangent);
+    if (all < 2) return;
+    t->memory[s->at_sliding][q] = f->sliding*t->touch[q];
+    demi_tangent_energy(t, q, f);
+}
+DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                 const dem_contact_force *f, int all) {
+    (void)all; (void)s;
+    demi_row_put(t->moment, q, f->moment);
+    t->part[5][q] = f->energy.roll*t->touch[q];
+}
+/* A stage of one law, whose memory begins at AT. Normal and friction laws have one for what is
+   common (ALL 0) and one for all choices (2); normal laws one for what is common, with slopes (1),
+   too. (A normal law overwrites all that it gets.) */
+#define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
+    DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) \
+            dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
+            demi_tile_contact(t, &s, q, &c); \
+            if ((ALL) < 2) demi_contact_usual(&c); \
+            demi_normal_get(t, q, &f); \
+            demi_recall(t, q, AT, MEMORY, m); \
+            dem_law_##LAW(&c, m, &f); \
+            demi_keep(t, q, AT, MEMORY, m); \
+            PUT(t, &s, q, &f, ALL); \
+        DEMI_ROWS_END \
+    }
+#define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_normal, MEMORY, 0, demi_normal_put) \
+    DEMI_LAW_STAGE(demi_stage_##LAW##_precise, LAW, s.at_normal, MEMORY, 1, demi_normal_put) \
+    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, s.at_normal, MEMORY, 2, demi_normal_put)
+#define DEMI_TANGENT_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, 0, MEMORY, 0, demi_tangent_put) \
+    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 2, demi_tangent_put)
+#define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 2, demi_rolling_put)
+DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
+DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
+DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGES)
+
+/* answer: force and torques. What does not touch answers zero. */
+DEM_INLINE void demi_answer_one(demi_tile *DEMI_RESTRICT t, int q, dem_real repulsion,
+                                dem_vec3 tangent, dem_vec3 moment, int uniform, int turning,
+                                int parting) {
+    const dem_real touch = t->touch[q];
+    const dem_vec3 n = demi_row(t->normal, q);
+    tangent = demi_scale(tangent, touch);
+    demi_row_put(t->force, q, demi_sub(tangent, demi_scale(n, repulsion*touch)));
+    if (turning) {
+        const dem_vec3 across = demi_cross(n, tangent);
+        const dem_real half = t->length[q]/2, lean = uniform ? 0 : t->lean[q];
+        if (parting) {
+            moment = demi_scale(moment, touch);
+            demi_row_put(t->torque[0], q, demi_add(demi_scale(across, half + lean), moment));
+            demi_row_put(t->torque[1], q, demi_sub(demi_scale(across, half - lean), moment));
+        } else demi_row_put(t->torque[0], q, demi_scale(across, half));  /* the same on both */
+    }
+}
+#define DEMI_ANSWER_STAGE(NAME, UNIFORM, TURNING, PARTING, MOMENT) \
+    DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                              int full) { \
+        (void)r; \
+        DEMI_ROWS(full) \
+            demi_answer_one(t, q, t->repulsion[q], \
+                            TURNING ? demi_row(t->tangent, q) : demi_v(0, 0, 0), \
+                            MOMENT ? demi_row(t->moment, q) : demi_v(0, 0, 0), \
+                            UNIFORM, TURNING, PARTING); \
+        DEMI_ROWS_END \
+    }
+DEMI_ANSWER_STAGE(answer_bare, 1, 0, 0, 0)
+DEMI_ANSWER_STAGE(answer_alike, 1, 1, 0, 0)
+DEMI_ANSWER_STAGE(answer_mixed, 0, 1, 1, 0)
+DEMI_ANSWER_STAGE(answer_alike_rolling, 1, 1, 1, 1)
+DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
+
+/* All laws and the answer at once, for the commonest scenes. Memory: friction's FRICTION reals,
+   then rolling's. */
+#define DEMI_WHOLE_STAGE(NAME, NORMAL, TANGENT, FRICTION, ROLLING, MEMORY, UNIFORM, TURNING, \
+                         ROLLS, LEDGER) \
+    DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                              int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) \
+            dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
+            demi_tile_contact(t, &s, q, &c); \
+            demi_contact_usual(&c); \
+            demi_force_clear(&f); \
+            NORMAL(&c, 0, &f); \
+            demi_recall(t, q, 0, MEMORY, m); \
+            TANGENT(&c, m, &f); \
+            ROLLING(&c, m + (FRICTION), &f); \
+            demi_keep(t, q, 0, MEMORY, m); \
+            demi_answer_one(t, q, f.normal, f.tangent, f.moment, UNIFORM, TURNING, \
+                            (TURNING && !(UNIFORM)) || (ROLLS)); \
+            if (LEDGER) { demi_normal_energy(t, q, &f); demi_tangent_energy(t, q, &f); } \
+            if ((LEDGER) && (ROLLS)) t->part[5][q] = f.energy.roll*t->touch[q]; \
+        DEMI_ROWS_END \
+    }
+#ifndef DEM_NO_SPECIALIZE
+#define DEMI_NO_LAW(c, m, f) ((void)0)
+DEMI_WHOLE_STAGE(hertz_alone, dem_law_hertz, DEMI_NO_LAW, 0, DEMI_NO_LAW, 0, 1, 0, 0, 0)
+#define DEMI_WHOLE_SPRING(NAME, UNIFORM, LEDGER) \
+    DEMI_WHOLE_STAGE(NAME, dem_law_hertz, dem_law_spring, 3, DEMI_NO_LAW, 3, UNIFORM, 1, 0, \
+                     LEDGER)
+#define DEMI_WHOLE_ROLLING(NAME, UNIFORM, LEDGER) \
+    DEMI_WHOLE_STAGE(NAME, dem_law_hertz, dem_law_spring, 3, dem_law_roll_epsd, 6, UNIFORM, 1, 1, \
+                     LEDGER)
+DEMI_WHOLE_SPRING(spring_alike, 1, 0)
+DEMI_WHOLE_SPRING(spring_mixed, 0, 0)
+DEMI_WHOLE_SPRING(spring_alike_ledger, 1, 1)
+DEMI_WHOLE_SPRING(spring_mixed_ledger, 0, 1)
+DEMI_WHOLE_ROLLING(rolling_alike, 1, 0)
+DEMI_WHOLE_ROLLING(rolling_mixed, 0, 0)
+DEMI_WHOLE_ROLLING(rolling_alike_ledger, 1, 1)
+DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
+#endif
+
+/* Who the two of pair q are, for a law that wants to know. */
+static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
+                                     dem_real *rates, dem_contact *c) {
+    const dem_world *w = r->w;
+    const int a = r->span->a[q], b = r->span->b[q];
+    const demi_periods periods = demi_periods_of(w);
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    c->who.a = dem_body_id_get(w, a);
+    c->who.b = dem_body_id_get(w, b);
+    c->who.radius_a = x[3];
+    c->who.radius_b = y[3];
+    c->who.mass_a = w->bodies.mass[a];
+    c->who.mass_b = w->bodies.mass[b];
+    c->who.point = demi_place_of(&periods, demi_add(demi_at(x),
+        demi_scale(demi_rows_at(&t->gap, q), x[3]/(x[3] + y[3]))));
+    c->who.time = w->clock.time;
+    demi_who_reals(w, a, b, 0, rates, &c->who);
+}
+/* Pair q as the user's law sees it. */
+DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
+                              int q, int who, dem_contact *c) {
+    const dem_world *w = r->w;
+    demi_tile_contact(t, same, q, c);
+    c->range = r->ranged ? demi_tile_range(t, same, q, 0) : 0;
+    c->material_a = w->bodies.material[r->span->a[q]];
+    c->material_b = w->bodies.material[r->span->b[q]];
+    c->user = w->desc.law_user;
+    if (who) demi_tile_who(t, r, q, t->gains[q], c);
+}
+/* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it, but
+   for one that asks who touches. */
+DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
+                             int q, int who, int keep, int alike, int ledger, dem_law_fn law,
+                             dem_contact *c) {
+    dem_contact_force f;
+    dem_real m[DEMI_MEMORY];
+    demi_tile_own(t, r, same, q, who, c);
+    demi_force_clear(&f);
+    demi_recall(t, q, 0, keep, m);
+    law(c, m, &f);
+    demi_keep(t, q, 0, keep, m);
+    t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
+    demi_answer_one(t, q, f.normal, f.tangent, f.moment, alike, 1, 1);
+    if (!ledger) return;                        /* what the law says of it */
+    demi_normal_energy(t, q, &f);
+    demi_tangent_energy(t, q, &f);
+    t->part[5][q] = f.energy.roll*t->touch[q];
+}
+/* A law of the user's own is asked pair by pair, and only about those that touch. */
+static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
+    const demi_same same = r->same;
+    dem_contact c;
+    int q, e;
+    (void)full;
+    demi_who_clear(&c.who);
+    for (q = 0; q < r->span->count; q++) {
+        if (t->touch[q] > 0) {
+            demi_own_one(t, r, &same, q, r->w->desc.law_who, r->w->desc.law_memory, r->alike,
+                         r->ledger, r->w->desc.law, &c);
+            continue;
+        }
+        demi_row_put(t->force, q, demi_v(0, 0, 0));
+        demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
+        demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
+        for (e = 0; e < r->keep; e++) t->memory[e][q] = 0;
+        for (e = 0; e < 7; e++) t->part[e][q] = 0;
+    }
+}
+/* The same for the law that DEM_LAW names, in loops that compilers may turn into vector code: one
+   for each number of reals that is common, and one for all others. */
+#ifdef DEM_LAW
+#define DEMI_OWN_ROWS(KEEP, ALIKE, LEDGER) \
+    DEMI_ROWS(full) \
+        dem_contact c; \
+        demi_who_clear(&c.who); \
+        demi_own_one(t, r, &same, q, 0, KEEP, ALIKE, LEDGER, DEM_LAW, &c); \
+    DEMI_ROWS_END
+DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const demi_run *r,
+                                               int full) {
+    const demi_same same = r->same;
+    const int own = r->w->desc.law_memory;
+    if (!r->ledger && r->alike && own == 0) { DEMI_OWN_ROWS(0, 1, 0) }
+    else if (!r->ledger && r->alike && own == 3) { DEMI_OWN_ROWS(3, 1, 0) }
+    else if (!r->ledger && r->alike && own == 4) { DEMI_OWN_ROWS(4, 1, 0) }
+    else { DEMI_OWN_ROWS(own, r->alike, r->ledger) }
+}
+#endif
+
+/* --- which stages a scene runs --- */
+typedef struct demi_stage_row { demi_stage common, all, precise; } demi_stage_row;
+#define DEMI_STAGE_ROW_NORMAL(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW##_all, demi_stage_##LAW##_precise},
+#define DEMI_STAGE_ROW_TANGENT(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW##_all, 0},
+#define DEMI_STAGE_ROW_ROLLING(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW, 0},
+/* in the order of the rows in >>laws */
+static const demi_stage_row demi_normal_stages[] = {DEMI_NORMAL_LAWS(DEMI_STAGE_ROW_NORMAL)
+    {0, 0, 0}};
+static const demi_stage_row demi_tangent_stages[] = {{0, 0, 0}, {0, 0, 0},
+    DEMI_TANGENT_LAWS(DEMI_STAGE_ROW_TANGENT) {0, 0, 0}};
+static const demi_stage_row demi_rolling_stages[] = {{0, 0, 0}, {0, 0, 0},
+    DEMI_ROLLING_LAWS(DEMI_STAGE_ROW_ROLLING) {0, 0, 0}};
+
+/* The stage that does all for the laws in force, or null. */
+static demi_stage demi_whole_stage(const dem_world *w, int alike) {
+    (void)alike;
+#ifdef DEM_LAW
+    if (w->desc.law == DEM_LAW && !w->desc.law_who) return demi_stage_own_inlined;
+#endif
+    if (w->desc.law) return demi_stage_own;
+#ifndef DEM_NO_SPECIALIZE
+    if (w->composed || !demi_laws_usual(w) || w->normal != DEM_NORMAL_HERTZ) return 0;
+    if (w->effects.tangent == DEM_TANGENT_NONE && w->effects.rolling == DEM_ROLLING_NONE &&
+        !w->desc.ledger)
+        return demi_stage_hertz_alone;
+    if (w->effects.tangent == DEM_TANGENT_SPRING && w->effects.rolling == DEM_ROLLING_NONE)
+        return w->desc.ledger
+            ? alike ? demi_stage_spring_alike_ledger : demi_stage_spring_mixed_ledger
+            : alike ? demi_stage_spring_alike : demi_stage_spring_mixed;
+    if (w->effects.tangent == DEM_TANGENT_SPRING && w->effects.rolling == DEM_ROLLING_EPSD)
+        return w->desc.ledger
+            ? alike ? demi_stage_rolling_alike_ledger : demi_stage_rolling_mixed_ledger
+            : alike ? demi_stage_rolling_alike : demi_stage_rolling_mixed;
+#endif
+    return 0;
+}
+/* The stages of the laws in force, from stage k on; answers where they end. */
+static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
+    const demi_stage_row *normal = &demi_normal_stages[w->normal];
+    const demi_stage_row *tangent = &demi_tangent_stages[w->effects.tangent];
+    const int all = w->desc.ledger || !demi_laws_usual(w);
+    r->stage[k++] = all ? normal->all : demi_laws_precise(w) ? normal->precise : normal->common;
+    if (w->laws.tangent->law) r->stage[k++] = all ? tangent->all : tangent->common;
+    if (w->laws.rolling->law) r->stage[k++] = demi_rolling_stages[w->effects.rolling].common;
+    return k;
+}
+/* What the laws in force ask of a run, but for its stages. dt 0: looking only. */
+static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
+    const demi_laws *laws = &w->laws;
+    const int own = w->desc.law != 0, rolls = laws->rolling->law != 0;
+    demi_run r;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.ledger = w->desc.ledger; r.keep = w->memory_stride;
+    r.turning = own || rolls || laws->tangent->law;
+    r.parting = own || rolls;
+    r.following = own || laws->tangent->vectors || laws->rolling->vectors;
+    r.ranged = w->margin.reach > 0;
+    r.same.range = w->desc.law_range;
+    r.same.range_radii = w->desc.law_range_radii;
+    r.same.at_rolling = laws->at_rolling; r.same.at_normal = laws->at_normal;
+    r.same.at_sliding = laws->at_sliding;
+    r.same.tension = (int)w->desc.tension;
+    r.same.friction_load = (int)w->desc.friction_load;
+    r.same.slider = (int)w->desc.slider;
+    r.same.dt = dt;
+    return r;
+}
+/* The run of two spheres' contacts. Bits of pairs of alike bodies are the same either way. */
+static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
+    const demi_stage whole = demi_whole_stage(w, alike);
+    const int rolls = w->laws.rolling->law != 0;
+    demi_run r = demi_run_begin(w, dt);
+    int k = 0;
+    r.alike = alike;
+    r.parting |= r.turning && !alike;
+    r.same.radius = w->effects.species[0].radius;
+    r.same.inv_radius = 1/r.same.radius;
+    r.stage[k++] = r.ranged ? demi_stage_mixed_ranged
+        : r.following ? r.alike ? demi_stage_alike_following : demi_stage_mixed_following
+        : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning
+        : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
+    if (whole) { r.stage[k] = whole; return r; }
+    k = demi_run_laws(w, &r, k);
+    r.stage[k] = !r.turning ? demi_stage_answer_bare
+        : rolls ? r.alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
+        : r.alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
+    return r;
+}
+/* Rows that no stage fills: coefficients that are the same for all pairs, friction of none. */
+static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
+    const demi_domain *domain = &w->domains[d];
+    const int first = demi_near_first(domain);
+    dem_real coef[DEMI_PAIR_COLUMNS];
+    int e, q;
+    t->row = -1;
+    for (q = 0; q < DEMI_TILE && !demi_laws_precise(w); q++)
+        t->slope[0][q] = t->slope[1][q] = t->kt[1][q] = (dem_real)NAN;
+    if (first < domain->near_end) {
+        const demi_span one = demi_span_of(w, d, first, 1);
+        demi_span_coefs(w, &one, 0, coef);
+        if (!demi_laws_sized(w)) coef[DEMI_R_EFF] = coef[DEMI_M_EFF] = (dem_real)NAN;
+        for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+            for (q = 0; q < DEMI_TILE; q++) t->coef[e][q] = coef[e];
+    }
+    memset(t->part, 0, sizeof t->part);
+    memset(t->tangent, 0, sizeof t->tangent);
+    memset(t->memory[DEMI_MEMORY], 0, sizeof t->memory[0]);
+}
+/* Coefficients of a tile's pairs, but those that never vary (demi_species_vary, laid once by
+   demi_tile_begin). Answers the run they are for: of the two, that for pairs that differ, or that
+   for pairs that are alike, which needs no radii, no difference of spins and one torque for both.
+   What a tile of one row fills in is left for the tiles after it, and not copied again; it is
+   filled in to the tile's end, because those may be longer. */
+static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int full,
+                                 demi_tile *DEMI_RESTRICT t, demi_run *run) {
+    const int32_t *DEMI_RESTRICT row = span->row;
+    const int n = w->effects.species_count;
+    int e, q, differ = 0, same;
+    if (w->effects.uniform) return run + 1;
+    for (q = 0; q < full && row; q++) differ |= row[q]^row[0];
+    same = row && !differ;
+    for (e = 0; e < DEMI_PAIR_COLUMNS && !(same && t->row == row[0]); e++) {
+        const dem_real *DEMI_RESTRICT table = w->species_coef + e;
+        if (!(w->species_vary >> e & 1)) continue;
+        if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);
+        else if (differ) for (q = 0; q < full; q++) t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[q]];
+        else for (q = 0; q < DEMI_TILE; q++)    /* all of it: the next tile may be longer */
+            t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[0]];
+    }
+    t->row = same ? row[0] : -1;
+    if (!same || row[0]%(n + 1)) return run;    /* species k with k: row k*n + k */
+    run[1].same.radius = w->effects.species[row[0]/(n + 1)].radius;
+    run[1].same.inv_radius = 1/run[1].same.radius;
+    return run + 1;
+}
+
+/* What dashpots took goes with the velocities of the path. */
+static void demi_tile_late(const dem_world *w, const demi_span *span, int full,
+                           demi_tile *DEMI_RESTRICT t) {
+    const dem_real *DEMI_RESTRICT late = w->bodies.late;
+    int n;
+    for (n = 0; n < span->count; n++)
+        demi_rows_minus(&t->late, (size_t)n, DEMI_AT(late, span->a[n]), DEMI_AT(late, span->b[n]));
+    DEMI_ROWS(full)
+        t->part[0][q] *= 1 + demi_late_share(demi_rows_at(&t->late, q), demi_row(t->normal, q),
+                                             t->closing[q]);
+    DEMI_ROWS_END
+}
+/* What the contacts of a tile did with energy, for the ledger, in order. */
+static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *energy) {
+    int q;
+    for (q = 0; q < count; q++) {
+        energy[DEMI_E_DASHPOT] += (double)(t->part[0][q] + t->part[6][q]);
+        energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
+        energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
+        energy[DEMI_E_SLIDE] += (double)t->part[3][q];
+        energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
+        energy[DEMI_E_ROLL] += (double)t->part[5][q];
+    }
+}
+/* The whole tile, by one of two runs, which is answered. */
+static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
+                                   demi_tile *DEMI_RESTRICT t, double *energy) {
+    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_run *r = demi_tile_coefs(w, span, full, t, run);
+    int q, k;
+    r->span = span;
+    for (q = 0; q < r->keep; q++)
+        demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
+    demi_tile_fetch(r, full, t);
+    for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
+    for (q = 0; q < r->keep; q++)
+        demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
+    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
+    if (r->ledger) demi_tile_book(t, span->count, energy);
+    return r;
+}
+
+/* What a tile adds up to besides forces. */
+typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
+/* Pairs that fill up the last group are left out here: `count` is that of the real ones. */
+static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
+    int q;
+    for (q = 0; q < count; q++) {
+        sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
+        sum->contacts += t->touch[q];
+    }
+}
+/* Pairs of a tile that a law was asked about and that do not touch. */
+static int demi_tile_apart(const demi_tile *t, int count) {
+    int q, apart = 0;
+    for (q = 0; q < count; q++) apart += t->touch[q] > 0 && !(t->overlap[q] > 0);
+    return apart;
+}
+DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
+    x += sum[0]; y += sum[1]; z += sum[2];
+    sum[0] = x; sum[1] = y; sum[2] = z;
+}
+/* Adds a tile's pushes to both bodies. */
+DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                             dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
+                             int turning, int second) {
+    const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
+    const int count = span->count;
+    int n;
+    for (n = 0; n < count; n++) {
+        const size_t q = (size_t)n;
+        const int32_t i = la[q], j = lb[q];
+        const dem_real fx = t->force[0][q], fy = t->force[1][q], fz = t->force[2][q];
+        demi_sum_add(DEMI_AT(force, i), fx, fy, fz);
+        demi_sum_add(DEMI_AT(force, j), -fx, -fy, -fz);
+        if (!turning) continue;
+        demi_sum_add(DEMI_AT(torque, i), t->torque[0][0][q], t->torque[0][1][q],
+                     t->torque[0][2][q]);
+        demi_sum_add(DEMI_AT(torque, j), t->torque[second][0][q], t->torque[second][1][q],
+                     t->torque[second][2][q]);
+    }
+}
+/* Forces of a tile to both bodies, in the order of the list: it decides the bits of their sums. */
+static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                              const demi_run *r, dem_real *DEMI_RESTRICT force,
+                              dem_real *DEMI_RESTRICT torque) {
+    if (r->parting) demi_scatter(t, span, force, torque, 1, 1);
+    else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
+    else demi_scatter(t, span, force, torque, 0, 0);
+}
+/* The same for pairs that lead out: the far ends' pushes stay in slots, six reals each. */
+static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                               const demi_run *r, dem_real *DEMI_RESTRICT force,
+                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT out) {
+    const int second = r->parting ? 1 : 0;
+    int q;
+    for (q = 0; q < span->count; q++, out += 6) {
+        dem_real *fa = DEMI_AT(force, span->a[q]), *ma = DEMI_AT(torque, span->a[q]);
+        const dem_vec3 f = demi_row(t->force, q);
+        fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
+        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
+        if (r->turning) {
+            const dem_vec3 m = demi_row(t->torque[0], q);
+            ma[0] += m.x; ma[1] += m.y; ma[2] += m.z;
+            demi_put(out + 3, demi_row(t->torque[second], q));
+        }
+    }
+}
+
+/* What a law has answered for the users' numbers of a tile's pairs: to both bodies, or, where the
+   pairs lead out, the far ends' to slots, of which `out` is the first. */
+static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
+                                       dem_real *out) {
+    const int n = w->bodies.real_count;
+    int q, k;
+    for (q = 0; q < span->count; q++) {
+        dem_real *a = w->bodies.rates + n*span->a[q], *b = w->bodies.rates + n*span->b[q];
+        const int touch = t->touch[q] > 0;
+        for (k = 0; k < n; k++) {
+            if (touch) a[k] += t->gains[q][k];
+            if (out) out[n*q + k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
+            else if (touch) b[k] += t->gains[q][DEM_BODY_REALS + k];
+        }
+    }
+}
+
+/* All pairs of one domain: those inside it, then those that lead out. */
+static void demi_pairs(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: looking only */
+    demi_run run[2];
+    DEMI_ALIGNED demi_tile tile;
+    demi_tally tally = {0, 0};
+    int l, p;
+    domain->contacts = 0;
+    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
+    run[0] = demi_run_of(w, dt, 0);
+    run[1] = demi_run_of(w, dt, 1);
+    demi_tile_begin(w, d, &tile);
+    for (l = 0; l < 2; l++) {
+        const int begin = l ? domain->near_cross : 0;
+        const int end = l ? domain->near_end : domain->near_own;
+        for (p = begin; p < end; p += DEMI_TILE) {
+            const int count = DEMI_MIN((int)DEMI_TILE, end - p);
+            const demi_span span = demi_span_of(w, d, p, count);
+            const demi_run *r = demi_tile_respond(w, &span, run, &tile, domain->energy);
+            demi_tile_tally(&tile, count, &tally);
+            if (r->ranged) tally.contacts -= (dem_real)demi_tile_apart(&tile, count);
+            if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
+            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque,
+                                w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
+                                                   (size_t)(p - begin)));
+            if (demi_exchanges(w))
+                demi_tile_rates(&tile, &span, w, !l ? 0 : w->cross_rate +
+                                (size_t)w->bodies.real_count*((size_t)d*(size_t)w->cross.stride +
+                                                              (size_t)(p - begin)));
+        }
+    }
+    domain->contacts = (int)tally.contacts;
+    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
+}
+
+/* Sets the loop over pairs for the laws in force; answers what reports call it. */
+static const char *demi_kernel_choose(dem_world *w) {
+    w->kernel = demi_pairs;
+#ifdef DEM_LAW
+    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
+#endif
+    if (w->desc.law) return "your law, called";
+    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
+}
+
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif

@@ -1,0 +1,871 @@
+/* ---------------------------------------------------------------------------------------------
+   >>touch
+   Geometry only: where a sphere, and what else is put in its place, meets a wall element, and
+   which of the elements it overlaps count. (Where two spheres meet is demi_tile_touch; which of
+   them are near is known from the candidates.) Knows no law and no material, works in the wall's
+   frame, and finds places: normal, point, overlap, share. A place that several facets name is
+   one; those whose weights cancel are gone before a law is asked. Room for places was counted
+   when the list was made.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- surfaces of facets: which places are nearest, and how often each counts (>>facets) --- */
+
+/* The point of a triangle (n = 3) or segment nearest the origin [ERI05] 5.1.5. *where: 0 inside,
+   1 + k on the side from corner k to the next, 4 + k corner k. Rounding may put it on one side of a
+   border or the other, which moves the point by no more than that. */
+DEM_INLINE dem_vec3 demi_side_point(dem_vec3 a, dem_vec3 b, int k, int l, int *where) {
+    const dem_vec3 ab = demi_sub(b, a);
+    const dem_real t = -demi_dot(a, ab), ll = demi_dot(ab, ab);
+    *where = t <= 0 ? 4 + k : t >= ll ? 4 + l : 1 + k;
+    return t <= 0 ? a : t >= ll ? b : demi_add(a, demi_scale(ab, t/ll));
+}
+/* A triangle so thin that it has no plane: the nearest of its sides. */
+static dem_vec3 demi_sides_point(const dem_vec3 *y, int *where) {
+    dem_vec3 best = demi_side_point(y[0], y[1], 0, 1, where), d;
+    int k, at;
+    for (k = 1; k < 3; k++) {
+        d = demi_side_point(y[k], y[(k + 1)%3], k, (k + 1)%3, &at);
+        if (!(demi_dot(d, d) < demi_dot(best, best))) continue;
+        best = d;
+        *where = at;
+    }
+    return best;
+}
+/* Closest point of a segment (n = 2) or triangle (n = 3) to the origin [ERI05, 5.1.5]. where: 0:
+   inside, 1 .. 3: on a side, 4 .. 6: at a corner. */
+DEM_INLINE dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
+    dem_vec3 ab, ac, normal;
+    dem_real d1, d2, d3, d4, d5, d6, nn;
+    if (n == 2) {
+        const dem_vec3 p = demi_side_point(y[0], y[1], 0, 1, where);
+        if (*where != 1) return p;
+        *where = 0;                             /* in the plane: along the normal, exactly */
+        ab = demi_sub(y[1], y[0]);
+        if (y[0].z < 0 || y[0].z > 0 || ab.z < 0 || ab.z > 0) return p;
+        normal = demi_v(-ab.y, ab.x, 0);
+        return demi_scale(normal, demi_dot(normal, y[0])/demi_dot(ab, ab));
+    }
+    ab = demi_sub(y[1], y[0]);
+    ac = demi_sub(y[2], y[0]);
+    d1 = -demi_dot(ab, y[0]); d2 = -demi_dot(ac, y[0]);
+    if (d1 <= 0 && d2 <= 0) { *where = 4; return y[0]; }
+    d3 = -demi_dot(ab, y[1]); d4 = -demi_dot(ac, y[1]);
+    if (d3 >= 0 && d4 <= d3) { *where = 5; return y[1]; }
+    d5 = -demi_dot(ab, y[2]); d6 = -demi_dot(ac, y[2]);
+    if (d6 >= 0 && d5 <= d6) { *where = 6; return y[2]; }
+    if (d1*d4 - d3*d2 <= 0 && d1 >= 0 && d3 <= 0) return demi_side_point(y[0], y[1], 0, 1, where);
+    if (d5*d2 - d1*d6 <= 0 && d2 >= 0 && d6 <= 0) return demi_side_point(y[2], y[0], 2, 0, where);
+    if (d3*d6 - d5*d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return demi_side_point(y[1], y[2], 1, 2, where);
+    *where = 0;                                 /* along the normal, exact however large it is */
+    normal = demi_cross(ab, ac);
+    nn = demi_dot(normal, normal);
+    if (!(nn > (DEMI_SINGLE ? DEM_R(1e-10) : DEM_R(1e-20))*demi_dot(ab, ab)*demi_dot(ac, ac)))
+        return demi_sides_point(y, where);
+    return demi_scale(normal, demi_dot(normal, y[0])/nn);
+}
+
+/* Places found so far for one body and one wall. `point` is from the body's centre, `overlap` is
+   the distance; both in the body's own measure (an ellipsoid's is that in which it is the unit
+   sphere). Few are looked through one by one, many by a table of their numbers. */
+typedef struct demi_places {
+    demi_touching *at;
+    int32_t *table;                /* mask + 1 of them: 1 + index into at, 0: free; or null */
+    uint32_t mask;
+    int count, offset;             /* what numbers begin with: an image of the body each */
+} demi_places;
+/* One more facet says that place `number` is at d and counts so much: places add up. */
+static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d,
+                            dem_real d2) {
+    uint32_t slot = (uint32_t)(number + p->offset)*UINT32_C(2654435769) & p->mask;
+    int i = 0;
+    number += p->offset;
+    if (!p->table) while (i < p->count && p->at[i].element != number) i++;
+    else {
+        for (; p->table[slot]; slot = (slot + 1) & p->mask)
+            if (p->at[p->table[slot] - 1].element == number) break;
+        i = p->table[slot] ? p->table[slot] - 1 : p->count;
+        p->table[slot] = i + 1;
+    }
+    if (i < p->count) { p->at[i].share += weight; return; }
+    p->at[i].element = number;
+    p->at[i].share = weight;
+    p->at[i].point = d;
+    p->at[i].overlap = DEMI_SQRT(d2);
+    p->count++;
+}
+/* What is left: those that cancel go, those that are one place to the eye of rounding (a side and
+   a cut of it) become one. */
+static void demi_places_merge(demi_places *p, dem_real near_by) {
+    int i, k, count = 0;
+    for (i = 0; i < p->count; i++) {
+        demi_touching t = p->at[i];
+        if (t.share > DEM_R(-1e-3) && t.share < DEM_R(1e-3)) continue;
+        for (k = 0; k < count; k++) {
+            const dem_vec3 d = demi_sub(t.point, p->at[k].point);
+            if (demi_dot(d, d) <= near_by*near_by) break;
+        }
+        if (k == count) { p->at[count++] = t; continue; }
+        p->at[k].share += t.share;              /* the lower number: the same from step to step */
+        p->at[k].element = DEMI_MIN(p->at[k].element, t.element);
+    }
+    for (i = k = 0; i < count; i++)
+        if (p->at[i].share < DEM_R(-1e-3) || p->at[i].share > DEM_R(1e-3)) p->at[k++] = p->at[i];
+    p->count = k;
+}
+/* A vector in the measure in which an ellipsoid is the unit sphere. */
+DEM_INLINE dem_vec3 demi_in_measure(const demi_part *part, dem_vec3 v) {
+    v = dem_quat_unrotate(part->q, v);
+    return demi_v(v.x/part->axes.x, v.y/part->axes.y, v.z/part->axes.z);
+}
+/* Corners of an element as seen from a body at x: in the body's measure, where part is an
+   ellipsoid. Segments go on along z without end: there only what is across z counts. */
+DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
+                               const demi_part *part, dem_vec3 *y) {
+    const int n = demi_wall_corners(wall, element, y);
+    int k;
+    for (k = 0; k < n; k++) {
+        y[k] = demi_sub(y[k], x);
+        if (n == 2) y[k].z = 0;
+        if (part) y[k] = demi_in_measure(part, y[k]);
+    }
+    if (n == 2 && part) {
+        const dem_vec3 u = demi_unit(demi_in_measure(part, demi_v(0, 0, 1)));
+        for (k = 0; k < 2; k++) y[k] = demi_sub(y[k], demi_scale(u, demi_dot(y[k], u)));
+    }
+    return n;
+}
+/* The number of an element's nearest place. */
+DEM_INLINE int32_t demi_facet_number(const demi_wall *wall, int e, int n, int where) {
+    const int edges = wall->element_count;
+    return where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+        : edges + wall->edge_count + wall->corners[n*e + where - 4];
+}
+/* An element none of whose neighbours is within reach: no edge or corner is that counts. */
+DEM_INLINE void demi_facet_alone(const demi_wall *wall, int e, dem_vec3 x, dem_real within,
+                                 demi_places *p) {
+    dem_vec3 y[3];
+    int where;
+    const int n = demi_facet_seen(wall, e, x, 0, y);
+    const dem_vec3 d = demi_facet_point(y, n, &where);
+    const dem_real d2 = demi_dot(d, d);
+    if (d2 < within*within && wall->weight[e] > 0)
+        demi_places_add(p, demi_facet_number(wall, e, n, where), wall->weight[e], d, d2);
+}
+/* Adds what element `e` and the edges and corners it looks after give, nearer than `within`. */
+DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                                  dem_real within, demi_places *p) {
+    const int edges = wall->element_count, corners = edges + wall->edge_count;
+    const int own = wall->owns[e];
+    const dem_real *weight = wall->weight, most = within*within;
+    dem_vec3 y[3], d;
+    dem_real add = weight[e], d2;
+    int where, done = 0, n, k, at;
+    n = demi_facet_seen(wall, e, x, part, y);
+    d = demi_facet_point(y, n, &where);
+    d2 = demi_dot(d, d);
+    if (!(d2 < most)) return;                   /* nor are its edges nearer */
+    if (where >= 1 && where <= 3 && own >> (where - 1) & 1) {
+        add += weight[edges + wall->edges[3*e + where - 1]];       /* the same point */
+        done = where;
+    }
+    if (add < 0 || add > 0)
+        demi_places_add(p, demi_facet_number(wall, e, n, where), add, d, d2);
+    for (k = 0; k < 3 && n == 3 && own & 7; k++) {
+        const dem_real count = weight[edges + wall->edges[3*e + k]];
+        if (!(own >> k & 1) || done == k + 1 || !(count < 0 || count > 0)) continue;
+        d = demi_side_point(y[k], y[(k + 1)%3], k, (k + 1)%3, &at);
+        d2 = demi_dot(d, d);
+        if (d2 < most)
+            demi_places_add(p, at < 4 ? edges + wall->edges[3*e + k]
+                       : corners + wall->corners[3*e + at - 4], count, d, d2);
+    }
+    for (k = 0; k < n && own >> 3; k++) {
+        const int32_t number = corners + wall->corners[n*e + k];
+        if (!(own >> (3 + k) & 1) || !(weight[number] < 0 || weight[number] > 0)) continue;
+        d2 = demi_dot(y[k], y[k]);
+        if (d2 < most) demi_places_add(p, number, weight[number], y[k], d2);
+    }
+    if (!wall->cut_start) return;
+    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
+        const demi_cut *c = &wall->cuts[k];
+        dem_vec3 a = demi_sub(c->a, x), b = demi_sub(c->b, x);
+        if (!(c->weight < 0 || c->weight > 0)) continue;
+        if (part) { a = demi_in_measure(part, a); b = demi_in_measure(part, b); }
+        d = demi_side_point(a, b, 0, 1, &at);
+        d2 = demi_dot(d, d);
+        if (d2 < most) demi_places_add(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
+    }
+}
+/* --- rings. Where what a ball reaches of a surface closes to a ring, on the rim of a hole or in a
+       funnel, Euler's number is 0 and nothing would push. A ring is one place, so there
+           E = integral of pieces(s) U'(r - s) ds = U(facets) - U(links of a forest)
+       pieces: chi and the rings that are open; a forest: of the sides and corners that join facets,
+       nearest first, those that join what was not joined yet (Kruskal's). With U1 the nearest's,
+       X the energy by >>facets and P that by pieces, D = P - X >= 0 is what rings took away, and
+           E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = 2 q - 1/2 within 0 .. 1
+       A dimple that is reached to its tip is a ring that is all but closed: D is small, and E is
+       X, smooth; an open ring counts as one piece, and which of its sides are nearest may change
+       from one moment to the next, as on the medial line of a single wall. Energy is conserved in
+       either. Rings through a seam of two walls are not seen. --- */
+static int demi_link_compare(const void *x, const void *y) {
+    const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
+    if (a->corner != b->corner) return a->corner < b->corner ? -1 : 1;
+    if (a->number != b->number) return a->number < b->number ? -1 : 1;
+    return a->facet < b->facet ? -1 : a->facet > b->facet;
+}
+static int demi_link_nearer(const void *x, const void *y) {
+    const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
+    if (a->distance < b->distance) return -1;
+    return a->distance > b->distance ? 1 : demi_link_compare(x, y);
+}
+static int demi_link_root(demi_link *link, int i) {
+    while (link[i].root != i) i = link[i].root = link[link[i].root].root;
+    return i;
+}
+/* Facets that are reached, and their nearest place. */
+typedef struct demi_ring {
+    int facets;
+    int32_t number;
+    dem_real distance;
+    dem_vec3 point;
+} demi_ring;
+/* Adds a side (b: its other end) or corner of the facet under work, if it is reached: its numbers,
+   and where it is nearest. From whichever facet, the same side gives the same, to the bit: a has
+   the lower number. */
+static int demi_link_add(demi_link *link, int count, int facet, dem_real within, int32_t number,
+                         const dem_vec3 *a, const dem_vec3 *b, const int32_t *ends) {
+    demi_link *to = &link[count];
+    const int turn = b && ends[0] > ends[1];
+    int where = 4;
+    to->point = b ? demi_side_point(turn ? *b : *a, turn ? *a : *b, 0, 1, &where) : *a;
+    to->distance = demi_length(to->point);
+    if (!(to->distance < within)) return count;
+    to->corner = !b;
+    to->facet = facet;
+    to->number = number;
+    to->place = !b || where < 4 ? number : ends[turn ? 5 - where : where - 4];
+    to->sides[0] = to->sides[1] = -1;
+    return count + 1;
+}
+/* The number of the side of element e that begins or ends at a corner: of its cut there, if it is
+   cut. */
+static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t corner) {
+    int k = wall->cut_start ? wall->cut_start[e] : 0;
+    for (; wall->cut_start && k < wall->cut_start[e + 1]; k++) {
+        const demi_cut *c = &wall->cuts[k];
+        if (c->side == side && (c->end[0] == corner || c->end[1] == corner)) return c->number;
+    }
+    return wall->element_count + wall->edges[3*e + side];
+}
+/* Pieces of element e's sides, and the corners of others between them; *sides: which sides those
+   are. */
+static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                          dem_real within, demi_link *link, int count, int facet, int *sides) {
+    int k, m, q;
+    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
+        const demi_cut *c = &wall->cuts[k];
+        dem_vec3 end[2];
+        end[0] = demi_sub(c->a, x);
+        end[1] = demi_sub(c->b, x);
+        for (q = 0; q < 2 && part; q++) end[q] = demi_in_measure(part, end[q]);
+        *sides |= 1 << c->side;
+        count = demi_link_add(link, count, facet, within, c->number, end, end + 1, c->end);
+        for (q = 0; q < 2; q++)                 /* where the next piece goes on */
+            for (m = k + 1; m < wall->cut_start[e + 1]; m++) {
+                const demi_cut *o = &wall->cuts[m];
+                const int before = count;
+                if (o->side != c->side || (o->end[0] != c->end[q] && o->end[1] != c->end[q]))
+                    continue;
+                count = demi_link_add(link, count, facet, within, c->end[q], end + q, 0, 0);
+                if (count == before) continue;
+                link[before].sides[0] = c->number;
+                link[before].sides[1] = o->number;
+            }
+    }
+    return count;
+}
+/* Sides and corners of element e, if it is reached. Answers how many links there are then. */
+static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                          dem_real within, demi_link *link, int count, demi_ring *ring) {
+    const int edges = wall->element_count, corners = edges + wall->edge_count;
+    const int32_t *v;
+    dem_vec3 y[3], d;
+    int k, n, where, cut = 0;
+    dem_real l;
+    if (!(wall->weight[e] > 0)) return count;
+    n = demi_facet_seen(wall, e, x, part, y);
+    v = wall->corners + n*e;
+    d = demi_facet_point(y, n, &where);
+    l = demi_length(d);
+    if (!(l < within)) return count;
+    if (!ring->facets || l < ring->distance) {
+        ring->number = where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+            : corners + v[where - 4];
+        ring->distance = l;
+        ring->point = d;
+    }
+    if (wall->cut_start)
+        count = demi_links_cut(wall, e, x, part, within, link, count, ring->facets, &cut);
+    for (k = 0; k < n; k++) {
+        const int b = (k + 1)%n, before = count;
+        int32_t ends[2];
+        ends[0] = corners + v[k];
+        ends[1] = corners + v[b];
+        count = demi_link_add(link, count, ring->facets, within, corners + v[k], y + k, 0, 0);
+        if (count > before && n == 3) {
+            link[before].sides[0] = demi_link_side(wall, e, k, corners + v[k]);
+            link[before].sides[1] = demi_link_side(wall, e, (k + 2)%3, corners + v[k]);
+        }
+        if (n == 3 && !(cut >> k & 1))
+            count = demi_link_add(link, count, ring->facets, within, edges + wall->edges[3*e + k],
+                                  y + k, y + b, ends);
+    }
+    ring->facets++;
+    return count;
+}
+/* chi's weight of a corner, from the facets at it that are links first .. end - 1: 1 + facets -
+   sides (meshes), 1 - facets (profiles). */
+static int demi_links_corner(const demi_link *link, int first, int end) {
+    int i, k, j, sides = 0;
+    if (link[first].sides[0] < 0) return 1 - (end - first);
+    for (i = first; i < end; i++)
+        for (k = 0; k < 2; k++) {
+            int seen = 0;
+            for (j = first; j < i && !seen; j++)
+                seen = link[j].sides[0] == link[i].sides[k] || link[j].sides[1] == link[i].sides[k];
+            sides += !seen;
+        }
+    return 1 + (end - first) - sides;
+}
+/* Corrects the places of one body and wall for open rings. power: of U in the overlap. */
+static void demi_places_rings(const demi_wall *wall, const int32_t *element, int candidates,
+                              dem_vec3 x, const demi_part *part, dem_real within, dem_real power,
+                              demi_link *link, demi_places *p) {
+    demi_ring ring;
+    dem_real lost = 0, t, h, slope;
+    int i, k, end, count = 0;
+    memset(&ring, 0, sizeof ring);
+    for (i = 0; i < candidates; i++)
+        count = demi_links_add(wall, element[i], x, part, within, link, count, &ring);
+    if (ring.facets < 2) return;
+    qsort(link, (size_t)count, sizeof *link, demi_link_compare);
+    for (i = 1; i < count; i++)                 /* one side, one distance, whatever the rounding */
+        if (link[i].number == link[i - 1].number) link[i].distance = link[i - 1].distance;
+    qsort(link, (size_t)count, sizeof *link, demi_link_nearer);
+    for (i = 0; i < ring.facets; i++) link[i].root = i;
+    for (i = 0; i < count; i = end) {
+        const dem_real q = (within - link[i].distance)/(within - ring.distance);
+        int joined = 0;
+        for (end = i + 1; end < count && link[end].number == link[i].number; end++) {
+            const int a = demi_link_root(link, link[i].facet);
+            const int b = demi_link_root(link, link[end].facet);
+            joined += a != b;
+            link[DEMI_MAX(a, b)].root = DEMI_MIN(a, b);
+        }
+        k = link[i].corner ? -demi_links_corner(link, i, end) : end - i - 1;
+        link[i].more = (dem_real)(k - joined);
+        lost += link[i].more*(power > 2 ? q*q*DEMI_SQRT(q) : q*q);
+        for (k = i + 1; k < end; k++) link[k].more = 0;
+    }
+    if (!(lost > DEM_R(0.25))) return;
+    t = DEMI_MIN(2*lost - DEM_R(0.5), DEM_R(1));
+    h = t*t*(3 - 2*t);
+    slope = t < 1 ? 12*t*(1 - t) : 0;           /* dh/dq */
+    for (i = 0; i < count; i++)
+        if (link[i].more < 0 || link[i].more > 0)
+            demi_places_add(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
+                       link[i].distance*link[i].distance);
+    demi_places_add(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
+}
+
+/* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
+       middle, wires and holes in rows along x and y. Only what is near is looked at, found from the
+       sphere's place: the cost does not depend on how many holes there are.
+         rows    wires, bars, and the strips between square holes or slots: convex, endless or cut
+                 off by a disc. Rows of set 0 go along y, of set 1 along x
+         round   plates with round holes: the face, or the nearest point of the rim and the one
+                 across, so that a grain too large for the hole sits on it
+         ring    plates and reduced holes cut out as a disc lie in a thin ring
+       Where two rows cross, a grain that reaches both at one place reaches one thing. With d the
+       distances of rows and those of what two rows share (their crossings), U(d) the energy of one
+       contact and its overlap r - d,
+           E = sum of U(rows) - sum of U(those crossings that join, nearest first, what was not
+               joined yet)
+       which is the sum over separate pieces of what is reached, as it grows (Kruskal's forest, as
+       for rings of facets): never less than the nearest row's, and force is its gradient, so that
+       energy is kept; a plate pushes as one however fine its holes. A crossing at a row's own
+       nearest point takes that away: above a crossing there is one contact, half way between two
+       rows, two. One that does not takes away by itself, as a contact of share -1.
+       Every row, crossing and side has an element number of its own, for contact memory. Tests:
+       tests/surface/test_sieve.c, tests/hard/hard_impacts.c. --- */
+enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1,
+       DEMI_SIEVE_ROWS = 13 };                  /* rows of both sets, and the ring */
+/* What the last three bits of a row's number say; of round holes, 0 .. 5: side, lattice. */
+enum { DEMI_SIEVE_SET = 1, DEMI_SIEVE_ABOVE = 2, DEMI_SIEVE_CROSS = 4 };
+typedef struct demi_sieve_row {
+    int32_t number;
+    int set, root;                 /* 2: the ring; of the forest */
+    double i;                      /* which of its set */
+    dem_real at, half;             /* m, its middle, and half its width (or diameter) */
+    dem_real distance, edge;       /* m, of the sphere's centre; around foot */
+    dem_vec3 foot;                 /* m, nearest point, or that of a wire's axis */
+} demi_sieve_row;
+/* Where rows a and b cross: nearest point and its distance, m. */
+typedef struct demi_sieve_shared { dem_real distance; int a, b; dem_vec3 foot; } demi_sieve_shared;
+
+/* Half of how thick it is. */
+static dem_real demi_sieve_half(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS ? (s->bar + s->lift)/2
+        : s->thickness/2;
+}
+/* A number that tells rows and holes apart; far ones repeat, which does no harm. */
+static int32_t demi_sieve_number(double i, double j, int side) {
+    const int32_t a = (int32_t)(i - floor(i/16384)*16384), b = (int32_t)(j - floor(j/8192)*8192);
+    return (int32_t)(((uint32_t)a << 16) | ((uint32_t)b << 3) | (uint32_t)side);
+}
+/* Adds the contact with what lies `edge` around foot, if there is one. */
+static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_vec3 x,
+                          dem_real r, dem_vec3 foot, dem_real edge) {
+    const dem_vec3 d = demi_sub(foot, x);
+    const dem_real l = demi_length(d), overlap = r + edge - l;
+    demi_touching *c = &out[count];
+    if (!(overlap > 0) || count == DEMI_SIEVE_MOST) return count;
+    c->element = element;
+    c->normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
+    c->point = demi_add(x, demi_scale(c->normal, l - edge));
+    c->overlap = overlap;
+    c->share = 1;
+    return count + 1;
+}
+/* The sheet of a sieve as if it had no holes. */
+static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
+                           demi_touching *out) {
+    const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
+    out->element = DEMI_SIEVE_FACE;
+    out->normal = demi_v(0, 0, -up);
+    out->point = demi_v(x.x, x.y, up*s->thickness/2);
+    out->overlap = r + s->thickness/2 - up*x.z;
+    out->share = 1;
+    return out->overlap > 0;
+}
+DEM_INLINE dem_real demi_clamp(dem_real x, dem_real lo, dem_real hi) {
+    return x < lo ? lo : x > hi ? hi : x;
+}
+/* The point of a strip at - half .. at + half across u, cut off by a disc of radius R (0: not),
+   that is nearest to (u, v). 0: there is none. */
+static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u, dem_real *v) {
+    const dem_real x = *u, y = *v, lo = at - half, hi = at + half;
+    const dem_real S = DEMI_SQRT(x*x + y*y), within = demi_clamp(x, lo, hi);
+    dem_real best = -1;
+    int k;
+    *u = within;
+    if (!(R > 0) || within*within + y*y <= R*R) return 1;
+    *u = x*R/S; *v = y*R/S;                     /* the disc's, if the strip has it */
+    if (S > R && *u >= lo && *u <= hi) return 1;
+    for (k = 0; k < 2; k++) {                   /* a corner, where the strip's side ends */
+        const dem_real side = k ? hi : lo, long2 = R*R - side*side;
+        const dem_real end = long2 > 0 ? DEMI_SQRT(long2) : 0, to = demi_clamp(y, -end, end);
+        const dem_real d2 = (side - x)*(side - x) + (to - y)*(to - y);
+        if (!(long2 > 0) || (best >= 0 && d2 >= best)) continue;
+        best = d2; *u = side; *v = to;
+    }
+    return best >= 0;
+}
+/* Which rows of one set a sphere reaches. */
+static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
+                          demi_sieve_row *row, int count) {
+    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const dem_real q = s->bar/2, h = !wires ? 0 : set ? -s->lift/2 : s->lift/2, R = s->radius;
+    const dem_real hole = !set && s->kind == DEM_SIEVE_SLOTS ? s->length : s->aperture;
+    const dem_real pitch = hole + s->bar, half = wires ? 0 : s->thickness/2;
+    const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_real z = wires ? h : demi_clamp(x.z, -half, half);
+    const dem_real far2 = (r + q)*(r + q) - (x.z - z)*(x.z - z);
+    const double home = floor((double)((R > 0 && S > R ? u*R/S : u)/pitch));
+    int k;
+    if (!(far2 > 0) || !(hole > 0)) return count;
+    for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
+        demi_sieve_row *one = &row[count];
+        const dem_real at = (dem_real)(home + k + 0.5)*pitch, off = u - at;
+        dem_real a = u, b = v;
+        dem_vec3 d;
+        if (off*off >= far2 + 2*q*(r + q) + q*q ||
+            !demi_strip_point(at, wires ? DEM_R(0) : q, R, &a, &b)) continue;
+        one->foot = set ? demi_v(b, a, z) : demi_v(a, b, z);
+        d = demi_sub(one->foot, x);
+        one->edge = wires ? q : 0;
+        one->distance = demi_length(d) - one->edge;
+        if (!(one->distance < r)) continue;
+        one->set = set;
+        one->i = home + k;
+        one->at = at;
+        one->half = q;
+        one->number = demi_sieve_number(home + k, 0, set | (!wires && !(d.x < 0 || d.x > 0) &&
+                                        !(d.y < 0 || d.y > 0) ? DEMI_SIEVE_ABOVE : 0));
+        count++;
+    }
+    return count;
+}
+/* What two wires share, X^2 + (Z - h)^2 <= q^2 and Y^2 + (Z + h)^2 <= q^2: its point nearest to p,
+   outside of both, where they meet. It is p drawn to both axes, by as much as puts it on either
+   surface: Newton's method for these two. */
+static dem_vec3 demi_wires_point(dem_vec3 p, dem_real q, dem_real h) {
+    double m = sqrt((double)(p.x*p.x + (p.z - h)*(p.z - h)))/(double)q - 1;
+    double n = sqrt((double)(p.y*p.y + (p.z + h)*(p.z + h)))/(double)q - 1;
+    const double q2 = (double)q*(double)q, H = (double)h;
+    double x = 0, y = 0, z = 0;
+    int k;
+    for (k = 0; k < 40; k++) {
+        double sum, g, f, gm, gn, fn, det, dm, dn;
+        sum = 1 + m + n;
+        x = (double)p.x/(1 + m); y = (double)p.y/(1 + n);
+        z = ((double)p.z + (m - n)*H)/sum;
+        g = x*x + (z - H)*(z - H) - q2;
+        f = y*y + (z + H)*(z + H) - q2;
+        if (fabs(g) + fabs(f) < (DEMI_SINGLE ? 1e-12 : 4e-16)*q2) break;
+        gm = -2*(x*x/(1 + m) + (z - H)*(z - H)/sum);
+        fn = -2*(y*y/(1 + n) + (z + H)*(z + H)/sum);
+        gn = -2*(z - H)*(z + H)/sum;
+        det = gm*fn - gn*gn;
+        if (!(det > 0)) break;
+        dm = (-g*fn + f*gn)/det;
+        dn = (-f*gm + g*gn)/det;
+        m = m + dm > m/4 ? m + dm : m/4;
+        n = n + dn > n/4 ? n + dn : n/4;
+    }
+    return demi_v((dem_real)x, (dem_real)y, (dem_real)z);
+}
+/* The nearest point of what rows a and b share (a of set 0 or 1, b of a later one). Answers 2 when
+   it is a's own nearest point, 3 when b's, else 1; 0: they share nothing. */
+static int demi_sieve_crossing(const dem_sieve_desc *s, const demi_sieve_row *a,
+                               const demi_sieve_row *b, dem_vec3 x, dem_vec3 *foot) {
+    const dem_real R = s->radius, half = s->thickness/2;
+    const dem_real u = a->set ? x.y : x.x, v = a->set ? x.x : x.y;
+    dem_real S, best = -1;
+    int k;
+    if (a->set == b->set) return 0;
+    if (b->set == 2) {                          /* the ring, between the strip's sides */
+        foot->z = demi_clamp(x.z, -half, half);
+        S = DEMI_SQRT(u*u + v*v);
+        for (k = 0; k < 5; k++) {
+            const dem_real p = k == 4 ? u*R/S : a->at + (k & 1 ? a->half : -a->half);
+            const dem_real far = R*R - p*p;
+            const dem_real w = k == 4 ? v*R/S : !(far > 0) ? 0 : k & 2 ? DEMI_SQRT(far)
+                : -DEMI_SQRT(far);
+            const dem_real d2 = (p - u)*(p - u) + (w - v)*(w - v);
+            if (k == 4 ? DEMI_ABS(p - a->at) > a->half : !(far > 0)) continue;
+            if (best >= 0 && d2 >= best) continue;
+            best = d2;
+            foot->x = a->set ? w : p;
+            foot->y = a->set ? p : w;
+        }
+        return best >= 0;
+    }
+    if (R > 0 && a->at*a->at + b->at*b->at >= R*R) return 0;
+    if (s->kind == DEM_SIEVE_WIRES) {
+        const dem_real q = s->bar/2, h = s->lift/2;
+        const dem_vec3 at = demi_v(a->at, b->at, 0), p = demi_sub(x, at);
+        const dem_vec3 f = demi_sub(demi_add(x, demi_scale(demi_sub(a->foot, x), a->distance/
+                              (a->distance + q))), at);      /* on a, is it in b, too? */
+        const dem_vec3 g = demi_sub(demi_add(x, demi_scale(demi_sub(b->foot, x), b->distance/
+                              (b->distance + q))), at);
+        const int in_b = f.y*f.y + (f.z + h)*(f.z + h) <= q*q;
+        const int in_a = g.x*g.x + (g.z - h)*(g.z - h) <= q*q;
+        if (h >= q) return 0;
+        *foot = demi_add(at, in_b ? f : in_a ? g : demi_wires_point(p, q, h));
+        return in_b ? 2 : in_a ? 3 : 1;
+    }
+    *foot = demi_v(demi_clamp(x.x, a->at - a->half, a->at + a->half),
+                   demi_clamp(x.y, b->at - b->half, b->at + b->half),
+                   demi_clamp(x.z, -half, half));
+    return 1;
+}
+static int demi_sieve_root(demi_sieve_row *row, int i) {
+    while (row[i].root != i) i = row[i].root;
+    return i;
+}
+/* Contacts with rows, less their crossings, as above. */
+static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
+    demi_sieve_row row[DEMI_SIEVE_ROWS];
+    demi_sieve_shared all[DEMI_SIEVE_ROWS*DEMI_SIEVE_ROWS/2];
+    const dem_real half = s->thickness/2, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    int rows = demi_sieve_set(s, 0, x, r, row, 0), i, k, crossings = 0, count = 0;
+    if (s->kind != DEM_SIEVE_BARS) rows = demi_sieve_set(s, 1, x, r, row, rows);
+    if (s->kind != DEM_SIEVE_BARS && s->kind != DEM_SIEVE_WIRES && s->radius > 0 && S > 0) {
+        demi_sieve_row *ring = &row[rows];
+        memset(ring, 0, sizeof *ring);
+        ring->foot = demi_v(x.x*s->radius/S, x.y*s->radius/S, demi_clamp(x.z, -half, half));
+        ring->distance = demi_length(demi_sub(ring->foot, x));
+        ring->set = 2;
+        ring->number = DEMI_SIEVE_RIM;
+        rows += ring->distance < r;
+    }
+    for (i = 0; i < rows; i++) {
+        row[i].root = i;
+        for (k = 0; k < i; k++) {
+            demi_sieve_shared one;
+            const int how = demi_sieve_crossing(s, &row[k], &row[i], x, &one.foot);
+            one.a = k; one.b = i;
+            if (!how) continue;
+            one.distance = how == 1 ? demi_length(demi_sub(one.foot, x))
+                : row[how == 2 ? k : i].distance;
+            if (!(one.distance < r)) continue;
+            all[crossings++] = one;
+        }
+    }
+    for (; crossings > 0; all[i] = all[--crossings]) {    /* nearest first */
+        int a, b, at;
+        for (i = 0, k = 1; k < crossings; k++) if (all[k].distance < all[i].distance) i = k;
+        a = demi_sieve_root(row, all[i].a);
+        b = demi_sieve_root(row, all[i].b);
+        if (a == b) continue;
+        row[DEMI_MAX(a, b)].root = DEMI_MIN(a, b);
+        a = all[i].a; b = all[i].b;
+        at = row[a].distance > row[b].distance ? a : b;
+        if (all[i].distance <= row[at].distance && !(row[at].edge < 0))
+            row[at].edge = -1;                  /* the row's own nearest point: they cancel */
+        else {
+            k = count;
+            count = demi_sieve_put(out, count, row[b].set == 2 ? DEMI_SIEVE_RIM + 1 :
+                                   demi_sieve_number(row[a].i, row[b].i, DEMI_SIEVE_CROSS), x, r,
+                                   all[i].foot, 0);
+            if (count > k) out[k].share = -1;
+        }
+    }
+    for (i = 0; i < rows; i++) {
+        if (row[i].edge < 0) continue;
+        if (!(row[i].distance > 0) && half > 0 && s->kind != DEM_SIEVE_WIRES &&
+            s->kind != DEM_SIEVE_BARS) {        /* within the plate: out by the nearer face */
+            count += demi_sieve_face(s, x, r, out + count);
+            out[count - 1].element = row[i].number;
+        } else count = demi_sieve_put(out, count, row[i].number, x, r, row[i].foot, row[i].edge);
+    }
+    return count;
+}
+/* A plate with round holes: the hole that the centre is over, and of its rim the nearest place and
+   the one across. Over a bar: the sheet. */
+static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
+    const dem_real half = s->thickness/2, z = demi_clamp(x.z, -half, half);
+    const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_real pitch = s->aperture + s->bar;
+    const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
+    dem_real best = -1, l;
+    dem_vec3 way, centre = x, to;
+    int32_t number = 0;
+    int k, side, count = 0;
+    if (R > 0 && S > 0 && S > R - r)
+        count = demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
+    if (R > 0 && S > R) return count;           /* off the disc */
+    for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
+        const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
+        const double ix = floor((double)(x.x/pitch - shift) + 0.5);
+        const double iy = floor((double)(x.y/rows - shift) + 0.5);
+        const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
+        l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
+        if (best >= 0 && l >= best) continue;
+        best = l;
+        centre = c;
+        number = demi_sieve_number(ix, iy, 4*k);
+    }
+    if (best >= a*a) return demi_sieve_face(s, x, r, out);
+    l = DEMI_SQRT(best);
+    way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
+    for (side = 0; side < 2; side++) {          /* nearest, and across */
+        to = demi_add(demi_v(centre.x, centre.y, z), demi_scale(way, side ? -a : a));
+        if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
+        count = demi_sieve_put(out, count, number + side, x, r, to, 0);
+    }
+    return count;
+}
+/* Contacts that are in truth one, where rims meet: each counts as far as its point
+   stands out of the plane that touches at the other, towards the grain. L_a: how far a's point
+   stands out of b's plane.
+       share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
+   Half way between the two each bears half, and where L is far more than the overlap, each bears
+   all: no jump on the way. */
+static void demi_sieve_share(demi_touching *c, int count, dem_real range) {
+    int a, b;
+    for (a = 0; a < count; a++)
+        for (b = a + 1; b < count; b++) {
+            const dem_vec3 d = demi_sub(c[b].point, c[a].point);
+            dem_real la = demi_dot(c[b].normal, d), lb = -demi_dot(c[a].normal, d), sa, sb;
+            la = la > 0 ? la : 0;
+            lb = lb > 0 ? lb : 0;
+            sa = la + lb > 0 ? la/(la + lb) : 1;
+            sb = 1 - sa;
+            la /= DEMI_MAX(c[a].overlap - range, DEMI_TINY);    /* those that do not touch: all */
+            lb /= DEMI_MAX(c[b].overlap - range, DEMI_TINY);
+            c[a].share *= DEMI_MAX(sa, DEMI_MIN(la, DEM_R(1)));
+            c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));
+        }
+}
+/* [ALK07] eq 4.20 to 4.25: 1 when a grain over (x, y) falls through. Half a hole is w, the reduced
+   one w - b, b = zeta (w - r) or zeta w; model 1 wants the grain's edge within, model 2 its centre
+   and r < w. [ALK07] leaves open what "c_x" does for grains that fit in no hole: here they never
+   fall. */
+static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
+    const dem_real w = s->aperture/2, pitch = s->aperture + s->bar;
+    const dem_real room = (1 - s->clearance)*(s->model == 2 ? w : w - r);
+    const dem_real u = x.x - (dem_real)floor((double)(x.x/pitch) + 0.5)*pitch;
+    const dem_real v = x.y - (dem_real)floor((double)(x.y/pitch) + 0.5)*pitch;
+    return r < w && DEMI_ABS(u) < room && DEMI_ABS(v) < room;
+}
+/* All contacts of a sphere at x with a sieve: at most DEMI_SIEVE_MOST; body and wall are the
+   caller's to fill in. r: its radius and a law's range, of which it then touches what overlaps by
+   more. One of share 0 pushes nobody: a grain under way through a reduced
+   hole. */
+static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem_real range,
+                            demi_touching *out) {
+    const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    int count = 0;
+    switch (s->kind) {
+    case DEM_SIEVE_REDUCED:
+        if (s->radius > 0 && S > s->radius)
+            return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r,
+                                  demi_v(x.x*s->radius/S, x.y*s->radius/S, 0), 0);
+        count = demi_sieve_face(s, x, r, out);
+        if (count && demi_sieve_passes(s, x, r - range)) out->share = 0;
+        return count;
+    case DEM_SIEVE_ROUND:
+        count = demi_sieve_round(s, x, r, out);
+        if (count > 1) demi_sieve_share(out, count, range);
+        break;
+    default: count = demi_sieve_rows(s, x, r, out);
+    }
+    return count;
+}
+
+/* --- one sphere against one element, all in the wall's frame: fills in normal (grain -> wall) and
+       point, answers the overlap (negative: apart). Candidates are told by it, too. --- */
+typedef dem_real (*demi_near_fn)(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                 dem_vec3 *normal, dem_vec3 *point);
+/* z = 0 of the wall's frame, grains above. */
+DEM_INLINE dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal, dem_vec3 *point) {
+    (void)wall; (void)element;
+    *normal = demi_v(0, 0, -1);
+    *point = demi_v(x.x, x.y, 0);
+    return r - x.z;
+}
+/* About z; a grain on the axis is pushed along x, for want of anything better. */
+DEM_INLINE dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                   dem_vec3 *normal, dem_vec3 *point) {
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    (void)element;
+    *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
+    *normal = wall->inside ? d : demi_scale(d, -1);
+    return wall->inside ? r + l - wall->radius : r + wall->radius - l;
+}
+/* How a place, `out` from the axis and at a height, lies to piece k of a surface of revolution: its
+   distance, m; the nearest point of the piece, and whether that is its first end (-1), its last (1)
+   or between (0). */
+static dem_real demi_ring_piece(const demi_wall *wall, int k, dem_real out, dem_real height,
+                                dem_real *r, dem_real *h, int *end) {
+    const dem_real *R = wall->ring_radius + k, *H = wall->ring_height + k;
+    const dem_real a = R[1] - R[0], b = H[1] - H[0];
+    const dem_real t = ((out - R[0])*a + (height - H[0])*b)/(a*a + b*b);
+    *end = t <= 0 ? -1 : t >= 1 ? 1 : 0;
+    *r = *end < 0 ? R[0] : *end ? R[1] : R[0] + t*a;
+    *h = *end < 0 ? H[0] : *end ? H[1] : H[0] + t*b;
+    return DEMI_SQRT((out - *r)*(out - *r) + (height - *h)*(height - *h));
+}
+static dem_real demi_revolved_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                   dem_vec3 *normal, dem_vec3 *point) {
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    dem_real least = 0, a, b;
+    int k, end;
+    (void)element;
+    for (k = 0; k + 1 < wall->ring_count; k++) {
+        const dem_real dist = demi_ring_piece(wall, k, l, x.z, &a, &b, &end);
+        if (k && !(dist < least)) continue;
+        least = dist;
+        *point = demi_v(d.x*a, d.y*a, b);
+    }
+    *normal = demi_sub(*point, x);
+    *normal = least > 0 ? demi_scale(*normal, 1/least) : d;
+    return r - least;
+}
+/* The sheet that a sieve lies in, holes or not. */
+static dem_real demi_sieve_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal, dem_vec3 *point) {
+    dem_real l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
+    (void)element;
+    if (wall->radius > 0)                       /* ends of wires stand out of it */
+        l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius - wall->sieve.bar/2);
+    *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
+    *point = demi_v(x.x, x.y, 0);
+    return r - l;
+}
+/* A place `d` away that a ball of radius `reach`, the grain's own included, may touch. */
+DEM_INLINE dem_real demi_point_near(dem_vec3 d, dem_real reach, dem_vec3 *normal) {
+    const dem_real l = demi_length(d);
+    *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
+    return reach - l;
+}
+static dem_real demi_facet_distance(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                    dem_vec3 *normal, dem_vec3 *point) {
+    dem_vec3 c[3], d;
+    int where;
+    d = demi_facet_point(c, demi_facet_seen(wall, element, x, 0, c), &where);
+    *point = demi_add(x, d);
+    return demi_point_near(d, r, normal);
+}
+static dem_real demi_grain_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal, dem_vec3 *point) {
+    *point = demi_at(wall->vertices + 3*element);
+    return demi_point_near(demi_sub(*point, x), r + wall->radius, normal);
+}
+#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND) NEAR,
+static const demi_near_fn demi_nears[] = {0, DEMI_WALLS(DEMI_WALL_NEAR)};
+
+/* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane
+   is too far off is dropped at once. */
+static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
+                                   dem_real enough) {
+    dem_vec3 n, p;
+    if (demi_wall_per(wall) == 3) {
+        dem_vec3 c[3];
+        dem_real h;
+        demi_wall_corners(wall, element, c);
+        n = demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]));
+        h = demi_dot(n, demi_sub(local, c[0]));
+        if (h*h >= enough*enough*demi_dot(n, n) && demi_dot(n, n) > 0) return enough;
+    }
+    return -demi_nears[wall->kind](wall, element, local, 0, &n, &p);
+}
+
+/* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
+   share of the chord that the segment covers. */
+static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                   dem_vec3 *normal,
+                                   dem_vec3 *point, dem_real *overlap) {
+    dem_vec3 c[2], t, n;
+    dem_real length, off, along, chord, lo, hi, a;
+    demi_wall_corners(wall, element, c);
+    t = demi_sub(c[1], c[0]);
+    length = demi_length(t);
+    if (!(length > 0)) return 0;
+    t = demi_scale(t, 1/length);
+    n = demi_v(-t.y, t.x, 0);
+    x.z = 0;
+    off = demi_dot(demi_sub(x, c[0]), n);       /* signed distance from the line */
+    along = demi_dot(demi_sub(x, c[0]), t);
+    if (DEMI_ABS(off) >= r) return 0;
+    chord = DEMI_SQRT(r*r - off*off);
+    lo = DEMI_MAX(along - chord, DEM_R(0));
+    hi = DEMI_MIN(along + chord, length);
+    if (hi <= lo) return 0;
+    a = (hi - lo)/(2*chord);
+    *normal = off > 0 ? demi_scale(n, -1) : n;
+    *point = demi_add(c[0], demi_scale(t, along));
+    *overlap = r - DEMI_ABS(off);
+    return a*a*(3 - 2*a);
+}
+
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif

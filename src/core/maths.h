@@ -1,0 +1,156 @@
+/* ---------------------------------------------------------------------------------------------
+   >>maths
+   Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
+   -ffast-math cannot fold away.
+   --------------------------------------------------------------------------------------------- */
+#define DEMI_FARTHEST 1e15          /* m, m/s, rad/s, s: what is beyond is a mistake, and refused
+                                       where it enters; squares could overflow */
+#define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
+/* What enters stays between these, so that squares and quotients of it are numbers. */
+#define DEMI_MOST 1e30              /* in SI units: moduli, densities, stiffnesses */
+#define DEMI_MOST_RATIO 1e9         /* coefficients without a unit */
+#define DEMI_FINEST 1e-15           /* m: radii that a distribution of sizes draws */
+#define DEMI_DT_LEAST 1e-20         /* s: time steps below get nowhere */
+static double demi_size(dem_vec3 a) {                     /* largest component */
+    return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
+}
+static dem_vec3 demi_unit(dem_vec3 a) {                   /* of any length but 0 */
+    double x = (double)a.x, y = (double)a.y, z = (double)a.z, l;
+    int e;
+    (void)frexp(demi_size(a), &e);                        /* a power of two: exact */
+    x = ldexp(x, -e); y = ldexp(y, -e); z = ldexp(z, -e);
+    l = sqrt(x*x + y*y + z*z);
+    return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
+}
+static int demi_finite_double(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return ((bits >> 52) & 0x7ff) != 0x7ff;
+}
+static int demi_finite(dem_real x) { return demi_finite_double((double)x); }
+static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
+                                     demi_finite(v.z); }
+static int demi_bounded(double x) { return demi_finite_double(x) && fabs(x) <= DEMI_FARTHEST; }
+/* A place, a velocity or a spin that can be: on entering, in a step, in a file. */
+static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_FARTHEST; }
+/* Neither 0, "chosen for you", nor a time step that gets anywhere. */
+static int demi_dt_bad(dem_real dt) {
+    return !((double)dt >= DEMI_DT_LEAST || DEMI_ABS(dt) <= 0) || (double)dt > DEMI_FARTHEST;
+}
+
+/* Functions that every C library rounds in its own way. Here are ours, so that a run has the same
+   bits with all of them: of <math.h> dem.h uses only what IEEE 754 fixes to the last bit (sqrt,
+   fabs, floor, ceil, fmod, frexp, ldexp). Each is a series on a short range, to 4 units in the last
+   place; what is no number is answered so, what is out of range by 0 or infinity.
+
+   sin, cos: x = n pi/2 + r, |r| <= pi/4, pi/2 in four parts, of which the first three have 24 bits,
+   so that n times each is exact to n = 2^29. */
+static void demi_sin_cos(double x, double *sine, double *cosine) {
+    const double n = floor(x/1.5707963267948966 + 0.5);
+    const double r = (((x - n*1.570796251296997) - n*7.549789415861596e-08) -
+                      n*5.390302529957765e-15) - n*3.282003415807913e-22;
+    const double u = r*r, quarter = n - 4*floor(n/4);
+    const double s = r + r*u*(-1.0/6 + u*(1.0/120 + u*(-1.0/5040 + u*(1.0/362880 +
+        u*(-1.0/39916800 + u*(1.0/6227020800 + u*(-1.0/1307674368000 + u/355687428096000)))))));
+    const double c = 1 - u/2 + u*u*(1.0/24 + u*(-1.0/720 + u*(1.0/40320 + u*(-1.0/3628800 +
+        u*(1.0/479001600 + u*(-1.0/87178291200 + u*(1.0/20922789888000 -
+        u/6402373705728000)))))));
+    if (!demi_finite_double(x)) { *sine = *cosine = x - x; return; }
+    *sine = quarter < 1 ? s : quarter < 2 ? c : quarter < 3 ? -s : -c;
+    *cosine = quarter < 1 ? c : quarter < 2 ? -s : quarter < 3 ? -c : s;
+}
+static double demi_sin(double x) { double s, c; demi_sin_cos(x, &s, &c); return s; }
+static double demi_cos(double x) { double s, c; demi_sin_cos(x, &s, &c); return c; }
+/* log m 2^e = e log 2 + 2 artanh((m - 1)/(m + 1)), m from 0.7 to 1.4 */
+static double demi_log(double x) {
+    int e;
+    double m, s, u;
+    if (!(x > 0)) return x < 0 ? (x - x)/(x - x) : x > -1 ? -HUGE_VAL : x;
+    if (!demi_finite_double(x)) return x;
+    m = frexp(x, &e);
+    if (m < 0.7071067811865476) { m *= 2; e--; }
+    s = (m - 1)/(m + 1);
+    u = s*s;
+    u = 2*s*u*(1.0/3 + u*(1.0/5 + u*(1.0/7 + u*(1.0/9 + u*(1.0/11 + u*(1.0/13 + u*(1.0/15 +
+        u*(1.0/17 + u*(1.0/19 + u*(1.0/21 + u/23))))))))));
+    return e*0.6931471803691238 + (2*s + (u + e*1.9082149292705877e-10));
+}
+/* exp x = 2^n exp r, |r| <= log(2)/2 */
+static double demi_exp(double x) {
+    const double n = floor(x/0.6931471805599453 + 0.5);
+    const double r = (x - n*0.6931471803691238) - n*1.9082149292705877e-10;
+    double sum = 1;
+    int k;
+    if (!(x > -746 && x < 710)) return x > 0 ? HUGE_VAL : x < 0 ? 0 : x;
+    for (k = 14; k > 0; k--) sum = 1 + r*sum/k;
+    return ldexp(sum, (int)n);
+}
+/* x^y of x >= 0 */
+static double demi_pow(double x, double y) {
+    return x > 0 ? demi_exp(y*demi_log(x)) : y > 0 ? x : y < 0 ? HUGE_VAL : 1;
+}
+static double demi_atan(double x) { /* the angle halved twice, then the series */
+    double u;
+    int k;
+    if (x > 1 || x < -1) return (x > 0 ? 1.5707963267948966 : -1.5707963267948966) - demi_atan(1/x);
+    for (k = 0; k < 2; k++) x = x/(1 + sqrt(1 + x*x));
+    u = x*x;
+    return 4*(x - x*u*(1.0/3 - u*(1.0/5 - u*(1.0/7 - u*(1.0/9 - u*(1.0/11 - u*(1.0/13 -
+        u*(1.0/15 - u*(1.0/17 - u*(1.0/19 - u*(1.0/21 - u/23)))))))))));
+}
+static double demi_atan2(double y, double x) {
+    const double pi = 3.141592653589793;
+    if (fabs(y) > fabs(x)) return (y > 0 ? pi/2 : -pi/2) - demi_atan(x/y);
+    return x > 0 ? demi_atan(y/x) : x < 0 ? demi_atan(y/x) + (y < 0 ? -pi : pi) : 0;
+}
+static double demi_acos(double x) { return 2*demi_atan2(sqrt(1 - x), sqrt(1 + x)); }
+
+/* local -> world and back, for points and for directions */
+DEM_INLINE dem_vec3 demi_rotate(const dem_real *R, dem_vec3 a) {
+    return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x +
+                  R[7]*a.y + R[8]*a.z);
+}
+DEM_INLINE dem_vec3 demi_unrotate(const dem_real *R, dem_vec3 a) {
+    return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x +
+                  R[5]*a.y + R[8]*a.z);
+}
+/* Rotation by angle about a unit axis (Rodrigues), row-major. */
+static void demi_rotation(double *R, double x, double y, double z, double angle) {
+    double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;
+    R[0] = c + x*x*v;   R[1] = x*y*v - z*s; R[2] = x*z*v + y*s;
+    R[3] = y*x*v + z*s; R[4] = c + y*y*v;   R[5] = y*z*v - x*s;
+    R[6] = z*x*v - y*s; R[7] = z*y*v + x*s; R[8] = c + z*z*v;
+}
+/* A rotation whose third column is the unit vector n, so that local z is n (Duff et al. 2017). */
+static void demi_frame_of(dem_real *R, dem_vec3 n) {
+    dem_real s = n.z >= 0 ? DEM_R(1) : DEM_R(-1), a = -1/(s + n.z), b = n.x*n.y*a;
+    R[0] = 1 + s*n.x*n.x*a; R[3] = s*b;           R[6] = -s*n.x;
+    R[1] = b;               R[4] = s + n.y*n.y*a; R[7] = -n.y;
+    R[2] = n.x;             R[5] = n.y;           R[8] = n.z;
+}
+
+/* splitmix64: one 64-bit state, good enough to place grains. */
+static uint64_t demi_random(uint64_t *state) {
+    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
+    z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31);
+}
+static double demi_uniform(uint64_t *state) {                    /* 0 <= u < 1 */
+    return (double)(demi_random(state) >> 11)/9007199254740992.0;
+}
+
+/* Of mean 0 and variance 1 (Box and Muller 1958, one of the two). */
+static double demi_gauss(uint64_t *state) {
+    const double u = 1 - demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
+    return sqrt(-2*demi_log(u))*demi_cos(a);
+}
+
+/* FNV-1a, 64 bits: check sums and state hashes. */
+#define DEMI_HASH_START UINT64_C(14695981039346656037)
+static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
+    const unsigned char *p = (const unsigned char *)data;
+    size_t i;
+    for (i = 0; i < size; i++) h = (h ^ p[i])*UINT64_C(1099511628211);
+    return h;
+}

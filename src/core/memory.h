@@ -1,0 +1,352 @@
+/* ---------------------------------------------------------------------------------------------
+   >>memory
+   What each body has, told once; names; sentences of what went wrong; allocation, and arrays that
+   grow.
+   --------------------------------------------------------------------------------------------- */
+/* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
+DEM_INLINE dem_real demi_cover(const dem_world *w) {
+    return (dem_real)(w->margin.skin + w->margin.reach);
+}
+/* Contacts answer by impulses; each remembers its friction and moment (vectors), its push and what
+   of that cohesion takes, as forces; the normal velocity that it was left with, and what it turned
+   back (m/s), see demi_impulse_turns; and whether it slides, 1 or 0. */
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
+DEM_INLINE int demi_impulsive(const dem_world *w) {
+    return w->desc.response == DEM_RESPONSE_IMPULSES;
+}
+/* m: from the first body of entry `at` of the near list to the second, or to its image there. */
+DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
+    const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
+    return demi_add(demi_sub(demi_at(y), demi_at(x)), demi_at(w->image_shift + w->near.image[at]));
+}
+/* Does a law answer rates of the user's numbers? */
+DEM_INLINE int demi_exchanges(const dem_world *w) {
+    return w->bodies.real_count > 0 && w->desc.law_who;
+}
+/* Word k of body_reals or law_memory_names, its length; a null pointer: there are not so many. */
+static const char *demi_name(const char *names, int k, int *length) {
+    const char *at = names ? names : "";
+    for (;; k--) {
+        at += strspn(at, " ");
+        *length = (int)strcspn(at, " ");
+        if (!*length) return 0;
+        if (!k) return at;
+        at += *length;
+    }
+}
+/* How many these are; -1: more than there may be, or a word that is none. */
+static int demi_names(const char *names, int most) {
+    int count = 0, length, i;
+    const char *at;
+    while ((at = demi_name(names, count, &length)) != 0) {
+        for (i = 0; i < length; i++)
+            if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", at[i]))
+                return -1;
+        if (length > 23 || ++count > most) return -1;
+    }
+    return count;
+}
+/* These names, a space between two. Answers how many there are. */
+static int demi_names_copy(const char *names, char *out) {
+    const char *name;
+    int k, n;
+    *out = 0;
+    for (k = 0; (name = demi_name(names, k, &n)) != 0; k++)
+        sprintf(out + strlen(out), "%s%.*s", k ? " " : "", n, name);
+    return k;
+}
+/* The names that a world's descs point to are its own: also after it was copied. */
+static void demi_names_point(dem_world *w) {
+    w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
+    w->desc.law_memory_names = w->asked.law_memory_names = w->memory_names[0] ? w->memory_names : 0;
+}
+static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
+    w->bodies.real_count = demi_names_copy(desc->body_reals, w->real_names);
+    demi_names_copy(desc->law_memory_names, w->memory_names);
+    demi_names_point(w);
+}
+/* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
+   0 where it is asked at touch alone. */
+DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
+    if (demi_impulsive(w)) return (dem_real)w->margin.reach;
+    return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
+}
+
+/* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
+       sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
+       demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
+       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_BACK_TURNED: those of
+       a world where both hold; DEMI_COUNTED: those of a
+       world with numbers of the user's, as many times as there are numbers; DEMI_ZONED: those of a
+       world with outlets that only count; DEMI_BOOKED: those of a world with a ledger whose scheme
+       predicts velocities; DEMI_SLOTS: every slot.
+       What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
+       kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
+       room to work in. --- */
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
+       DEMI_SLOTS };
+enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
+typedef struct demi_body_array {
+    /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
+    size_t field, item;
+    int who, what;
+} demi_body_array;
+#define DEMI_ARRAY(field, count, who, what) \
+    {offsetof(demi_bodies, field), (count)*sizeof *((demi_bodies *)0)->field, who, what}
+static const demi_body_array demi_body_arrays[] = {
+    DEMI_ARRAY(slot,            1, DEMI_EVERY,  DEMI_KEPT),     /* the first: see demi_body_take */
+    DEMI_ARRAY(material,        1, DEMI_EVERY,  DEMI_KEPT),
+    DEMI_ARRAY(pos,             4, DEMI_EVERY,  DEMI_PLACES),
+    DEMI_ARRAY(vel,             4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(spin,            4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(half_vel,        4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(half_spin,       4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(force,           4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(torque,          4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(mass,            1, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(inv_mass,        1, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(inv_inertia,     1, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(last_pos,        4, DEMI_BACK,   DEMI_PLACES),
+    DEMI_ARRAY(went,            1, DEMI_BACK,   DEMI_KEPT),
+    DEMI_ARRAY(late,            4, DEMI_BOOKED, DEMI_REALS),
+    DEMI_ARRAY(orient,          4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(last_orient,     4, DEMI_BACK_TURNED, DEMI_REALS),
+    DEMI_ARRAY(angular,         4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(moment,          4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(shape,           1, DEMI_TURNED, DEMI_KEPT),
+    DEMI_ARRAY(reals,           1, DEMI_COUNTED, DEMI_REALS),
+    DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
+    DEMI_ARRAY(zones,           1, DEMI_ZONED,  DEMI_KEPT),
+    DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
+    DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
+    DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
+    DEMI_ARRAY(slot_index,      1, DEMI_SLOTS,  DEMI_KEPT),
+    DEMI_ARRAY(slot_generation, 1, DEMI_SLOTS,  DEMI_KEPT)};
+enum { DEMI_BODY_ARRAYS = (int)(sizeof demi_body_arrays/sizeof *demi_body_arrays) };
+
+/* Does a call, its name n characters long, build a scene? Without what it would have added or
+   chosen a run is another one. Those that take away, look, read or write do not. */
+static int demi_builds(const char *call, size_t n) {
+    static const char *const ends[] = {"_add", "_fill", "_pack", "dem_pair_set", "dem_material_set",
+                                       "dem_wall_motion_set"};
+    size_t k, l;
+    for (k = 0; k < sizeof ends/sizeof *ends; k++) {
+        l = strlen(ends[k]);
+        if (n >= l && !memcmp(call + n - l, ends[k], l)) return 1;
+    }
+    return 0;
+}
+/* Which of the refused calls it is, -1: none. */
+static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
+    int k;
+    for (k = 0; k < w->refused; k++)
+        if (strlen(w->refused_calls[k]) == n && !memcmp(w->refused_calls[k], call, n)) return k;
+    return -1;
+}
+
+/* The sentence of a call that failed. One that builds the scene is remembered. */
+static void demi_tell(dem_world *w, const char *format, va_list args) DEMI_FORMAT(2, 0);
+static void demi_tell(dem_world *w, const char *format, va_list args) {
+    const size_t calls = sizeof w->refused_calls/sizeof *w->refused_calls;
+    size_t n;
+    vsnprintf(w->error, sizeof w->error, format, args);
+    n = strcspn(w->error, ":");
+    if (n >= sizeof *w->refused_calls || !demi_builds(w->error, n)) return;
+    if (!w->refused) memcpy(w->refusal, w->error, sizeof w->refusal);
+    if (demi_refused_find(w, w->error, n) < 0 && (size_t)w->refused < calls) {
+        memcpy(w->refused_calls[w->refused], w->error, n);
+        w->refused_calls[w->refused++][n] = 0;
+    }
+}
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
+                            ...) DEMI_FORMAT(3, 4);
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+#if DEMI_OPENMP
+    #pragma omp critical(demi_fail)             /* laws on several threads may be refused at once */
+#endif
+    demi_tell(w, format, args);
+    va_end(args);
+    return result;
+}
+/* A call that builds the scene went well: an earlier refusal of the same call is made good. */
+static void demi_built(dem_world *w, const char *call) {
+    const size_t n = strlen(call);
+    const int k = demi_refused_find(w, call, n);
+    if (k < 0) return;
+    memmove(w->refused_calls[k], w->refused_calls[k + 1],
+            (size_t)(--w->refused - k)*sizeof *w->refused_calls);
+    if (!w->refused || strncmp(w->refusal, call, n) || w->refusal[n] != ':') return;
+    snprintf(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
+}
+/* Before a run: says so when a call that builds the scene was refused and nobody read why. A scene
+   that lacks something would run, and answer DEM_OK. */
+static dem_result demi_unbuilt(dem_world *w, const char *call) {
+    char why[sizeof w->refusal];
+    if (!w->refused) return DEM_OK;
+    memcpy(why, w->refusal, sizeof why);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: did not start, because an earlier call failed "
+                     "and its message has not been read: \"%.320s\"; correct that call, or read "
+                     "dem_world_error_get and continue without it", call, why);
+}
+/* Before a function of the user's is called: until `w->look.calling` is what this returns again,
+   calls that change the world are refused. */
+static demi_calling demi_calls(dem_world *w, const char *who, int within) {
+    const demi_calling was = w->look.calling;
+    w->look.calling.who = who;
+    w->look.calling.within = within;
+    return was;
+}
+/* The same where a world is only looked at, maybe by several threads: one that finds nothing under
+   way says so and takes it back, others do neither, so that it does not stay said. */
+static demi_calling demi_look_calls(const dem_world *w, const char *who) {
+    const demi_calling was = w->look.calling;
+    if (!was.who) demi_calls((dem_world *)w, who, 1);
+    return was;
+}
+static void demi_look_called(const dem_world *w, demi_calling was) {
+    if (!was.who) ((dem_world *)w)->look.calling = was;
+}
+/* The first line of every public function is one of the next three. They return 1, with a sentence
+   where there is a world to hold it, when the world or a pointer that has to lead somewhere is
+   null. The first is for functions that only look: any thread and any function of the user's may
+   call them. */
+static int demi_null_look(const dem_world *w, const char *call, const void *pointer,
+                          const char *name) {
+    if (w && pointer) return 0;
+    if (w) demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: %s is null; give its address", call,
+                     name);
+    return 1;
+}
+static int demi_barred(dem_world *w, const char *call) {
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls (law, field, "
+              "motion, region, progress or the like), which may only read the world; make this "
+              "call after %s has returned, or between two steps in an output of kind "
+              "DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
+    return 1;
+}
+/* For functions that need memory of the world but leave its state alone, such as those that read
+   and write files: refused within a step. */
+static int demi_null_write(dem_world *w, const char *call, const void *pointer, const char *name) {
+    return demi_null_look(w, call, pointer, name) ||
+        (w->look.calling.who && w->look.calling.within && demi_barred(w, call));
+}
+/* For all others: refused in every function of the user's but those of outputs. */
+static int demi_null(dem_world *w, const char *call, const void *pointer, const char *name) {
+    return demi_null_look(w, call, pointer, name) ||
+        (w->look.calling.who && demi_barred(w, call));
+}
+static const dem_material demi_no_material = {0};
+static const dem_shape demi_no_shape = {0};
+static const dem_body demi_no_body = {0, 0};
+static const dem_wall demi_no_wall = {0};
+static const dem_field demi_no_field = {0};
+static const dem_feed demi_no_feed = {0};
+static const dem_outlet demi_no_outlet = {0};
+static const dem_joint demi_no_joint = {0};
+
+static dem_result demi_no_memory(dem_world *w, const char *call) {
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
+                     "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
+}
+
+static void *demi_raw_alloc(const dem_allocator *a, size_t size) {
+    return a->alloc_fn ? a->alloc_fn(size, a->user) : malloc(size);
+}
+static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
+    if (!p) return;
+    if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
+}
+/* What stands before everything handed out. Begins on a cache line, so that no row of four reals
+   lies across two; knows its size, so that it frees and grows without being told. */
+typedef struct demi_block {
+    struct demi_block *before, *after;         /* in its chain */
+    size_t bytes;                              /* of what is handed out */
+    int in, chain;                             /* bytes from where the allocator's begin */
+} demi_block;
+enum { DEMI_LINE = 64 };
+static demi_block *demi_block_of(void *data) { return (demi_block *)data - 1; }
+/* Items of `item` bytes there is room for; 0 of null. */
+static size_t demi_room(const void *data, size_t item) {
+    return data ? ((const demi_block *)data - 1)->bytes/item : 0;
+}
+/* From the user's allocator and back, which may not change the world that asks. */
+static void *demi_block_alloc(dem_world *w, size_t bytes) {
+    const demi_calling was = w->look.calling;
+    void *p;
+    if (w->desc.allocator.alloc_fn) demi_calls(w, "the allocation of memory", 1);
+    p = demi_raw_alloc(&w->desc.allocator, bytes);
+    if (w->desc.allocator.alloc_fn) w->look.calling = was;
+    return p;
+}
+static void demi_block_free(dem_world *w, void *p, size_t bytes) {
+    const demi_calling was = w->look.calling;
+    if (w->desc.allocator.free_fn) demi_calls(w, "the release of memory", 1);
+    demi_raw_free(&w->desc.allocator, p, bytes);
+    if (w->desc.allocator.free_fn) w->look.calling = was;
+}
+/* count items of size bytes, cleared, that hang on a chain of the world or, DEMI_LOOSE, on none:
+   then its maker frees it. Null when there is no room, the product overflows, or count is 0. */
+static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
+    const size_t bytes = count*size;
+    unsigned char *p;
+    demi_block *block;
+    int in;
+    if ((size && count > (size_t)-1/2/size) || !bytes) return 0;
+    p = (unsigned char *)demi_block_alloc(w, bytes + 2*DEMI_LINE);
+    if (!p) return 0;
+    in = 2*DEMI_LINE - (int)((uintptr_t)p%DEMI_LINE);
+    memset(p + in, 0, bytes);
+    block = (demi_block *)(void *)(p + in) - 1;
+    block->before = 0;
+    block->after = chain ? w->chains[chain] : 0;
+    block->bytes = bytes;
+    block->in = in;
+    block->chain = chain;
+    if (block->after) block->after->before = block;
+    if (chain) w->chains[chain] = block;
+    w->bytes += bytes + 2*DEMI_LINE;
+    return p + in;
+}
+static void *demi_alloc(dem_world *w, size_t count, size_t size) {
+    return demi_hold(w, DEMI_LOOSE, count, size);
+}
+static void demi_free(dem_world *w, void *data) {
+    demi_block *block;
+    if (!data) return;
+    block = demi_block_of(data);
+    if (block->after) block->after->before = block->before;
+    if (block->before) block->before->after = block->after;
+    else if (block->chain) w->chains[block->chain] = block->after;
+    w->bytes -= block->bytes + 2*DEMI_LINE;
+    demi_block_free(w, (unsigned char *)data - block->in, block->bytes + 2*DEMI_LINE);
+}
+/* Does it hang on this chain? A copy of a world looks at what hangs on another's. */
+static int demi_owns(const dem_world *w, int chain, const void *data) {
+    const demi_block *block = w->chains[chain];
+    while (block && (const void *)(block + 1) != data) block = block->after;
+    return block != 0;
+}
+/* All that hangs on a chain: nothing can be forgotten. */
+static void demi_free_chain(dem_world *w, int chain) {
+    while (w->chains[chain]) demi_free(w, w->chains[chain] + 1);
+}
+/* Makes room for count items in an array of the world, keeping those there; never shrinks. An array
+   grown for none is not null either, for null + 0 is undefined in C. 0 when memory ran out; then
+   nothing has changed. */
+#define DEMI_GROW(w, array, count) demi_grow(w, DEMI_RUN, &(array), sizeof *(array), count)
+static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t count) {
+    void *old, *fresh;
+    size_t room;
+    memcpy(&old, array, sizeof old);            /* a pointer to whatever */
+    room = demi_room(old, item);
+    if (old && count <= room) return 1;
+    /* bulk: what it takes; bit by bit: in steps */
+    fresh = demi_hold(w, chain, DEMI_MAX(count, room + room/4 + 16), item);
+    if (!fresh) return 0;
+    if (old) memcpy(fresh, old, room*item);
+    memcpy(array, &fresh, sizeof fresh);
+    demi_free(w, old);
+    return 1;
+}

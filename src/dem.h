@@ -1,0 +1,275 @@
+/* dem.h - version 0.1.0 - discrete-element (granular) simulation in one C99 header. MIT licence.
+
+   dem.h simulates grains: spheres of any radius (discs in two dimensions), ellipsoids, convex
+   polyhedra and rigid clusters of spheres. They touch, rub, roll and bounce on each other and on
+   moving walls.
+
+   Include it wherever you use it. Define DEM_IMPLEMENTATION before the include in exactly *one* C
+   or C++ file. dem.c is such a file: compile it once (10 to 20 s with gcc at -O2), and your own
+   files compile in a moment:
+
+       cc -O2 -c dem.c                        (add -fopenmp for threads)
+       cc -O2 program.c dem.o -lm
+
+   Contents. Search for a tag to jump to its part.
+     api/ - the public half: what programs include
+       >>manual            guide: a complete program, the concepts in order, glossary, references
+       >>api               results, vectors, ids, choices, contacts, the built-in contact laws
+       >>scene             building a scene: worlds, materials, bodies, walls, joints, feeds
+       >>run               running it: steps, measuring, files, replays, slabs, the report
+     >>implementation - private code from here on; users need not read it
+     core/ - what everything else stands on
+       >>platform          compilers, OpenMP, the parallel loop
+       >>maths             vectors, poses, random numbers
+       >>layout            data structures of the world
+       >>memory            arrays of each body, errors, allocation
+     law/ - contact laws and materials
+       >>laws              table of the built-in contact laws and their coefficients
+       >>materials         materials, the pair table, damping from restitution
+     body/ - shapes of grains, the grains, and how they move
+       >>shapes            ellipsoids and clusters of spheres: mass properties, support points
+       >>closed            inside and outside of a mesh: shells, open edges, flipped triangles
+       >>hulls             convex polyhedra: hull of points, faces, mass properties
+       >>unions            several shapes as one body; polygons of planar worlds
+       >>bodies            grains: slots, arrays, insertion, removal
+       >>integrators       kick, drift and prediction; rotation
+     surface/ - walls
+       >>facets            weights of the faces, edges and corners of a surface
+       >>sheets            connected facets of a surface, their orientation and open edges
+       >>motions           poses of moving walls: rotation, oscillation, tables of poses
+       >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+     search/ - which bodies may touch: from candidates to the pruned neighbour list
+       >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
+       >>lists             candidates on walls; persistent contacts carried over to new lists
+       >>near              the pruned neighbour list that forces use
+       >>rebuild           rebuilding lists: effects in force, skin, order of bodies, domains
+     contact/ - contacts and their forces, by shapes
+       >>touch             narrow phase: candidates to contacts, geometry only
+       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
+       >>polyhedra         overlap of two polyhedra, or of one and a wall
+       >>gaps              distance between polyhedra, and their contact points
+       >>on-walls          contacts of spheres and ellipsoids with walls
+       >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
+       >>polyhedra-round   contacts of polyhedra with cylinders and surfaces of revolution
+       >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
+       >>meets             contacts of two bodies, by their shapes
+       >>kept              contacts other than sphere on sphere: persistent contacts
+       >>kept-respond      persistent contacts to forces and torques on both bodies
+     impulse/ - rigid grains: constraints, joints, solvers
+       >>impulses          rigid grains: the contacts and constraints of a step
+       >>joints            hinges, ball joints, motors
+       >>joints-solved     all joints at once: trees, loops, the bound on their energy
+       >>solvers           iterative solvers for impulses
+       >>impulses-told     solved impulses to forces, contact history and energy losses
+     scene/ - filling a scene: size distributions, fills, feeds
+       >>sizes             size distributions: sieve curves, drawing of radii, classes
+       >>placing           room for new grains: regions, random fills, packings
+       >>feed              feeds and outlets
+     run/ - the step and what is measured in it
+       >>advice            the time step: what is chosen and what is too large
+       >>ledger            account of energy
+       >>fields            averages on a grid: solid fraction, velocity, stress
+       >>step              one step after another
+       >>measure           counters, contacts, angle of repose, the digest
+     file/ - reading and writing
+       >>outlines          polygons with many corners cut into triangles
+       >>read              reading meshes and profiles
+       >>decompose         clusters of spheres that approximate a mesh
+       >>read-tables       reading grains: columns and arrays recognised by name
+       >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
+       >>write             writing VTP, VTK, XYZ and CSV
+       >>checkpoint        writing the complete state, bit for bit
+       >>restore           checking and reading a checkpoint
+       >>output            files and calls on a schedule
+     report/ - what a scene costs, what is wrong with it, what it did
+       >>check             likely mistakes in a scene, found before it runs
+       >>trials            cost and accuracy of other choices, tried on copies of a scene
+       >>effects           which effects are active, which never happened, what each costs
+       >>world             creating and destroying a world; the report
+     slab/ - one scene on several threads or processes
+       >>slabs             one scene on several threads or processes: data and messages
+       >>slabs-step        one step of all slabs
+       >>slabs-time        one time step for all slabs
+       >>slabs-run         feeds into slabs; one step after another
+       >>deal              distributing a world to slabs and collecting it again
+     replay/ - replays in a browser
+       >>viewer            the page that plays a replay, from examples/replay/viewer.html
+       >>replay            writing a replay, frame by frame
+*/
+
+#include "api/manual.h"
+#ifndef DEM_H
+#define DEM_H
+#include "api/api.h"
+#include "api/scene.h"
+#include "api/run.h"
+#endif /* DEM_H */
+
+/* ================================================================================================
+   >>implementation - stop here if you only want to use it
+   ============================================================================================== */
+#if defined(DEM_IMPLEMENTATION) && !defined(DEM_IMPLEMENTATION_DONE)
+#define DEM_IMPLEMENTATION_DONE
+/* windows.h makes macros of these two words, <complex.h> one of I, and programs make them of any
+   capital letter. Formulas below use them as names; the macros are back at the end. */
+#pragma push_macro("near")
+#pragma push_macro("far")
+#pragma push_macro("A")
+#pragma push_macro("B")
+#pragma push_macro("C")
+#pragma push_macro("D")
+#pragma push_macro("E")
+#pragma push_macro("F")
+#pragma push_macro("G")
+#pragma push_macro("H")
+#pragma push_macro("I")
+#pragma push_macro("J")
+#pragma push_macro("K")
+#pragma push_macro("L")
+#pragma push_macro("M")
+#pragma push_macro("N")
+#pragma push_macro("P")
+#pragma push_macro("Q")
+#pragma push_macro("R")
+#pragma push_macro("S")
+#pragma push_macro("T")
+#pragma push_macro("W")
+#pragma push_macro("X")
+#pragma push_macro("Y")
+#undef near
+#undef far
+#undef A
+#undef B
+#undef C
+#undef D
+#undef E
+#undef F
+#undef G
+#undef H
+#undef I
+#undef J
+#undef K
+#undef L
+#undef M
+#undef N
+#undef P
+#undef Q
+#undef R
+#undef S
+#undef T
+#undef W
+#undef X
+#undef Y
+
+#include "core/platform.h"
+#include "core/maths.h"
+#include "core/layout.h"
+#include "core/memory.h"
+#include "law/laws.h"
+#include "law/materials.h"
+#include "body/shapes.h"
+#include "body/closed.h"
+#include "body/hulls.h"
+#include "body/unions.h"
+#include "body/bodies.h"
+#include "body/integrators.h"
+#include "surface/facets.h"
+#include "surface/sheets.h"
+#include "surface/motions.h"
+#include "surface/walls.h"
+#include "search/search.h"
+#include "search/lists.h"
+#include "search/near.h"
+#include "search/rebuild.h"
+#include "contact/touch.h"
+#include "contact/respond.h"
+#include "contact/polyhedra.h"
+#include "contact/gaps.h"
+#include "contact/on-walls.h"
+#include "contact/polyhedra-walls.h"
+#include "contact/polyhedra-round.h"
+#include "contact/polyhedra-sieves.h"
+#include "contact/meets.h"
+#include "contact/kept.h"
+#include "contact/kept-respond.h"
+#include "impulse/impulses.h"
+#include "impulse/joints.h"
+#include "impulse/joints-solved.h"
+#include "impulse/solvers.h"
+#include "impulse/impulses-told.h"
+#include "scene/sizes.h"
+#include "scene/placing.h"
+#include "scene/feed.h"
+#include "run/advice.h"
+#include "run/ledger.h"
+#include "run/fields.h"
+#include "run/step.h"
+#include "run/measure.h"
+#include "file/outlines.h"
+#include "file/read.h"
+#include "file/decompose.h"
+#include "file/read-tables.h"
+#include "file/read-grains.h"
+#include "file/write.h"
+#include "file/checkpoint.h"
+#include "file/restore.h"
+#include "file/output.h"
+#include "report/check.h"
+#include "report/trials.h"
+#include "report/effects.h"
+#include "report/world.h"
+#include "slab/slabs.h"
+#include "slab/slabs-step.h"
+#include "slab/slabs-time.h"
+#include "slab/slabs-run.h"
+#include "slab/deal.h"
+#include "replay/viewer.h"
+#include "replay/replay.h"
+#pragma pop_macro("Y")
+#pragma pop_macro("X")
+#pragma pop_macro("W")
+#pragma pop_macro("T")
+#pragma pop_macro("S")
+#pragma pop_macro("R")
+#pragma pop_macro("Q")
+#pragma pop_macro("P")
+#pragma pop_macro("N")
+#pragma pop_macro("M")
+#pragma pop_macro("L")
+#pragma pop_macro("K")
+#pragma pop_macro("J")
+#pragma pop_macro("I")
+#pragma pop_macro("H")
+#pragma pop_macro("G")
+#pragma pop_macro("F")
+#pragma pop_macro("E")
+#pragma pop_macro("D")
+#pragma pop_macro("C")
+#pragma pop_macro("B")
+#pragma pop_macro("A")
+#pragma pop_macro("far")
+#pragma pop_macro("near")
+#endif /* DEM_IMPLEMENTATION */
+
+/* MIT License
+
+   Copyright (c) 2026 the dem.h authors
+
+   Permission is hereby granted, free of charge, to any person obtaining a copy
+   of this software and associated documentation files (the "Software"), to deal
+   in the Software without restriction, including without limitation the rights
+   to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+   copies of the Software, and to permit persons to whom the Software is
+   furnished to do so, subject to the following conditions:
+
+   The above copyright notice and this permission notice shall be included in all
+   copies or substantial portions of the Software.
+
+   THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+   IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+   FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+   AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+   LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+   OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
+   SOFTWARE.
+*/

@@ -1,0 +1,706 @@
+/* ---------------------------------------------------------------------------------------------
+   >>checkpoint
+   Everything that decides the next step, in one visit that both writes and reads, so that the two
+   cannot differ. The file: magic, version, size of dem_real, byte order, counts; the fields of each
+   part of the scene (desc, materials, pairs, shapes, walls, fields, feeds, outlets); numbers,
+   domains, bodies, lists, contacts; check sum of all before it.
+
+   What hangs on the list of candidates (laws in force, reals of memory per contact, coefficients
+   that dem_pair_set has outdated) is stored and not worked out anew: the scene may have changed
+   since the list was made. Of a list that no longer fits the bodies only the counts are stored, by
+   which the next one is chosen.
+   --------------------------------------------------------------------------------------------- */
+#define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
+enum { DEMI_CHECKPOINT_VERSION = 14 };
+
+/* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
+   counts bytes. Hashes them where the sum is not 0 at the beginning. */
+typedef struct demi_stream {
+    FILE *file;
+    char *to;
+    const char *from;
+    uint64_t sum;
+    size_t size, left;
+    int cut;                         /* more was to be read than there was */
+} demi_stream;
+
+static void demi_visit(demi_stream *s, void *data, size_t size) {
+    s->size += size;
+    if (!size) return;
+    if (s->sum) s->sum = demi_hash(s->sum, data, size);
+    if (s->file) fwrite(data, 1, size, s->file);
+    else if (s->to) {
+        memcpy(s->to, data, size);
+        s->to += size;
+    } else if (s->from && size <= s->left) {
+        memcpy(data, s->from, size);
+        s->from += size;
+        s->left -= size;
+    } else if (s->from) {
+        memset(data, 0, size);
+        s->left = 0;
+        s->cut = 1;
+    }
+}
+#define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
+
+/* --- the scene: what a file and the world that reads it must have in common. A row for each field
+       that decides what a run does: a field of a desc that has none is free (threads, allocator,
+       allow_large_dt, what functions are handed). The file holds their values, so that a refusal
+       can name the field and both. --- */
+
+/* type: 'i' int or enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double, 'u' uint64_t, 'p' is it
+   null?, 't' a text, of at most `size` bytes, 'h' the digest of what it points to. */
+typedef struct demi_scene_row {
+    const char *name, *words;       /* as a sentence has them: the field, and values from 0 on */
+    size_t offset, size;            /* of the field in its struct; bytes in the file */
+    char type;
+    uint64_t (*digest)(const void *item);
+} demi_scene_row;
+enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes in the file, of one row */
+#define DEMI_ROW_AS(of, name, field, type) \
+    {name, 0, offsetof(of, field), sizeof ((of *)0)->field, type, 0}
+#define DEMI_ROW(of, field, type) DEMI_ROW_AS(of, #field, field, type)
+#define DEMI_ROW_ENUM(of, field, words) \
+    {#field, words, offsetof(of, field), sizeof ((of *)0)->field, 'i', 0}
+#define DEMI_ROW_NULL(of, field) {#field, "none one", offsetof(of, field), sizeof(int32_t), 'p', 0}
+#define DEMI_ROW_TEXT(of, field, most) {#field, 0, offsetof(of, field), (most)*24, 't', 0}
+#define DEMI_ROW_DIGEST(name, digest) {name, 0, 0, sizeof(uint64_t), 'h', digest}
+
+static const demi_scene_row demi_desc_rows[] = {
+    DEMI_ROW(dem_world_desc, gravity, 'v'), DEMI_ROW(dem_world_desc, domain, 'v'),
+    DEMI_ROW_ENUM(dem_world_desc, boundary, "open periodic outflow"),
+    DEMI_ROW(dem_world_desc, planar, 'i'), DEMI_ROW(dem_world_desc, thickness, 'r'),
+    DEMI_ROW_ENUM(dem_world_desc, response, "springs impulses"),
+    DEMI_ROW_ENUM(dem_world_desc, normal_law, "hertz linear hysteretic"),
+    DEMI_ROW_ENUM(dem_world_desc, tangent_law,
+                  "auto none viscous step spring mindlin mindlin_rescaled"),
+    DEMI_ROW_ENUM(dem_world_desc, rolling_law, "auto none step constant epsd"),
+    DEMI_ROW_ENUM(dem_world_desc, tension, "allowed clipped compensated"),
+    DEMI_ROW_ENUM(dem_world_desc, friction_load, "repulsive elastic magnitude"),
+    DEMI_ROW_ENUM(dem_world_desc, slider, "parallel spring remainder"),
+    DEMI_ROW_ENUM(dem_world_desc, convention, "standard mill"),
+    DEMI_ROW_NULL(dem_world_desc, law), DEMI_ROW(dem_world_desc, law_memory, 'i'),
+    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEM_LAW_MEMORY),
+    DEMI_ROW(dem_world_desc, law_vectors, 'i'), DEMI_ROW(dem_world_desc, law_stiffness, 'r'),
+    DEMI_ROW(dem_world_desc, law_range, 'r'), DEMI_ROW(dem_world_desc, law_range_radii, 'r'),
+    DEMI_ROW(dem_world_desc, law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
+    DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
+    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
+    DEMI_ROW_NULL(dem_world_desc, body_force),
+    DEMI_ROW_ENUM(dem_world_desc, integrator, "velocity_verlet forward_euler symplectic_euler "
+                  "position_verlet leapfrog"),
+    DEMI_ROW(dem_world_desc, dt, 'r'), DEMI_ROW(dem_world_desc, impact_speed, 'r'),
+    DEMI_ROW_ENUM(dem_world_desc, cone, "coulomb convex"),
+    DEMI_ROW_ENUM(dem_world_desc, solver, "gauss_seidel jacobi apgd spectral"),
+    DEMI_ROW(dem_world_desc, sweeps, 'i'), DEMI_ROW(dem_world_desc, tolerance, 'r'),
+    DEMI_ROW(dem_world_desc, cold_start, 'i'),
+    DEMI_ROW_ENUM(dem_world_desc, search, "auto all_pairs grid linked_list hierarchical bins"),
+    DEMI_ROW(dem_world_desc, skin, 'r'),
+    DEMI_ROW_ENUM(dem_world_desc, rotation, "spiral fincham no_squish"),
+    DEMI_ROW_ENUM(dem_world_desc, ellipsoid_overlap, "conservative chord normal"),
+    DEMI_ROW_ENUM(dem_world_desc, cluster_contacts, "merged separate"),
+    DEMI_ROW(dem_world_desc, orientations, 'i'), DEMI_ROW(dem_world_desc, ledger, 'i')};
+static const demi_scene_row demi_material_rows[] = {
+    DEMI_ROW(dem_material_desc, density, 'r'), DEMI_ROW(dem_material_desc, young, 'r'),
+    DEMI_ROW(dem_material_desc, poisson, 'r'), DEMI_ROW(dem_material_desc, restitution, 'r'),
+    DEMI_ROW(dem_material_desc, friction, 'r'), DEMI_ROW(dem_material_desc, friction_static, 'r'),
+    DEMI_ROW(dem_material_desc, rolling_friction, 'r'), DEMI_ROW(dem_material_desc, stiffness, 'r'),
+    DEMI_ROW(dem_material_desc, stiffness_ratio, 'r'),
+    DEMI_ROW(dem_material_desc, stiffness_unloading, 'r'),
+    DEMI_ROW(dem_material_desc, stiffness_adhesion, 'r')};
+static const demi_scene_row demi_pair_rows[] = {
+    DEMI_ROW(dem_pair, young_eff, 'r'), DEMI_ROW(dem_pair, shear_eff, 'r'),
+    DEMI_ROW(dem_pair, restitution, 'r'), DEMI_ROW(dem_pair, friction, 'r'),
+    DEMI_ROW(dem_pair, friction_static, 'r'), DEMI_ROW(dem_pair, rolling_friction, 'r'),
+    DEMI_ROW(dem_pair, stiffness, 'r'), DEMI_ROW(dem_pair, stiffness_ratio, 'r'),
+    DEMI_ROW(dem_pair, tangent_damping, 'r'), DEMI_ROW(dem_pair, stiffness_adhesion, 'r'),
+    DEMI_ROW(dem_pair, normal_damping, 'r'), DEMI_ROW(dem_pair, spinning_friction, 'r'),
+    DEMI_ROW(dem_pair, cohesion, 'r'), DEMI_ROW(dem_pair, compliance, 'r')};
+
+/* What a shape is, not what was worked out from it; pieces field by field: no padding. */
+static uint64_t demi_digest_spheres(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    return demi_hash(DEMI_HASH_START, s->parts, 4*(size_t)s->count*sizeof(dem_real));
+}
+static uint64_t demi_digest_hull(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, s->hull, s->faces
+                                 ? demi_shape_hull_reals(s)*sizeof(double) : 0);
+    return demi_hash(h, s->rim, s->faces ? demi_shape_rim_ints(s)*sizeof(int32_t) : 0);
+}
+static uint64_t demi_digest_pieces(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; k < s->pieces; k++) {
+        h = demi_hash(h, &s->piece[k].shape, sizeof s->piece->shape);
+        h = demi_hash(h, &s->piece[k].at, sizeof s->piece->at);
+        h = demi_hash(h, &s->piece[k].q, sizeof s->piece->q);
+    }
+    return h;
+}
+static const demi_scene_row demi_shape_fields[] = {
+    DEMI_ROW(demi_shape, kind, 'i'), DEMI_ROW_AS(demi_shape, "spheres", count, 'i'),
+    DEMI_ROW(demi_shape, axes, 'v'), DEMI_ROW(demi_shape, inertia, 'v'),
+    DEMI_ROW(demi_shape, volume, 'd'), DEMI_ROW(demi_shape, corners, 'i'),
+    DEMI_ROW(demi_shape, faces, 'i'), DEMI_ROW(demi_shape, pieces, 'i'),
+    DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
+    DEMI_ROW_DIGEST("pieces", demi_digest_pieces)};
+
+static uint64_t demi_digest_vertices(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->vertices, w->vertices
+                     ? (size_t)w->vertex_count*3*sizeof(dem_real) : 0);
+}
+static uint64_t demi_digest_elements(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
+                     sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
+}
+static uint64_t demi_digest_table(const void *item) {
+    const dem_motion *m = &((const demi_wall *)item)->motion;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
+        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
+        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
+        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
+    }
+    return h;
+}
+/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
+static const demi_scene_row demi_wall_rows[] = {
+    DEMI_ROW_ENUM(demi_wall, kind, "none plane cylinder profile segments mesh grains sieve "
+                  "revolved"),
+    DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
+    DEMI_ROW(demi_wall, inside, 'i'),
+    DEMI_ROW_ENUM(demi_wall, rule, "resolved fraction"), DEMI_ROW(demi_wall, radius, 'r'),
+    DEMI_ROW(demi_wall, share, 'r'), DEMI_ROW(demi_wall, vertex_count, 'i'),
+    DEMI_ROW(demi_wall, element_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "position", first.position, 'v'),
+    DEMI_ROW_AS(demi_wall, "rotation", first.rotation, 'r'),
+    DEMI_ROW_ENUM(demi_wall, sieve.kind, "none wires bars square round slots reduced"),
+    DEMI_ROW(demi_wall, sieve.aperture, 'r'), DEMI_ROW(demi_wall, sieve.bar, 'r'),
+    DEMI_ROW(demi_wall, sieve.length, 'r'), DEMI_ROW(demi_wall, sieve.thickness, 'r'),
+    DEMI_ROW(demi_wall, sieve.lift, 'r'), DEMI_ROW(demi_wall, sieve.staggered, 'i'),
+    DEMI_ROW(demi_wall, sieve.radius, 'r'), DEMI_ROW(demi_wall, sieve.model, 'i'),
+    DEMI_ROW(demi_wall, sieve.clearance, 'r'),
+    DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
+    DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'),
+    DEMI_ROW_ENUM(demi_wall, motion.kind,
+                  "fixed translating rotating oscillating user table"),
+    DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
+    DEMI_ROW_DIGEST("vertices", demi_digest_vertices),
+    DEMI_ROW_DIGEST("elements", demi_digest_elements),
+    DEMI_ROW_DIGEST("motion.table", demi_digest_table)};
+static const demi_scene_row demi_field_rows[] = {
+    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
+    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
+    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
+    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r')};
+
+/* Of the sizes that were copied: what is drawn from. */
+static uint64_t demi_digest_sizes(const void *item) {
+    const demi_feed *f = (const demi_feed *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
+    return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
+}
+#define DEMI_FEED_ROW(field, type) DEMI_ROW_AS(demi_feed, #field, desc.field, type)
+static const demi_scene_row demi_feed_rows[] = {
+    DEMI_FEED_ROW(material, 'i'), DEMI_FEED_ROW(class_count, 'i'), DEMI_FEED_ROW(radius, 'r'),
+    DEMI_FEED_ROW(amount, 'd'), DEMI_FEED_ROW(limited, 'i'), DEMI_FEED_ROW(by_mass, 'i'),
+    DEMI_FEED_ROW(rate, 'd'), DEMI_FEED_ROW(start, 'd'), DEMI_FEED_ROW(end, 'd'),
+    DEMI_FEED_ROW(box, 'v'), DEMI_FEED_ROW(round, 'i'), DEMI_FEED_ROW(velocity, 'v'),
+    DEMI_FEED_ROW(spread, 'r'), DEMI_FEED_ROW(seed, 'u'), DEMI_FEED_ROW(materials, 'i'),
+    DEMI_FEED_ROW(shapes, 'i'), DEMI_ROW_NULL(demi_feed, desc.inside),
+    DEMI_ROW_DIGEST("sizes", demi_digest_sizes)};
+static const demi_scene_row demi_outlet_rows[] = {
+    DEMI_ROW(dem_outlet_desc, frame, 'i'), DEMI_ROW(dem_outlet_desc, box, 'v'),
+    DEMI_ROW(dem_outlet_desc, beyond, 'r'), DEMI_ROW(dem_outlet_desc, wanted_min, 'r'),
+    DEMI_ROW(dem_outlet_desc, wanted_max, 'r'), DEMI_ROW(dem_outlet_desc, class_count, 'i'),
+    DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
+    DEMI_ROW(dem_outlet_desc, keep, 'i')};
+
+/* The parts of a scene. */
+typedef struct demi_scene_part {
+    const char *name, *many;
+    const demi_scene_row *rows;
+    size_t row_count;
+} demi_scene_part;
+#define DEMI_SCENE_PART(name, many, rows) {name, many, rows, sizeof rows/sizeof *rows}
+enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
+static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
+    DEMI_SCENE_PART("", "descs", demi_desc_rows),
+    DEMI_SCENE_PART(" of material", "materials", demi_material_rows),
+    DEMI_SCENE_PART(" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows),
+    DEMI_SCENE_PART(" of shape", "shapes", demi_shape_fields),
+    DEMI_SCENE_PART(" of wall", "walls", demi_wall_rows),
+    DEMI_SCENE_PART(" of field", "fields", demi_field_rows),
+    DEMI_SCENE_PART(" of feed", "feeds", demi_feed_rows),
+    DEMI_SCENE_PART(" of outlet", "outlets", demi_outlet_rows)};
+/* How many there are of each part, in the order of the rows. */
+static void demi_scene_counts(const dem_world *w, int32_t *counts) {
+    counts[0] = 1;
+    counts[1] = w->material_count;
+    counts[DEMI_PART_PAIRS] = w->material_count*w->material_count;
+    counts[3] = w->shape_count;
+    counts[DEMI_PART_WALLS] = w->wall_count;
+    counts[5] = w->field_count;
+    counts[6] = w->feed_count;
+    counts[7] = w->outlet_count;
+}
+/* What the rows of part number i are of. */
+static const void *demi_scene_item(const dem_world *w, int part, int i) {
+    const int n = w->material_count;
+    switch (part) {
+    case 0: return &w->asked;
+    case 1: return &w->materials[i];
+    case DEMI_PART_PAIRS: return &w->pairs[i/n*DEMI_MATERIALS + i%n].given;
+    case 3: return &w->shapes[i];
+    case DEMI_PART_WALLS: return &w->walls[i];
+    case 5: return &w->fields[i].desc;
+    case 6: return demi_feed_at(w, i);
+    default: return &demi_outlet_at(w, i)->desc;
+    }
+}
+/* What a field is, as the file has it: r->size bytes. */
+static void demi_scene_row_value(const demi_scene_row *r, const void *item, void *out) {
+    const char *at = (const char *)item + r->offset, *text;
+    memset(out, 0, r->size);
+    if (r->type == 'h') {
+        const uint64_t digest = r->digest(item);
+        memcpy(out, &digest, sizeof digest);
+    } else if (r->type == 'p') {
+        char none[sizeof(void (*)(void))] = "";
+        const int32_t one = memcmp(at, none, sizeof none) != 0;
+        memcpy(out, &one, sizeof one);
+    } else if (r->type == 't') {
+        memcpy(&text, at, sizeof text);
+        if (text) strncpy((char *)out, text, r->size - 1);
+    } else memcpy(out, at, r->size);
+}
+/* Writes the scene, or counts or hashes its bytes. */
+static void demi_visit_scene(const dem_world *w, demi_stream *s) {
+    int32_t counts[DEMI_PARTS];
+    char value[DEMI_ROW_MOST];
+    int part, i;
+    size_t k;
+    demi_scene_counts(w, counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++)
+            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
+                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
+                demi_scene_row_value(r, demi_scene_item(w, part, i), value);
+                demi_visit(s, value, r->size);
+            }
+}
+/* All of a scene in one number: do two processes hold the same one? */
+static uint64_t demi_scene_digest(const dem_world *w) {
+    int32_t counts[DEMI_PARTS];
+    demi_stream s = {0, 0, 0, DEMI_HASH_START, 0, 0, 0};
+    demi_scene_counts(w, counts);
+    demi_visit(&s, counts, sizeof counts);
+    demi_visit_scene(w, &s);
+    return s.sum;
+}
+
+/* --- the state, visited in the order in which it is checked --- */
+
+/* Numbers that are not arrays. */
+static void demi_visit_numbers(dem_world *w, demi_stream *s) {
+    DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
+    DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
+    if (!s->from) w->written_count = w->look.output_count;
+    DEMI_VISIT(s, w->joint_count);    DEMI_VISIT(s, w->joint_last);
+    DEMI_VISIT(s, w->written_count);
+    DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
+    DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
+    DEMI_VISIT(s, w->filed.stride);
+    DEMI_VISIT(s, w->bodies.slot_free);      DEMI_VISIT(s, w->bodies.slot_pending);
+    DEMI_VISIT(s, w->bodies.balance);        DEMI_VISIT(s, w->desc.search);
+    DEMI_VISIT(s, w->desc.gravity);          DEMI_VISIT(s, w->desc.dt);
+    DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
+    DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
+    DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
+}
+/* By the table: what a row declares as state is in the file, and nothing else. */
+static void demi_visit_bodies(dem_world *w, demi_stream *s) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        const size_t n = (size_t)(a->who == DEMI_SLOTS ? w->bodies.slot_count : w->bodies.count);
+        if (a->what && demi_has(w, a)) demi_visit(s, demi_data(w, a), n*demi_item(w, a));
+    }
+}
+/* Near pairs of one domain; their candidates are counted from the domain's first. */
+static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const size_t from = (size_t)d*(size_t)w->near.stride, r = sizeof(dem_real);
+    const size_t remembering = (size_t)domain->near_end, all = (size_t)domain->near_shaped_end;
+    int p, e, l;
+    demi_visit(s, w->near.a + from, 4*all);
+    demi_visit(s, w->near.b + from, 4*all);
+    for (l = 0; l < 4; l++) {                   /* between these lie entries that nobody uses */
+        const int begin = l == 0 ? 0 : l == 1 ? domain->near_cross
+            : l == 2 ? domain->near_shaped : domain->near_shaped_cross;
+        const int end = l == 0 ? domain->near_own : l == 1 ? domain->near_end
+            : l == 2 ? domain->near_shaped_cross : domain->near_shaped_end;
+        for (p = begin; p < end; p++) {
+            const int32_t first = d*(l & 1 ? w->cross.stride : w->own.stride);
+            int32_t k = s->from ? 0 : w->near.k[from + (size_t)p] - first;
+            demi_visit(s, &k, sizeof k);
+            if (s->from) w->near.k[from + (size_t)p] = k;      /* `first` is added when checked */
+        }
+    }
+    for (e = 0; e < w->memory_stride; e++)
+        demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
+                   (size_t)e*(size_t)w->near.stride), remembering*r);
+    for (e = 0; e < DEMI_PAIR_COLUMNS && w->stage.pairs_changed && demi_many_species(w); e++)
+        demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
+                   remembering*r);
+}
+/* Candidates, near pairs, wall candidates: of a list that fits the bodies. */
+static void demi_visit_lists(dem_world *w, demi_stream *s) {
+    const int n = w->effects.species_count;
+    int d, i;
+    if (w->stage.list_valid && w->stage.pairs_changed && !demi_many_species(w))
+        demi_visit(s, w->species_coef, (size_t)(n*n*DEMI_PAIR_COLUMNS)*sizeof(dem_real));
+    for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
+        const demi_domain *domain = &w->domains[d];
+        const size_t walls = (size_t)domain->walls;
+        for (i = 0; i < 2; i++) {
+            demi_list *list = i ? &w->cross : &w->own;
+            const size_t from = (size_t)d*(size_t)list->stride;
+            const size_t pairs = (size_t)(i ? domain->cross : domain->own);
+            if (!pairs) continue;
+            demi_visit(s, list->a + from, 4*pairs);
+            demi_visit(s, list->b + from, 4*pairs);
+        }
+        if (domain->near_shaped_end) demi_visit_near(w, s, d);
+        if (!walls) continue;
+        demi_visit(s, w->wall_body + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
+        demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride,
+                   3*walls*sizeof(dem_real));
+    }
+}
+/* Contacts that last, with or without a list; memory on its way from one list to the next. */
+static void demi_visit_contacts(dem_world *w, demi_stream *s) {
+    int d;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        if (domain->kept)
+            demi_visit(s, demi_kept_of(w, d),
+                       (size_t)domain->kept*sizeof(demi_kept));
+    }
+    if (w->stage.list_valid || !w->filed.count) return;
+    demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
+    demi_visit(s, w->filed.partner, (size_t)w->filed.count*4);
+    demi_visit(s, w->filed.memory,
+               (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
+}
+/* Where walls are, what they bear, how they move; their geometry is the scene's. */
+static void demi_visit_walls(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        dem_motion *m = &wall->motion;          /* all but pointers: they are the reader's own */
+        demi_visit(s, &wall->home, sizeof wall->home);
+        demi_visit(s, &wall->pose, sizeof wall->pose);
+        demi_visit(s, &wall->mid, sizeof wall->mid);
+        demi_visit(s, &wall->ahead, sizeof wall->ahead);
+        demi_visit(s, &wall->loads, sizeof wall->loads);
+        demi_visit(s, wall->reals, sizeof wall->reals);
+        DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
+        DEMI_VISIT(s, m->axis);     DEMI_VISIT(s, m->speed);      DEMI_VISIT(s, m->amplitude);
+        DEMI_VISIT(s, m->frequency); DEMI_VISIT(s, m->phase);     DEMI_VISIT(s, m->start);
+        DEMI_VISIT(s, m->ramp);
+    }
+}
+/* Fields, feeds, outlets. */
+static void demi_visit_measured(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        demi_visit(s, &f->samples, sizeof f->samples);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, f->sums, demi_field_reals(f)*sizeof(double));
+    }
+    for (i = 0; i < w->feed_count; i++) {
+        demi_feed *f = demi_feed_at(w, i);
+        demi_visit(s, &f->state, sizeof f->state);
+        demi_visit(s, &f->random, sizeof f->random);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, &f->drawn, sizeof f->drawn);
+        demi_visit(s, &f->again, sizeof f->again);
+    }
+    for (i = 0; i < w->outlet_count; i++)
+        demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
+}
+/* Joints: they come and go with bodies, and so are state. */
+static void demi_visit_joints(dem_world *w, demi_stream *s) {
+    if (w->joint_count)
+        demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
+}
+/* What outputs have written. */
+static void demi_visit_outputs(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->written_count; i++)
+        demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
+}
+/* Everything, in the one order that writing and reading share. */
+static void demi_visit_state(dem_world *w, demi_stream *s) {
+    demi_visit_numbers(w, s);
+    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
+    demi_visit_bodies(w, s);
+    demi_visit_joints(w, s);
+    demi_visit_lists(w, s);
+    demi_visit_contacts(w, s);
+    demi_visit_walls(w, s);
+    demi_visit_measured(w, s);
+    demi_visit_outputs(w, s);
+}
+
+/* --- writing --- */
+
+typedef struct demi_checkpoint_head {
+    char magic[8];
+    uint32_t version, real_size, byte_order, int_size;
+    uint64_t body_size;             /* bytes that follow the head, without the check sum */
+    int32_t parts[DEMI_PARTS];      /* of the scene: how many; their rows follow */
+} demi_checkpoint_head;
+
+/* Of structs that are saved whole, of what scenes are compared by and of what bodies keep: tells
+   files of another dem.h, or of domains of another length. */
+static uint32_t demi_checkpoint_layout(void) {
+    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
+                            sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
+                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
+                            sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
+    uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
+    size_t e;
+    int k;
+    for (k = 0; k < DEMI_PARTS; k++)
+        for (e = 0; e < demi_scene_parts[k].row_count; e++) {
+            const demi_scene_row *r = &demi_scene_parts[k].rows[e];
+            h = demi_hash(demi_hash(h, r->name, strlen(r->name)), &r->size, sizeof r->size);
+        }
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const size_t row[] = {demi_body_arrays[k].item, (size_t)demi_body_arrays[k].who,
+                              (size_t)demi_body_arrays[k].what};
+        h = demi_hash(h, row, sizeof row);
+    }
+    return (uint32_t)(h ^ h >> 32);
+}
+/* The first body whose state is not finite or out of the world; -1: none. */
+static int demi_body_lost(const dem_world *w) {
+    int i, k;
+    size_t e;
+    for (i = 0; i < w->bodies.count; i++) {
+        for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+            const demi_body_array *a = &demi_body_arrays[k];
+            const dem_real *x;
+            if (a->what < DEMI_REALS || !demi_has(w, a)) continue;
+            x = (const dem_real *)(const void *)demi_datum(w, a, i);
+            for (e = 0; e < demi_item(w, a)/sizeof *x; e++) if (!demi_finite(x[e])) return i;
+        }
+        if (demi_size(demi_at(w->bodies.pos + 4*i)) > DEMI_FARTHEST) return i;
+    }
+    return -1;
+}
+DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
+    if (demi_null_write(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int lost = demi_body_lost(w);
+    demi_checkpoint_head head;
+    demi_out out;
+    demi_stream s = {0, 0, 0, 0, 0, 0, 0};
+    dem_result result;
+    uint64_t sum;
+    if (lost >= 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u no longer has a "
+                         "finite position, velocity and force: the run has blown up; go back to "
+                         "an earlier checkpoint; %s was not changed",
+                         (unsigned)w->bodies.slot[lost] + 1,
+                         path ? path : "the file");
+    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
+    if (result != DEM_OK) return result;
+    if (w->stage.list_valid) w->filed.count = 0;      /* filed once, and taken up by the list */
+    if (!w->filed.count) w->filed.rows = w->filed.stride = 0;
+    memset(&head, 0, sizeof head);
+    memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
+    head.version = DEMI_CHECKPOINT_VERSION;
+    head.real_size = (uint32_t)sizeof(dem_real);
+    head.byte_order = 0x01020304u;
+    head.int_size = demi_checkpoint_layout();
+    demi_scene_counts(w, head.parts);
+    demi_visit_scene(w, &s);                    /* counts */
+    demi_visit_state(w, &s);
+    head.body_size = s.size;
+    s.file = out.file;
+    s.sum = DEMI_HASH_START;
+    demi_visit(&s, &head, sizeof head);
+    demi_visit_scene(w, &s);
+    demi_visit_state(w, &s);
+    sum = s.sum;
+    fwrite(&sum, 1, sizeof sum, out.file);
+    return demi_out_close(&out);
+}
+
+/* --- reading: is it a checkpoint, whole, and of this scene? --- */
+
+/* Is it a checkpoint, whole, and of a program like this one? Nothing behind the head is looked at
+   before all of that is certain. */
+static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data,
+                                        size_t size, demi_checkpoint_head *head) {
+    const char *call = "dem_checkpoint_read";
+    uint64_t sum;
+    if (size < sizeof *head || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with "
+                         "dem_checkpoint_write", call, path,
+                         size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8)
+                         ? "is cut short within its header" : "is not a checkpoint");
+    memcpy(head, data, sizeof *head);
+    if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has checkpoint version %u%s, must be "
+                         "%d; read it with the dem.h that wrote it", call, path,
+                         (unsigned)head->version,
+                         head->byte_order != 0x01020304u ? " and another byte order" : "",
+                         (int)DEMI_CHECKPOINT_VERSION);
+    if (head->real_size != sizeof(dem_real))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, "
+                         "must be %u; build with the same precision", call, path,
+                         (unsigned)head->real_size, (unsigned)sizeof(dem_real));
+    if (head->body_size != (uint64_t)(size - sizeof *head) - sizeof sum)
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was "
+                         "cut short or appended to: use another copy or an older checkpoint", call,
+                         path, (unsigned long long)size,
+                         (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
+    memcpy(&sum, data + size - sizeof sum, sizeof sum);
+    if (sum != demi_hash(DEMI_HASH_START, data, size - sizeof sum))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its checksum does not match its "
+                         "contents; the file is damaged: use another copy or an older checkpoint",
+                         call, path);
+    if (head->int_size != demi_checkpoint_layout())
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by another dem.h, or by a "
+                         "compiler with another memory layout; read it with a program built like "
+                         "the one that wrote it", call, path);
+    return DEM_OK;
+}
+/* Element k of a value, as a sentence has it; digits: of reals. */
+static void demi_scene_row_print(const demi_scene_row *r, const char *value, size_t k, int digits,
+                                 char *out, size_t size) {
+    const char *word = r->words;
+    int32_t i = 0;
+    uint64_t u;
+    dem_real x;
+    double d;
+    switch (r->type) {
+    case 'i': case 'p':
+        memcpy(&i, value + 4*k, sizeof i);
+        for (; word && i > 0; i--) word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        if (word) { snprintf(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        memcpy(&i, value + 4*k, sizeof i);
+        snprintf(out, size, "%ld", (long)i);
+        break;
+    case 'u':
+        memcpy(&u, value + 8*k, sizeof u);
+        snprintf(out, size, "%llu", (unsigned long long)u);
+        break;
+    case 'd':
+        memcpy(&d, value + 8*k, sizeof d);
+        snprintf(out, size, "%.*g", digits, d);
+        break;
+    case 't': snprintf(out, size, "\"%.40s\"", value); break;
+    default:
+        memcpy(&x, value + sizeof x*k, sizeof x);
+        snprintf(out, size, "%.*g", digits, (double)x);
+    }
+}
+/* A field that is not the same in a file and in the world. */
+static dem_result demi_scene_row_differs(dem_world *w, const char *path, const demi_scene_row *r,
+                                   const char *there, const char *here, const char *of) {
+    static const char *const axes[] = {".x", ".y", ".z", ".lo.x", ".lo.y", ".lo.z", ".hi.x",
+                                       ".hi.y", ".hi.z"};
+    const size_t item = r->type == 't' ? r->size : r->type == 'd' || r->type == 'u' ||
+        r->type == 'h' ? 8 : r->type == 'i' || r->type == 'p' ? 4 : sizeof(dem_real);
+    const size_t count = r->size/item;
+    size_t k = 0;
+    char a[48], b[48], which[24] = "";
+    const char *advice = "create the world with the same desc, materials, pairs, shapes, walls, "
+        "motions, fields, feeds and outlets as the one that wrote it, then read";
+    while (k + 1 < count && !memcmp(there + item*k, here + item*k, item)) k++;
+    if (r->type == 'h')
+        return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
+                         "scene: written with other %s%s than those of this world; %s", path,
+                         r->name, of, advice);
+    if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
+    else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
+    demi_scene_row_print(r, there, k, 6, a, sizeof a);
+    demi_scene_row_print(r, here, k, 6, b, sizeof b);
+    if (!strcmp(a, b)) {
+        demi_scene_row_print(r, there, k, 17, a, sizeof a);
+        demi_scene_row_print(r, here, k, 17, b, sizeof b);
+    }
+    return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another scene: "
+                     "written with %s%s %s%s, this world has %s; %s", path, r->name, which, a, of,
+                     b, advice);
+}
+/* Is the scene of the file that of the world? A wall that the file's world had removed may still
+   stand here: reading removes it, in the twin. */
+static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const char *path,
+                                        demi_stream *s, const int32_t *parts) {
+    int32_t counts[DEMI_PARTS];
+    char here[DEMI_ROW_MOST], there[DEMI_ROW_MOST], of[80];
+    int part, i, gone;
+    size_t k;
+    demi_scene_counts(w, counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        if (parts[part] != counts[part])
+            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to "
+                             "another scene: the checkpoint has %d %s, this world %d (removed "
+                             "ones count); create the world like the one that wrote it, then read",
+                             path, (int)parts[part], demi_scene_parts[part].many,
+                             (int)counts[part]);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = gone = 0; i < counts[part]; i++)
+            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
+                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
+                const int n = w->material_count;
+                demi_scene_row_value(r, demi_scene_item(w, part, i), here);
+                demi_visit(s, there, r->size);
+                if (part == DEMI_PART_WALLS && !k) {
+                    int32_t kind;
+                    memcpy(&kind, there, sizeof kind);
+                    gone = kind == DEMI_WALL_NONE;
+                    if (gone) memset(&twin->walls[i], 0, sizeof twin->walls[i]);
+                    else if (w->walls[i].kind == DEMI_WALL_NONE)
+                        return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: "
+                                         "belongs to another scene: wall %d was removed here but "
+                                         "exists there; read before you remove it", path,
+                                         (int)w->walls[i].id);
+                }
+                if (part == DEMI_PART_WALLS && k == 1 && gone) {
+                    dem_wall last;                      /* ids go on from the later of the two */
+                    memcpy(&last.id, there, sizeof last.id);
+                    if (last.id < 1 || demi_wall_place(last) != i)
+                        return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: the "
+                                         "removed wall in place %d has the id %d, which names "
+                                         "another place; the file is damaged: use another copy or "
+                                         "an older checkpoint", path, i + 1, (int)last.id);
+                    twin->walls[i].id = DEMI_MAX(last.id, w->walls[i].id);
+                }
+                if (gone || !memcmp(here, there, r->size)) continue;
+                if (part == DEMI_PART_PAIRS)
+                    snprintf(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
+                             i%n + 1);
+                else snprintf(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
+                              i + 1);
+                return demi_scene_row_differs(w, path, r, there, here, of);
+            }
+    return DEM_OK;
+}

@@ -1,0 +1,326 @@
+/* ---------------------------------------------------------------------------------------------
+   >>decompose
+   Spheres that stand for a closed mesh. A grid of points over its box tells inside from outside
+   (by crossings of lines along z); candidates are inside points, with radii about their distance
+   from the surface. Each sphere in turn is the candidate that leaves the fewest points wrong, in
+   the union but not in the mesh or the other way about; then each is taken out and chosen anew, as
+   long as that helps. Knows no world but for its memory.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_GRAIN_CELLS = 40, DEMI_GRAIN_PICKS = 1500, DEMI_GRAIN_SCALES = 5,
+       DEMI_GRAIN_SWEEPS = 4 };
+typedef struct demi_mould {
+    const dem_mesh *mesh;
+    const signed char *sign;       /* of its triangles (>>closed) */
+    int n[3], count;               /* points along each axis, all */
+    double lo[3], step;            /* m */
+    unsigned char *inside;
+    uint16_t *covered;             /* by how many spheres */
+    int32_t *pick;                 /* points that are candidates */
+    double *far;                   /* of those: distance from the surface, m */
+    int32_t *most;                 /* picks x scales: no gain can be above that, plus `slack` */
+    int picks, slack;              /* slack: points that were left by spheres taken out */
+} demi_mould;
+/* The point of a triangle nearest to x ([ERI05] 5.1.5), as its distance squared. */
+static double demi_corner_distance(const double *a, const double *b, const double *c,
+                                   const double *x) {
+    double ab[3], ac[3], ap[3], n[3], t, best = 1e300;
+    const double *from[3], *to[3];
+    int k, e, in = 1;
+    from[0] = a; from[1] = b; from[2] = c;
+    to[0] = b; to[1] = c; to[2] = a;
+    demi_sub3(b, a, ab);
+    demi_sub3(c, a, ac);
+    demi_cross3(ab, ac, n);
+    for (k = 0; k < 3; k++) {
+        double out[3], d[3], l2;
+        demi_sub3(to[k], from[k], ab);
+        demi_sub3(x, from[k], ap);
+        demi_cross3(ab, n, out);
+        in &= demi_dot3(out, ap) <= 0;
+        l2 = demi_dot3(ab, ab);
+        t = l2 > 0 ? demi_dot3(ap, ab)/l2 : 0;
+        t = t < 0 ? 0 : t > 1 ? 1 : t;
+        for (e = 0; e < 3; e++) d[e] = ap[e] - t*ab[e];
+        best = DEMI_MIN(best, demi_dot3(d, d));
+    }
+    if (!in || !(demi_dot3(n, n) > 0)) return best;
+    demi_sub3(x, a, ap);
+    t = demi_dot3(ap, n);
+    return t*t/demi_dot3(n, n);
+}
+static double demi_mesh_distance(const dem_mesh *mesh, const double *x) {
+    double best = 1e300, a[3], b[3], c[3];
+    int i;
+    for (i = 0; i < mesh->triangle_count; i++) {
+        double d;
+        demi_mesh_corner(mesh, i, 0, a);
+        demi_mesh_corner(mesh, i, 1, b);
+        demi_mesh_corner(mesh, i, 2, c);
+        d = demi_corner_distance(a, b, c, x);
+        best = DEMI_MIN(best, d);
+    }
+    return sqrt(best);
+}
+static void demi_mould_at(const demi_mould *m, int i, double *x) {
+    x[0] = m->lo[0] + (i%m->n[0] + 0.5)*m->step;
+    x[1] = m->lo[1] + (i/m->n[0]%m->n[1] + 0.5)*m->step;
+    x[2] = m->lo[2] + (i/m->n[0]/m->n[1] + 0.5)*m->step;
+}
+/* Turns inside to outside, and back, for all points above a triangle. */
+static void demi_mould_cross(demi_mould *m, int triangle) {
+    double a[3], b[3], c[3], lo[2], hi[2];
+    int from[2], to[2], i, j, k, e;
+    demi_mesh_corner(m->mesh, triangle, 0, a);
+    demi_mesh_corner(m->mesh, triangle, 1, b);
+    demi_mesh_corner(m->mesh, triangle, 2, c);
+    for (e = 0; e < 2; e++) {
+        lo[e] = DEMI_MIN(a[e], DEMI_MIN(b[e], c[e]));
+        hi[e] = DEMI_MAX(a[e], DEMI_MAX(b[e], c[e]));
+        from[e] = (int)DEMI_MAX(floor((lo[e] - m->lo[e])/m->step - 1), 0);
+        to[e] = (int)DEMI_MIN(ceil((hi[e] - m->lo[e])/m->step + 1), m->n[e] - 1);
+    }
+    for (j = from[1]; j <= to[1]; j++)
+        for (i = from[0]; i <= to[0]; i++) {
+            const double x = m->lo[0] + (i + 0.5)*m->step, y = m->lo[1] + (j + 0.5)*m->step;
+            const double u = (b[0] - a[0])*(y - a[1]) - (b[1] - a[1])*(x - a[0]);
+            const double v = (c[0] - b[0])*(y - b[1]) - (c[1] - b[1])*(x - b[0]);
+            const double w = (a[0] - c[0])*(y - c[1]) - (a[1] - c[1])*(x - c[0]);
+            double z;
+            if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
+            z = (u*c[2] + v*a[2] + w*b[2])/(u + v + w);
+            for (k = 0; k < m->n[2]; k++)
+                if (m->lo[2] + (k + 0.5)*m->step > z)
+                    m->inside[i + m->n[0]*(j + m->n[1]*k)] ^= 1;
+        }
+}
+/* By how many points more right than wrong a sphere would be; right: the former. Or puts it in (by
+   1) or out (-1). */
+static int demi_mould_gain(demi_mould *m, const double *c, double r, int by, int *right) {
+    int from[3], to[3], i[3], e, good = 0, bad = 0;
+    for (e = 0; e < 3; e++) {
+        from[e] = (int)DEMI_MAX(ceil((c[e] - r - m->lo[e])/m->step - 0.5), 0);
+        to[e] = (int)DEMI_MIN(floor((c[e] + r - m->lo[e])/m->step - 0.5), m->n[e] - 1);
+    }
+    for (i[2] = from[2]; i[2] <= to[2]; i[2]++)
+        for (i[1] = from[1]; i[1] <= to[1]; i[1]++) {
+            const double y = m->lo[1] + (i[1] + 0.5)*m->step - c[1];
+            const double z = m->lo[2] + (i[2] + 0.5)*m->step - c[2], left = r*r - y*y - z*z;
+            const int row = m->n[0]*(i[1] + m->n[1]*i[2]);
+            for (i[0] = from[0]; i[0] <= to[0] && left > 0; i[0]++) {
+                const double x = m->lo[0] + (i[0] + 0.5)*m->step - c[0];
+                if (x*x > left) continue;
+                if (by) m->covered[row + i[0]] = (uint16_t)(m->covered[row + i[0]] + by);
+                else if (!m->covered[row + i[0]]) {
+                    good += m->inside[row + i[0]];
+                    bad += !m->inside[row + i[0]];
+                }
+            }
+        }
+    if (right) *right = good;
+    return good - bad;
+}
+/* The best of all candidates, beside the spheres that are there. */
+static int demi_mould_best(demi_mould *m, double *sphere) {
+    static const double scale[DEMI_GRAIN_SCALES] = {1, 0.9, 1.08, 1.18, 1.3};
+    int most = INT_MIN, i, k, e;
+    for (i = 0; i < m->picks; i++)
+        for (k = 0; k < DEMI_GRAIN_SCALES; k++) {
+            const double r = m->far[i]*scale[k];
+            int32_t *bound = m->most + DEMI_GRAIN_SCALES*i + k;
+            double c[3];
+            int gain, right;
+            if (*bound + m->slack <= most) continue;
+            demi_mould_at(m, m->pick[i], c);
+            gain = demi_mould_gain(m, c, r, 0, &right);
+            *bound = right - m->slack;
+            if (gain <= most) continue;
+            most = gain;
+            for (e = 0; e < 3; e++) sphere[e] = c[e];
+            sphere[3] = r;
+        }
+    return most;
+}
+/* The grid and its candidates; 0: no memory. */
+static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const double *hi) {
+    double most = 0, x[3];
+    int i, e, inside = 0, seen = 0;
+    for (e = 0; e < 3; e++) most = DEMI_MAX(most, hi[e] - lo[e]);
+    m->step = most/(int)DEMI_GRAIN_CELLS;
+    for (e = 0, m->count = 1; e < 3; e++) {
+        m->n[e] = (int)ceil((hi[e] - lo[e])/m->step) + 6;
+        m->lo[e] = (lo[e] + hi[e])/2 - m->step*(m->n[e]/2.0 + 0.0123*(e + 1));     /* off corners */
+        m->count *= m->n[e];
+    }
+    m->inside = (unsigned char *)demi_alloc(w, (size_t)m->count, 1);
+    m->covered = (uint16_t *)demi_alloc(w, (size_t)m->count, sizeof(uint16_t));
+    m->pick = (int32_t *)demi_alloc(w, DEMI_GRAIN_PICKS, sizeof(int32_t));
+    m->far = (double *)demi_alloc(w, DEMI_GRAIN_PICKS, sizeof(double));
+    m->most = (int32_t *)demi_alloc(w, DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS, sizeof(int32_t));
+    if (!m->inside || !m->covered || !m->pick || !m->far || !m->most) return 0;
+    for (i = 0; i < DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS; i++) m->most[i] = INT_MAX/2;
+    for (i = 0; i < m->mesh->triangle_count; i++) if (m->sign[i]) demi_mould_cross(m, i);
+    for (i = 0; i < m->count; i++) inside += m->inside[i];
+    for (i = 0; i < m->count; i++) {            /* every so many of those inside, the same number */
+        const int64_t now = (int64_t)(seen + 1)*DEMI_GRAIN_PICKS;
+        if (!m->inside[i]) continue;
+        seen++;
+        if (inside > DEMI_GRAIN_PICKS && now/inside == (now - DEMI_GRAIN_PICKS)/inside) continue;
+        if (m->picks == DEMI_GRAIN_PICKS) break;
+        demi_mould_at(m, i, x);
+        m->far[m->picks] = demi_mesh_distance(m->mesh, x);
+        m->pick[m->picks++] = i;
+    }
+    return 1;
+}
+static void demi_mould_free(dem_world *w, demi_mould *m) {
+    demi_free(w, m->inside);
+    demi_free(w, m->covered);
+    demi_free(w, m->pick);
+    demi_free(w, m->far);
+    demi_free(w, m->most);
+}
+/* What a mesh is, and how well spheres (count x 4) fit it. Moments are exact. */
+static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, const double *sphere,
+                               int count, dem_spheres_fit *fit) {
+    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
+    double c[3], I[6], all = 0, square = 0;
+    int i, k, e;
+    for (k = 0; k < 3; k++) c[k] = m->x[k]/m->one;
+    for (k = 0; k < 6; k++) I[k] = m->xx[k] - m->one*c[one[k]]*c[two[k]];
+    fit->volume = (dem_real)m->one;
+    fit->centre = demi_v((dem_real)c[0], (dem_real)c[1], (dem_real)c[2]);
+    for (k = 0; k < 3; k++) fit->inertia[k] = (dem_real)(I[(k + 1)%3] + I[(k + 2)%3]);
+    for (k = 3; k < 6; k++) fit->inertia[k] = (dem_real)-I[k];
+    for (i = 0; i < mesh->triangle_count; i++) {        /* at three points of each triangle */
+        double x[3][3], u[3], v[3], n[3];
+        for (k = 0; k < 3; k++) demi_mesh_corner(mesh, i, k, x[k]);
+        demi_sub3(x[1], x[0], u);
+        demi_sub3(x[2], x[0], v);
+        demi_cross3(u, v, n);
+        for (k = 0; k < 3; k++) {
+            double at[3], off = 1e300;
+            const double area = sqrt(demi_dot3(n, n))/6;
+            for (e = 0; e < 3; e++) at[e] = (4*x[k][e] + x[(k + 1)%3][e] + x[(k + 2)%3][e])/6;
+            for (e = 0; e < count; e++) {
+                double d[3], gap;
+                demi_sub3(at, sphere + 4*e, d);
+                gap = sqrt(demi_dot3(d, d)) - sphere[4*e + 3];
+                off = DEMI_MIN(off, gap);
+            }
+            all += area;
+            square += area*off*off;
+        }
+    }
+    fit->surface_error = (dem_real)sqrt(square/all);
+}
+/* Volume and second moments of what the spheres cover, by the grid, against those of the inside. */
+static void demi_mould_judge(const demi_mould *m, dem_spheres_fit *fit) {
+    demi_moments own, theirs;
+    double x[3], at[3], worst = 0, spread[2][3];
+    int i, k, wrong = 0, inside = 0;
+    memset(&own, 0, sizeof own);
+    memset(&theirs, 0, sizeof theirs);
+    for (i = 0; i < m->count; i++) {
+        demi_mould_at(m, i, x);
+        at[0] = x[0] - (double)fit->centre.x;
+        at[1] = x[1] - (double)fit->centre.y;
+        at[2] = x[2] - (double)fit->centre.z;
+        if (m->inside[i]) demi_moments_add(&own, 1, at, 0);
+        if (m->covered[i]) demi_moments_add(&theirs, 1, at, 0);
+        wrong += (m->inside[i] != 0) != (m->covered[i] != 0);
+        inside += m->inside[i];
+    }
+    for (k = 0; k < 3; k++) {
+        spread[0][k] = own.xx[(k + 1)%3] + own.xx[(k + 2)%3];
+        spread[1][k] = theirs.xx[(k + 1)%3] + theirs.xx[(k + 2)%3];
+        worst = DEMI_MAX(worst, fabs(spread[1][k]/spread[0][k] - 1));
+    }
+    fit->volume_error = (dem_real)(theirs.one/own.one - 1);
+    fit->inertia_error = (dem_real)worst;
+    fit->wrong = (dem_real)((double)wrong/inside);
+}
+/* dem_mesh_spheres of a mesh whose triangles have these signs. */
+static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_mesh *mesh,
+                                    const signed char *sign, int count, dem_real *positions,
+                                    dem_real *radii, dem_spheres_fit *fit) {
+    dem_spheres_fit told;
+    demi_moments moments;
+    demi_mould m;
+    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, a[3], b[3], c[3];
+    double *sphere;
+    int i, k, sweep, changed = 1, made;
+    memset(&moments, 0, sizeof moments);
+    for (i = 0; i < mesh->triangle_count; i++) {
+        demi_mesh_corner(mesh, i, 0, a);
+        demi_mesh_corner(mesh, i, 1, b);
+        demi_mesh_corner(mesh, i, 2, c);
+        if (sign[i] > 0) demi_moments_tetrahedron(&moments, a, b, c);
+        if (sign[i] < 0) demi_moments_tetrahedron(&moments, a, c, b);
+        for (k = 0; k < 3; k++) {
+            lo[k] = DEMI_MIN(lo[k], DEMI_MIN(a[k], DEMI_MIN(b[k], c[k])));
+            hi[k] = DEMI_MAX(hi[k], DEMI_MAX(a[k], DEMI_MAX(b[k], c[k])));
+        }
+    }
+    if (!(moments.one > 1e-6*(hi[0] - lo[0])*(hi[1] - lo[1])*(hi[2] - lo[2])))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
+                         "must be more than 1e-6 of its box: it is too thin for spheres; is it a "
+                         "sheet?", call, mesh->triangle_count, moments.one);
+    memset(&m, 0, sizeof m);
+    m.mesh = mesh;
+    m.sign = sign;
+    sphere = (double *)demi_alloc(w, 4*(size_t)count, sizeof(double));
+    made = sphere && demi_mould_make(w, &m, lo, hi);
+    if (!made || !m.picks) {
+        demi_mould_free(w, &m);
+        demi_free(w, sphere);
+        return made ? demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is thinner than 1/%d of its "
+                                "length everywhere, so no sphere fits; use a polyhedron, or a "
+                                "thicker mesh", call, (int)DEMI_GRAIN_CELLS) : demi_no_memory(w,
+                                call);
+    }
+    for (i = 0; i < count; i++) {
+        demi_mould_best(&m, sphere + 4*i);
+        demi_mould_gain(&m, sphere + 4*i, sphere[4*i + 3], 1, 0);
+    }
+    for (sweep = 0; sweep < DEMI_GRAIN_SWEEPS && changed; sweep++)
+        for (i = 0, changed = 0; i < count; i++) {
+            double other[4];
+            int had, right;
+            demi_mould_gain(&m, sphere + 4*i, sphere[4*i + 3], -1, 0);
+            had = demi_mould_gain(&m, sphere + 4*i, sphere[4*i + 3], 0, &right);
+            m.slack += right;
+            if (demi_mould_best(&m, other) > had) {
+                memcpy(sphere + 4*i, other, sizeof other);
+                changed = 1;
+            }
+            demi_mould_gain(&m, sphere + 4*i, sphere[4*i + 3], 1, 0);
+        }
+    memset(&told, 0, sizeof told);
+    demi_spheres_judge(mesh, &moments, sphere, count, &told);
+    demi_mould_judge(&m, &told);
+    for (i = 0; i < count; i++) {
+        for (k = 0; k < 3; k++) positions[3*i + k] = (dem_real)sphere[4*i + k];
+        radii[i] = (dem_real)sphere[4*i + 3];
+    }
+    if (fit) *fit = told;
+    demi_mould_free(w, &m);
+    demi_free(w, sphere);
+    return DEM_OK;
+}
+DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int count,
+                                    dem_real *positions, dem_real *radii, dem_spheres_fit *fit) {
+    const char *call = "dem_mesh_spheres";
+    demi_closed c;
+    dem_result result = DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, call, mesh, "mesh") || demi_null_look(w, call, radii, "radii") ||
+        demi_null_look(w, call, positions, "positions")) return result;
+    if (count < 1 || count > 1000)
+        return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", call, count);
+    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+                         mesh->triangles, 3)) return result;
+    if (!demi_closed_find(w, mesh, &c)) result = demi_no_memory(w, call);
+    else if (demi_closed_body(w, call, &c))
+        result = demi_mesh_spheres(w, call, mesh, c.sign, count, positions, radii, fit);
+    demi_closed_free(w, &c);
+    return result;
+}

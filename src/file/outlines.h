@@ -1,0 +1,214 @@
+/* ---------------------------------------------------------------------------------------------
+   >>outlines
+   Faces of many corners, cut into triangles that keep the face's winding. The face is seen along
+   its normal (Newell's: the sum over its edges). A convex one becomes a fan from its first corner;
+   any other is cut ear by ear: an ear is a corner whose triangle lies in the face. Holes bridged by
+   an edge there and back, corners on a line and doubled corners are allowed.
+   n corners give n - 2 triangles, always: what is doubled becomes a triangle of no area.
+   ---------------------------------------------------------------------------------------------- */
+/* Corners of a face that is not convex, at most: each edge is held against each. Cells along a side
+   of the grid that finds the corners near an ear. */
+enum { DEMI_OUTLINE_MOST = 10000, DEMI_OUTLINE_CELLS = 32 };
+typedef struct demi_outline {
+    int count;
+    int32_t *corner;               /* vertices of the mesh, in order */
+    int32_t *next, *prev;          /* the ring of corners; next -1: cut off */
+    int32_t *beside;               /* the next corner in the same cell, -1: none */
+    int32_t first[DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS];
+    double *xy;                    /* count x 2, counterclockwise, m, from the first corner */
+    double lo[2], cell;            /* m */
+    double near;                   /* m2: twice an area that is not larger counts as none */
+    double work;                   /* corners and cells that may still be looked at */
+    int bent, crossed;             /* not flat; an edge crosses another, or it has no area */
+} demi_outline;
+static void demi_outline_free(dem_world *w, demi_outline *o) {
+    demi_free(w, o->corner);
+    demi_free(w, o->next);
+    demi_free(w, o->prev);
+    demi_free(w, o->beside);
+    demi_free(w, o->xy);
+}
+/* Room for one more corner; 0: no memory. */
+static int demi_outline_grow(dem_world *w, demi_outline *o) {
+    const size_t n = (size_t)o->count + 1;
+    return demi_grow(w, DEMI_LOOSE, &o->corner, sizeof *o->corner, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->next, sizeof *o->next, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->prev, sizeof *o->prev, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->beside, sizeof *o->beside, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->xy, sizeof *o->xy, 2*n);
+}
+/* Twice the area of a triangle of three corners, positive if it turns left. */
+static double demi_outline_turn(const demi_outline *o, int a, int b, int c) {
+    const double *p = o->xy + 2*a, *q = o->xy + 2*b, *r = o->xy + 2*c;
+    return (q[0] - p[0])*(r[1] - p[1]) - (q[1] - p[1])*(r[0] - p[0]);
+}
+static int demi_outline_same(const demi_outline *o, int a, int b) {
+    return !(o->xy[2*a] < o->xy[2*b] || o->xy[2*a] > o->xy[2*b] ||
+             o->xy[2*a + 1] < o->xy[2*b + 1] || o->xy[2*a + 1] > o->xy[2*b + 1]);
+}
+/* The corners as seen along the normal, and whether they lie in a plane. */
+static void demi_outline_lay(demi_outline *o, const dem_real *vertices) {
+    double n[3] = {0, 0, 0}, mean[3] = {0, 0, 0}, lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
+    double far = 0, length;
+    int i, k, axis = 0;
+    for (i = 0; i < o->count; i++) {
+        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
+        const dem_real *b = vertices + 3*o->corner[(i + 1)%o->count];
+        double p[3], q[3];
+        for (k = 0; k < 3; k++) {
+            p[k] = (double)a[k] - (double)zero[k];
+            q[k] = (double)b[k] - (double)zero[k];
+            mean[k] += p[k]/o->count;
+            lo[k] = DEMI_MIN(lo[k], p[k]);
+            hi[k] = DEMI_MAX(hi[k], p[k]);
+        }
+        for (k = 0; k < 3; k++) n[k] += p[(k + 1)%3]*q[(k + 2)%3] - p[(k + 2)%3]*q[(k + 1)%3];
+    }
+    for (k = 0; k < 3; k++) {
+        size = DEMI_MAX(size, hi[k] - lo[k]);
+        if (fabs(n[k]) > fabs(n[axis])) axis = k;
+    }
+    length = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+    o->near = 1e-10*size*size;
+    o->bent = 0;
+    o->crossed = !(length > o->near);
+    for (i = 0; i < o->count; i++) {
+        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
+        double p[3], off = 0;
+        for (k = 0; k < 3; k++) {
+            p[k] = (double)a[k] - (double)zero[k];
+            off += n[k]*(p[k] - mean[k]);
+        }
+        far = DEMI_MAX(far, fabs(off));
+        o->xy[2*i] = p[n[axis] < 0 ? (axis + 2)%3 : (axis + 1)%3];
+        o->xy[2*i + 1] = p[n[axis] < 0 ? (axis + 1)%3 : (axis + 2)%3];
+        o->next[i] = (i + 1)%o->count;
+        o->prev[i] = (i + o->count - 1)%o->count;
+    }
+    if (!o->crossed) o->bent = far > 1e-3*size*length;
+}
+/* 1 if it turns left at each corner, and round once: a pentagram turns left too. */
+static int demi_outline_convex(const demi_outline *o) {
+    int i, turns = 0;
+    double last = 0;
+    for (i = 0; i < o->count; i++) {
+        const double along = o->xy[2*o->next[i]] - o->xy[2*i];
+        if (!(demi_outline_turn(o, o->prev[i], i, o->next[i]) > o->near)) return 0;
+        turns += along*last < 0;
+        if (along < 0 || along > 0) last = along < 0 ? -1 : 1;
+    }
+    return turns <= 2;
+}
+/* 1 if two edges cross at a point that is a corner of neither. */
+static int demi_outline_crosses(const demi_outline *o) {
+    int i, j;
+    for (i = 0; i < o->count; i++)
+        for (j = i + 2; j < o->count; j++) {
+            const int k = (i + 1)%o->count, l = (j + 1)%o->count;
+            const double a = demi_outline_turn(o, i, k, j), b = demi_outline_turn(o, i, k, l);
+            if (!((a > o->near && b < -o->near) || (a < -o->near && b > o->near))) continue;
+            const double c = demi_outline_turn(o, j, l, i), d = demi_outline_turn(o, j, l, k);
+            if ((c > o->near && d < -o->near) || (c < -o->near && d > o->near)) return 1;
+        }
+    return 0;
+}
+/* The cell of a coordinate. */
+static int demi_outline_cell(const demi_outline *o, double x, int axis) {
+    const double at = (x - o->lo[axis])/o->cell;
+    return at > 0 ? (int)DEMI_MIN(at, DEMI_OUTLINE_CELLS - 1) : 0;
+}
+/* All corners into their cells. */
+static void demi_outline_sort(demi_outline *o) {
+    double size = 0;
+    int i, k;
+    for (k = 0; k < 2; k++) {
+        double hi = o->lo[k] = o->xy[k];
+        for (i = 1; i < o->count; i++) {
+            o->lo[k] = DEMI_MIN(o->lo[k], o->xy[2*i + k]);
+            hi = DEMI_MAX(hi, o->xy[2*i + k]);
+        }
+        size = DEMI_MAX(size, hi - o->lo[k]);
+    }
+    o->cell = size/(int)DEMI_OUTLINE_CELLS;
+    for (i = 0; i < DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS; i++) o->first[i] = -1;
+    for (i = 0; i < o->count; i++) {
+        int32_t *first = o->first + demi_outline_cell(o, o->xy[2*i], 0) +
+            (int)DEMI_OUTLINE_CELLS*demi_outline_cell(o, o->xy[2*i + 1], 1);
+        o->beside[i] = *first;
+        *first = i;
+    }
+}
+/* 1 if corner q keeps corner i from being cut off: it lies in the triangle, nearer to its sides
+   than margin (m2) does not count; or it is where i is, and the outline leads through it there. */
+static int demi_outline_blocks(const demi_outline *o, int q, int i, double margin) {
+    const int a = o->prev[i], b = o->next[i], out[2] = {o->prev[q], o->next[q]};
+    int k;
+    if (q == i || demi_outline_same(o, q, a) || demi_outline_same(o, q, b)) return 0;
+    if (!demi_outline_same(o, q, i))
+        return demi_outline_turn(o, a, i, q) > margin && demi_outline_turn(o, i, b, q) > margin &&
+            demi_outline_turn(o, b, a, q) > margin;
+    for (k = 0; k < 2; k++)
+        if (demi_outline_turn(o, a, i, out[k]) > o->near &&
+            demi_outline_turn(o, i, b, out[k]) > o->near) return 1;
+    return 0;
+}
+/* 1 if corner i can be cut off. Patience 0: its triangle has an area, and no other corner lies in
+   it or on its sides; 1: none lies inside, and it may have no area; 2: always. */
+static int demi_outline_ear(demi_outline *o, int i, int patience) {
+    const int corner[3] = {o->prev[i], i, o->next[i]};
+    const double margin = patience ? o->near : -o->near;
+    int from[2], to[2], k, x, y;
+    if (patience > 1 || demi_outline_same(o, corner[0], i) ||
+        demi_outline_same(o, i, corner[2])) return 1;
+    if (!(demi_outline_turn(o, corner[0], i, corner[2]) > -margin)) return 0;
+    for (k = 0; k < 2; k++) {
+        const double p = o->xy[2*corner[0] + k], q = o->xy[2*i + k], r = o->xy[2*corner[2] + k];
+        from[k] = demi_outline_cell(o, DEMI_MIN(p, DEMI_MIN(q, r)), k);
+        to[k] = demi_outline_cell(o, DEMI_MAX(p, DEMI_MAX(q, r)), k);
+    }
+    for (y = from[1]; y <= to[1]; y++)
+        for (x = from[0]; x <= to[0]; x++) {
+            int32_t *q = o->first + x + (int)DEMI_OUTLINE_CELLS*y;
+            for (o->work--; *q >= 0; o->work--) {
+                if (o->next[*q] < 0) { *q = o->beside[*q]; continue; }
+                if (demi_outline_blocks(o, *q, i, margin)) return 0;
+                q = o->beside + *q;
+            }
+        }
+    return 1;
+}
+/* The face's count - 2 triangles, to `out`. 0: it is not convex and has too many corners. */
+static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *out) {
+    int i, left = o->count, idle = 0, patience = 0;
+    o->bent = o->crossed = 0;
+    if (o->count > 3) demi_outline_lay(o, vertices);
+    if (o->count == 3 || o->crossed || demi_outline_convex(o)) {
+        for (i = 1; i + 1 < o->count; i++, out += 3) {
+            out[0] = o->corner[0]; out[1] = o->corner[i]; out[2] = o->corner[i + 1];
+        }
+        return 1;
+    }
+    if (o->count > DEMI_OUTLINE_MOST) return 0;
+    o->crossed = demi_outline_crosses(o);
+    demi_outline_sort(o);
+    o->work = 1e8;
+    for (i = 0; left > 2;) {
+        if (left == 3 || demi_outline_ear(o, i, patience)) {
+            const int a = o->prev[i], b = o->next[i];
+            o->crossed |= demi_outline_turn(o, a, i, b) < -o->near;
+            out[0] = o->corner[a]; out[1] = o->corner[i]; out[2] = o->corner[b];
+            out += 3;
+            o->next[a] = b;
+            o->prev[b] = a;
+            o->next[i] = -1;
+            left--;
+            i = o->next[b];
+            idle = patience = 0;
+        } else {
+            i = o->next[i];
+            if (++idle >= left) { idle = 0; patience++; }
+        }
+        if (o->work < 0) patience = 2;          /* no outline that is whole comes to this */
+    }
+    return 1;
+}

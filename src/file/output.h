@@ -1,0 +1,308 @@
+/* ---------------------------------------------------------------------------------------------
+   >>output
+   Files and calls on a schedule: dem_world_step looks here (demi_lookers) before the first of its
+   steps and after each. What each output has written is state (demi_written): a run that goes on
+   from a checkpoint writes what the run without a stop would have written, and of a CSV file the
+   lines of later times are taken out before the first is appended. Tests: tests/file/test_output.c.
+   --------------------------------------------------------------------------------------------- */
+static const char demi_output_columns[] = "steps bodies contacts kinetic rotational overlap_max";
+
+/* A copy of a text, for as long as the world. Null of none, or when memory ran out. */
+static char *demi_text_copy(dem_world *w, const char *text) {
+    const size_t size = text ? strlen(text) + 1 : 0;
+    char *copy = size ? (char *)demi_hold(w, DEMI_SCENE, size, 1) : 0;
+    if (copy) memcpy(copy, text, size);
+    return copy;
+}
+/* The run of # nearest to the end of a path: where it begins, how long it is (0: there is none). */
+static size_t demi_output_marks(const char *path, size_t *count) {
+    size_t end = strlen(path), begin;
+    while (end > 0 && path[end - 1] != '#') end--;
+    for (begin = end; begin > 0 && path[begin - 1] == '#'; begin--) {}
+    *count = end - begin;
+    return begin;
+}
+/* What names the columns of a CSV file after the time. */
+static const char *demi_output_names(const dem_output_desc *d) {
+    return d->columns ? d->columns : demi_output_columns;
+}
+static void demi_output_heading(const dem_output_desc *d, char *heading) {
+    char *c;
+    if (d->wall.id) { strcpy(heading, demi_loads_heading); return; }
+    strcpy(heading, "time ");
+    demi_names_copy(demi_output_names(d), heading + 5);
+    for (c = heading; *c; c++) if (*c == ' ') *c = ',';
+}
+/* Takes the lines of a CSV file out that tell of `from` (s) and later, and one that was cut short.
+   A file with other columns is refused; one that is not there has none. */
+static dem_result demi_csv_resume(dem_world *w, const char *path, const char *heading,
+                                  double from) {
+    const char *call = "dem_world_step";        /* that is what failed, and is tried again */
+    const size_t head = strlen(heading);
+    char *data = 0, *line;
+    size_t size = 0, keep;
+    demi_out out;
+    dem_result result;
+    FILE *there = demi_open(path);
+    if (!there) return DEM_OK;
+    fclose(there);
+    result = demi_load(w, call, path, &data, &size);
+    if (result != DEM_OK || !size) { demi_free(w, data); return result; }
+    if (size <= head || memcmp(data, heading, head) || data[head] != '\n') {
+        demi_free(w, data);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove "
+                         "the file, or give another path", call, path, heading);
+    }
+    for (keep = head + 1; keep < size; keep = (size_t)(line - data) + 1) {
+        demi_text text;
+        double time = 0;
+        line = (char *)memchr(data + keep, '\n', size - keep);
+        if (!line) break;
+        text = demi_text_make(w, call, path, data + keep, (size_t)(line - data) - keep);
+        text.word = data + keep;
+        text.length = strcspn(data + keep, ",\n");
+        if (demi_text_number(&text, &time) != DEM_OK || !(time < from)) break;
+    }
+    if (keep < size) {
+        result = demi_out_open(&out, w, call, path);
+        if (result == DEM_OK) {
+            fwrite(data, 1, keep, out.file);
+            result = demi_out_close(&out);
+        }
+    }
+    demi_free(w, data);
+    return result;
+}
+/* A line of a CSV file: the first of a run begins the file anew, the first after a checkpoint was
+   read follows the last one that the checkpoint knows of. */
+static dem_result demi_output_line(dem_world *w, const demi_output *o, const char *path) {
+    const dem_output_desc *d = &o->desc;
+    double value[DEM_OUTPUT_COLUMNS];
+    char heading[DEMI_CSV_LINE], line[DEMI_CSV_LINE];
+    int count = DEMI_LOADS;
+    dem_result result = DEM_OK;
+    demi_output_heading(d, heading);
+    memset(value, 0, sizeof value);
+    if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
+    else {
+        count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
+        if (d->values) {
+            const demi_calling was = demi_calls(w, "an output of values", 0);
+            d->values(w, value, d->user);
+            w->look.calling = was;
+        } else {
+            const dem_counters c = dem_counters_get(w);
+            const dem_totals t = dem_totals_get(w);
+            value[0] = (double)c.steps;
+            value[1] = w->bodies.count;
+            value[2] = c.contacts + c.wall_contacts;
+            value[3] = t.kinetic;
+            value[4] = t.rotational;
+            value[5] = (double)c.overlap_max;
+        }
+    }
+    if (result != DEM_OK) return result;
+    if (o->resumes) result = demi_csv_resume(w, path, heading, o->written.last +
+                                             (double)w->clock.dt/2);
+    if (result != DEM_OK) return result;
+    demi_csv_line(line, w->clock.time, value, count);
+    return demi_csv_append(w, "dem_world_step", path, heading, line);
+}
+/* Output `number` of the world as it is. o: a copy, since a call may add outputs. */
+static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t number) {
+    const dem_output_desc *d = &o->desc;
+    size_t length = d->path ? strlen(d->path) : 0, marks = 0, at = 0;
+    char digits[24], *path;
+    dem_result result = DEM_OK;
+    if (d->kind == DEM_OUTPUT_CALL) {
+        w->look.under_way++;
+        if (d->function(w, number, d->user))
+            result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: stopped by the function of "
+                               "an output at %g s", w->clock.time);
+        w->look.under_way--;
+        return result;
+    }
+    path = (char *)demi_alloc(w, length + sizeof digits, 1);
+    if (!path) return demi_no_memory(w, "dem_world_step");
+    at = demi_output_marks(d->path, &marks);
+    sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
+    sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
+    switch (d->kind) {
+    case DEM_OUTPUT_VTP: result = dem_vtp_write(w, path); break;
+    case DEM_OUTPUT_XYZ: result = dem_xyz_write(w, path); break;
+    case DEM_OUTPUT_CONTACTS: result = dem_contacts_vtp_write(w, path); break;
+    case DEM_OUTPUT_CHECKPOINT: result = dem_checkpoint_write(w, path); break;
+    case DEM_OUTPUT_CSV: result = demi_output_line(w, o, path); break;
+    case DEM_OUTPUT_SURFACES: result = dem_surfaces_vtp_write(w, path); break;
+    case DEM_OUTPUT_CALL: break;
+    }
+    demi_free(w, path);
+    return result;
+}
+/* Index of the first output whose id is not below this one. */
+static int demi_output_place(const dem_world *w, int32_t id) {
+    int i;
+    for (i = 0; i < w->look.output_count && w->look.outputs[i].id < id; i++) {}
+    return i;
+}
+/* What is due at this step. What fails stops the run, and is tried again by the next one. An output
+   counts as written while it writes, so that a checkpoint knows of itself; where it has read one,
+   what is due then is looked for anew. */
+static dem_result demi_outputs_look(dem_world *w) {
+    int i;
+    for (i = 0; i < w->look.output_count; i++) {
+        const double now = w->clock.time, half = (double)w->clock.dt/2;
+        const demi_output o = w->look.outputs[i];
+        const dem_output_desc *d = &o.desc;
+        const int reads = w->look.reads;
+        demi_written *written = &w->look.outputs[i].written;
+        dem_result result = DEM_OK;
+        double number = (double)written->next;
+        if (written->next == DEMI_OUTPUT_UNKNOWN)
+            number = DEMI_MAX(ceil((now - half - d->start)/d->interval), 0);
+        if (number < DEMI_OUTPUT_MOST) written->next = (int64_t)number;
+        if (now + half < d->start + number*d->interval ||
+            (d->end > 0 && now - half > d->end)) continue;
+        number = DEMI_MAX(floor((now + half - d->start)/d->interval), number);
+        if (!(number < DEMI_OUTPUT_MOST))
+            return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: output %d would get number %g "
+                             "at %g s, must be below %g, because its interval is %g s; give a "
+                             "longer interval, or an end", (int)o.id, number, now, DEMI_OUTPUT_MOST,
+                             d->interval);
+        demi_finish(w);
+        written->next = (int64_t)number + 1;
+        written->last = now;
+        result = demi_output_write(w, &o, (int64_t)number);
+        if (reads != w->look.reads) { i = -1; continue; }
+        i = demi_output_place(w, o.id);         /* its function may have removed some */
+        if (i == w->look.output_count || w->look.outputs[i].id != o.id) i--;
+        else if (result == DEM_OK) w->look.outputs[i].resumes = 0;
+        else w->look.outputs[i].written = o.written;
+        if (result != DEM_OK) return result;
+    }
+    return DEM_OK;
+}
+/* An output of which nothing is known. */
+static void demi_output_begin(demi_output *o) {
+    const dem_output_desc *d = &o->desc;
+    const int kind = (int)d->kind;
+    const double when[] = {d->start, d->interval};
+    o->written.what = demi_hash(demi_hash(DEMI_HASH_START, &kind, sizeof kind), d->path,
+                                d->path ? strlen(d->path) : 0);
+    o->written.when = demi_hash(DEMI_HASH_START, when, sizeof when);
+    o->written.next = DEMI_OUTPUT_UNKNOWN;
+    o->written.last = -1e300;
+    o->resumes = 1;
+}
+/* A checkpoint has been read: each output goes on from the one of the file that has its kind, path
+   and times; else from one of its kind and path, at the next of its own times. */
+static void demi_outputs_again(dem_world *w) {
+    const double now = w->clock.time, half = (double)w->clock.dt/2;
+    int i, k, pass;
+    w->look.reads++;
+    for (i = 0; i < w->look.output_count; i++) demi_output_begin(&w->look.outputs[i]);
+    for (pass = 0; pass < 2; pass++)
+        for (i = 0; i < w->look.output_count; i++) {
+            demi_output *o = &w->look.outputs[i];
+            for (k = 0; k < w->written_count && o->resumes == 1; k++) {
+                demi_written *there = &w->written[k];
+                if (there->what != o->written.what ||
+                    (!pass && there->when != o->written.when)) continue;
+                there->what = 0;                /* taken */
+                o->resumes = 2;
+                o->written.last = there->last;
+                if (!pass) o->written.next = there->next;
+                else if (there->last >= now - half && now >= o->desc.start - half)
+                    o->written.next = (int64_t)DEMI_MIN(floor((now + half - o->desc.start)/
+                        o->desc.interval) + 1, DEMI_OUTPUT_MOST);
+            }
+        }
+}
+/* One sentence on what is wrong with a desc; null: nothing. */
+static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
+    if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_SURFACES)
+        return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
+    if (!demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end) || d->interval < DEMI_OUTPUT_LEAST || d->end < 0 ||
+        fmax(d->interval, fmax(fabs(d->start), d->end)) > DEMI_FARTHEST)
+        return "interval must be 1e-12 to 1e15 s, start within 1e15 s of 0, end 0 to 1e15 s; was "
+            "a unit other than seconds meant?";
+    if (fabs(w->clock.time - d->start)/d->interval >= DEMI_OUTPUT_MOST)
+        return "start is more than 9e15 intervals from now; give a longer interval";
+    if (d->kind == DEM_OUTPUT_CALL)
+        return d->function ? 0 : "kind is DEM_OUTPUT_CALL, but function is null; give a function";
+    if (!d->path || !*d->path) return "path is null or empty; give a file name, with #### in it "
+        "if each output goes to a separate file";
+    if (d->kind != DEM_OUTPUT_CSV) return 0;
+    if (strchr(d->path, '#')) return "path of a CSV file has a #, but all its lines go to one "
+        "file; leave the # out";
+    if (!d->columns != !d->values)
+        return "only one of columns and values is given; give both, or neither for the default "
+            "columns";
+    if (d->wall.id && d->values) return "both wall and values are given; give only one of them";
+    if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall does not "
+        "exist; give an id that adding a wall returned";
+    if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "
+        "words of at most 23 letters, digits and _, separated by one space";
+    return 0;
+}
+DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
+    dem_output id;
+    demi_output *o;
+    const char *bad, *call = "dem_output_add";
+    char *path = 0, *columns = 0;
+    id.id = 0;
+    if (demi_null(w, call, desc, "desc")) return id;
+    bad = demi_output_bad(w, desc);
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s", call, bad);
+        return id;
+    }
+    if (desc->path) path = demi_text_copy(w, desc->path);
+    if (desc->columns) columns = demi_text_copy(w, desc->columns);
+    if ((desc->path && !path) || (desc->columns && !columns) ||
+        !demi_grow(w, DEMI_SCENE, &w->look.outputs, sizeof *w->look.outputs,
+                   (size_t)w->look.output_count + 1)) {
+        demi_free(w, path);
+        demi_free(w, columns);
+        demi_no_memory(w, call);
+        return id;
+    }
+    o = &w->look.outputs[w->look.output_count++];
+    memset(o, 0, sizeof *o);
+    o->desc = *desc;
+    o->desc.path = path;
+    o->desc.columns = columns;
+    id.id = o->id = ++w->look.output_last;
+    demi_output_begin(o);
+    w->look.outputs_look = demi_outputs_look;
+    w->look.outputs_again = demi_outputs_again;
+    demi_built(w, call);
+    return id;
+}
+DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
+    const char *call = "dem_output_remove";
+    demi_output *o;
+    int i;
+    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_output_place(w, output.id);
+    if (i == w->look.output_count || w->look.outputs[i].id != output.id)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: output %d does not exist; it was removed "
+                         "before or is of another world: give what dem_output_add returned", call,
+                         (int)output.id);
+    o = w->look.outputs + i;
+    demi_free(w, (char *)o->desc.path);
+    demi_free(w, (char *)o->desc.columns);
+    w->look.output_count--;
+    memmove(o, o + 1, (size_t)(w->look.output_count - i)*sizeof *o);
+    return DEM_OK;
+}
+DEM_API dem_output dem_output_every_add(dem_world *w, dem_output_kind kind, const char *path,
+                                        double interval) {
+    dem_output_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.kind = kind;
+    desc.path = path;
+    desc.interval = interval;
+    return dem_output_add(w, &desc);
+}

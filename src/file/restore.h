@@ -1,0 +1,610 @@
+/* ---------------------------------------------------------------------------------------------
+   >>restore
+   Reading a checkpoint fills a twin, an empty world of the same scene. A check sum only tells that
+   a file is as it was written, not that what was written makes sense: so every count is checked
+   before room is made for it, and every index and length before anything follows it. When all is
+   right the twin's state takes the place of the world's; until then the world is as it was.
+   --------------------------------------------------------------------------------------------- */
+
+/* Copies of walls, fields, feeds and outlets, the domains: what state is read into. 0 when memory
+   ran out. */
+static int demi_twin_parts(dem_world *t, const dem_world *w) {
+    int i;
+    t->domains = (demi_domain *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
+    t->cross_incoming_start = (int *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
+    t->walls = (demi_wall *)demi_hold(t, DEMI_RUN, (size_t)w->wall_count, sizeof(demi_wall));
+    t->fields = (demi_field *)demi_hold(t, DEMI_RUN, (size_t)w->field_count, sizeof(demi_field));
+    if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
+        (w->field_count && !t->fields) ||
+        !DEMI_GROW(t, t->feeds, (size_t)w->feed_count) ||
+        !DEMI_GROW(t, t->outlets, (size_t)w->outlet_count)) return 0;
+    t->wall_count = w->wall_count;
+    t->feed_count = w->feed_count;
+    t->outlet_count = w->outlet_count;
+    t->bodies.zoned = w->bodies.zoned;          /* room comes with the bodies' */
+    if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
+    for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
+    for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &t->fields[i];
+        *f = w->fields[i];
+        f->sums = (double *)demi_hold(t, DEMI_RUN, demi_field_reals(f), sizeof(double));
+        t->field_count = i + 1;
+        if (!f->sums) return 0;
+    }
+    return 1;
+}
+/* An empty world of the scene of w: it has walls, fields, feeds and outlets of its own, but looks
+   at w's materials, shapes and geometry. Null when memory ran out. */
+static dem_world *demi_twin_make(dem_world *w) {
+    dem_world *t = (dem_world *)demi_alloc(w, 1, sizeof *t);
+    if (!t) return 0;
+    t->desc = w->desc;
+    t->asked = w->asked;
+    demi_names_own(t, &w->asked);
+    t->material_count = w->material_count;
+    memcpy(t->materials, w->materials, sizeof t->materials);
+    t->pairs = w->pairs;
+    t->shape_count = w->shape_count;
+    t->shapes = w->shapes;
+    t->normal = (int)w->desc.normal_law;
+    t->bodies.backward = w->bodies.backward;
+    t->bodies.booked = w->bodies.booked;
+    if (demi_twin_parts(t, w)) return t;
+    demi_free_chain(t, DEMI_RUN);
+    demi_free(w, t);
+    return 0;
+}
+static void demi_twin_free(dem_world *w, dem_world *t) {
+    demi_free_chain(t, DEMI_RUN);
+    demi_free_chain(t, DEMI_SCENE);             /* walls that it has made its own */
+    demi_free(w, t);
+}
+/* The twin's state takes the place of the world's. */
+static void demi_twin_adopt(dem_world *w, dem_world *t) {
+    size_t bytes;
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (t->walls[i].kind == DEMI_WALL_NONE) demi_wall_free(w, &w->walls[i]);
+    demi_free_chain(w, DEMI_RUN);
+    t->chains[DEMI_SCENE] = w->chains[DEMI_SCENE];
+    bytes = w->bytes + t->bytes;
+    memcpy(t->error, w->error, sizeof t->error);
+    memcpy(t->refusal, w->refusal, sizeof t->refusal);
+    memcpy(t->refused_calls, w->refused_calls, sizeof t->refused_calls);
+    t->refused = w->refused;
+    t->look = w->look;
+    *w = *t;
+    demi_names_point(w);
+    w->bytes = bytes;
+    demi_free(w, t);
+    if (w->look.outputs_again) w->look.outputs_again(w);
+}
+
+/* --- reading: does what it says make sense? Each of these checks one part of the twin, right after
+       it was read, and answers 0 with a sentence when not --- */
+
+typedef struct demi_reader {
+    dem_world *w, *t;
+    const char *path;
+    demi_stream s;
+} demi_reader;
+
+/* The check sum is right and a number cannot be: says which. Answers 0. */
+static int demi_lie(const demi_reader *r, const char *what, long long which) {
+    char number[32] = "";
+    if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
+    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
+              "checksum is correct; the file was altered, or the run that wrote it had blown up: "
+              "use an older checkpoint", r->path, what, number);
+    return 0;
+}
+/* Are so many items of `size` bytes left in the file? */
+static int demi_left(const demi_reader *r, int64_t count, size_t size) {
+    return count >= 0 && (uint64_t)count <= r->s.left/size;
+}
+/* Finite, and at least `least`. */
+static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
+
+/* Counts bound what is allocated and read next, so they come first. */
+static int demi_numbers_check(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
+    const double positive[] =
+        {t->margin.skin, t->margin.gone, t->margin.walls_gone, t->margin.skin_auto,
+         t->margin.span, t->margin.age, t->margin.slack, t->margin.change, t->margin.last_change,
+         t->margin.creep, t->margin.reach, t->booked.speed_max, t->clock.assumed_speed,
+         t->clock.half_kick, (double)t->effects.radius_min, (double)t->effects.radius_max,
+        (double)t->clock.dt};
+    size_t i;
+    int k;
+    if (!demi_left(r, t->bodies.count, demi_body_size(t)) ||
+        !demi_left(r, t->bodies.slot_count, 8) ||
+        t->bodies.count > INT_MAX/64 || t->bodies.slot_count > INT_MAX/64 ||
+            t->bodies.count > t->bodies.slot_count)
+        return demi_lie(r, "number of bodies or slots", -1);
+    if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
+        (t->stage.list_valid && (!t->domain_count ||
+                           t->domain_count > demi_domains_for(4*t->bodies.count + 16))) ||
+        !demi_left(r, t->domain_count, sizeof(demi_domain)))
+        return demi_lie(r, "number of domains", -1);
+    if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
+        return demi_lie(r, "list capacity", -1);
+    if (!demi_left(r, t->joint_count, sizeof(demi_joint)) || (t->joint_count && !demi_impulsive(w)))
+        return demi_lie(r, "number of joints", -1);
+    if (!demi_left(r, t->written_count, sizeof(demi_written)))
+        return demi_lie(r, "number of outputs", -1);
+    if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
+        t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
+                                         t->desc.search != w->desc.search))
+        return demi_lie(r, "search", -1);
+    if (t->bodies.shaped < 0 || t->bodies.shaped > (t->bodies.orienting ? t->bodies.count : 0) ||
+        (w->asked.orientations && !t->bodies.orienting))
+        return demi_lie(r, "number of bodies that are not spheres", -1);
+    if (!demi_left(r, t->filed.count, 4) || t->filed.rows < 0 ||
+        t->filed.rows > t->bodies.slot_count ||
+        t->filed.stride < 0 || t->filed.stride > DEMI_MEMORY ||
+            (t->stage.list_valid && t->filed.count))
+        return demi_lie(r, "contact history", -1);
+    if (((t->effects.tangent || t->stage.list_valid) && t->effects.tangent != tangent &&
+         t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
+         t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
+             (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
+             t->effects.species_count < 0 ||
+             t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
+        return demi_lie(r, "laws in force", -1);
+    for (k = 0; k < t->effects.species_count && k < DEMI_SPECIES; k++)
+        if (t->effects.species[k].material < 1 ||
+            t->effects.species[k].material > t->material_count)
+            return demi_lie(r, "table of species", -1);
+    for (i = 0; i < sizeof positive/sizeof *positive; i++)
+        if (!demi_sane(positive[i], 0))
+            return demi_lie(r, "time, time step, skin or other length of the neighbour list", -1);
+    if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_FARTHEST ||
+        !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_FARTHEST ||
+        t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
+        !demi_finite_double(t->clock.run_end) ||
+        !demi_sane((double)t->desc.dt, 0) ||
+            (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
+        (t->stage.dt_valid && t->bodies.count && t->desc.dt > 0 &&
+         (t->clock.dt < t->desc.dt || t->clock.dt > t->desc.dt)))
+        return demi_lie(r, "time or time step", -1);
+    if (t->bodies.balance.present != (uint64_t)t->bodies.count ||
+        t->bodies.balance.inserted != t->bodies.balance.present + t->bodies.balance.removed +
+            t->bodies.balance.left)
+        return demi_lie(r, "body counts", -1);
+    return 1;
+}
+/* Counts of domain d; begins where the one before ended. */
+static int demi_domain_check(const demi_reader *r, int d) {
+    const dem_world *t = r->t;
+    const demi_domain *o = &t->domains[d];
+    const int64_t counts[] = {o->own, o->cross, o->walls, o->near_own,
+        (int64_t)o->near_end - o->near_cross, (int64_t)o->near_shaped_cross - o->near_shaped,
+        (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts,
+        o->kept, o->kept_walls, o->near_cross, o->near_end, o->near_shaped,
+        o->near_shaped_cross, o->near_shaped_end};
+    const int group = DEMI_LANES;
+    size_t i;
+    for (i = 0; i < sizeof counts/sizeof *counts; i++)
+        if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
+    if (!demi_left(r, o->kept, sizeof(demi_kept)) ||
+        (o->kept && !t->wall_count && !t->bodies.orienting)) return 0;
+    if (!t->stage.list_valid) return 1;
+    return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
+           o->end <= t->bodies.count && (d + 1 < t->domain_count || o->end == t->bodies.count) &&
+           demi_left(r, o->own, 8) && demi_left(r, o->cross, 8) &&
+           demi_left(r, o->walls, 12 + 4*sizeof(dem_real)) &&
+           demi_left(r, o->near_shaped_end, 8) &&
+           o->near_cross == (o->near_own + group - 1)/group*group &&
+           o->near_shaped == (o->near_end + group - 1)/group*group &&
+           o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
+           o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross;
+}
+/* Bodies of all domains in a row; without a list, as much of it as the next one starts from. */
+static int demi_domains_check(const demi_reader *r) {
+    dem_world *t = r->t;
+    int d;
+    for (d = 0; d < t->domain_count; d++) {
+        demi_domain *o = &t->domains[d];
+        if (!demi_domain_check(r, d)) return demi_lie(r, "counts of domain", d);
+        o->overflow = 0;
+        if (t->stage.list_valid) continue;
+        /* of a list that is no more */
+        o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->bodies.count);
+        o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->bodies.count);
+    }
+    return 1;
+}
+/* Slots: those of bodies, and two chains of free ones that nothing else is in. */
+static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
+    const dem_world *t = r->t;
+    int i, chain, left = t->bodies.slot_count - t->bodies.count;
+    for (i = 0; i < t->bodies.count; i++) {
+        const uint32_t slot = t->bodies.slot[i];
+        if (slot >= (uint32_t)t->bodies.slot_count || t->bodies.slot_index[slot] != i)
+            return demi_lie(r, "slot of body", i);
+    }
+    for (chain = 0; chain < 2; chain++) {
+        int slot = chain ? t->bodies.slot_pending : t->bodies.slot_free;
+        while (slot != -1) {
+            if (slot < 0 || slot >= t->bodies.slot_count || seen[slot]++ ||
+                t->bodies.slot_index[slot] >= 0 ||
+                t->bodies.slot_index[slot] < -2 - t->bodies.slot_count || !left--)
+                return demi_lie(r, "chain of free slots", -1);
+            slot = -2 - t->bodies.slot_index[slot];
+        }
+    }
+    return left == 0 ? 1 : demi_lie(r, "number of free slots", -1);
+}
+static dem_real demi_quat_size2(const dem_real *q) {
+    return q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3];
+}
+/* Numbers of bodies that can be: finite, positive where they must be, of materials and shapes that
+   exist. */
+static int demi_bodies_sane(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const int lost = demi_body_lost(t);
+    int i, k, shaped = 0;
+    if (lost >= 0) return demi_lie(r, "state of body", lost);
+    for (i = 0; i < t->bodies.count; i++) {
+        if (!(t->bodies.pos[4*i + 3] > 0) ||
+            !demi_sane((double)t->bodies.mass[i], 0) || !(t->bodies.mass[i] > 0) ||
+            !demi_sane((double)t->bodies.inv_mass[i], 0) ||
+                !demi_sane((double)t->bodies.inv_inertia[i], 0))
+            return demi_lie(r, "position, radius or mass of body", i);
+        if (t->bodies.material[i] < 1 || t->bodies.material[i] > t->material_count)
+            return demi_lie(r, "material of body", i);
+        if (!t->bodies.orienting) continue;
+        if (t->bodies.shape[i] < 0 || t->bodies.shape[i] > t->shape_count)
+            return demi_lie(r, "shape of body", i);
+        if (!(demi_quat_size2(t->bodies.orient + 4*i) > DEM_R(0.98)) ||
+            !(demi_quat_size2(t->bodies.orient + 4*i) < DEM_R(1.02)))
+            return demi_lie(r, "orientation of body", i);
+        if (!t->bodies.shape[i]) continue;
+        shaped++;
+        for (k = 0; k < 3; k++)
+            if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "inertia of body", i);
+    }
+    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
+}
+/* Near pairs p = begin .. end - 1 of domain d: entries of this list, ascending, all of spheres or
+   none; from here on counted in all domains. */
+static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
+                           int end, int shaped) {
+    dem_world *t = r->t;
+    const int first = d*list->stride;
+    int p, last = -1;
+    for (p = begin; p < end; p++) {
+        const int at = d*t->near.stride + p, k = t->near.k[at];
+        if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
+            t->near.b[at] != list->b[first + k] ||
+            shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])) ||
+            (!shaped && !demi_species_has(t, t->near.a[at])) ||
+            (!shaped && !demi_species_has(t, t->near.b[at])))
+            return demi_lie(r, "neighbour pair of domain", d);
+        last = k;
+        t->near.k[at] = first + k;
+    }
+    return 1;
+}
+/* Every index in the lists: a pair stands where its lower body is, near pairs are candidates,
+   elements exist. After that steps may trust them. */
+static int demi_lists_check(const demi_reader *r) {
+    dem_world *t = r->t;
+    int d, l, k;
+    for (d = 0; d < t->domain_count && t->stage.list_valid; d++) {
+        const demi_domain *o = &t->domains[d];
+        for (l = 0; l < 2; l++) {
+            const demi_list *list = l ? &t->cross : &t->own;
+            const int count = l ? o->cross : o->own, first = d*list->stride;
+            for (k = first; k < first + count; k++) {
+                const int a = list->a[k], b = list->b[k];
+                if (a < o->begin || a >= o->end || b <= a || b >= t->bodies.count ||
+                    (b >= o->end) != l)
+                    return demi_lie(r, "candidate pair of domain", d);
+            }
+            if (!demi_near_check(r, d, list, count, l ? o->near_cross : 0,
+                                 l ? o->near_end : o->near_own, 0) ||
+                !demi_near_check(r, d, list, count, l ? o->near_shaped_cross : o->near_shaped,
+                                 l ? o->near_shaped_end : o->near_shaped_cross, 1)) return 0;
+        }
+        for (k = d*t->wall_stride; k < d*t->wall_stride + o->walls; k++) {
+            const int wall = t->wall_id[k], body = t->wall_body[k];
+            if (body < o->begin || body >= o->end || wall < 0 || wall >= t->wall_count ||
+                t->walls[wall].kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
+                t->wall_element[k] >= t->walls[wall].element_count ||
+                !demi_finite3(demi_at(t->wall_shift + 3*(size_t)k)) ||
+                (k > d*t->wall_stride && body < t->wall_body[k - 1]))
+                return demi_lie(r, "wall candidate of domain", d);
+        }
+    }
+    return 1;
+}
+/* Contacts that last: of bodies, or of slots while there is no list. */
+static int demi_contacts_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const int who = t->stage.list_valid ? t->bodies.count : t->bodies.slot_count;
+    int d, k;
+    for (d = 0; d < t->domain_count; d++) {
+        for (k = 0; k < t->domains[d].kept; k++) {
+            const demi_kept *c = demi_kept_of(t, d) + k;
+            if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || !demi_finite3(c->shift) ||
+                (c->b >= 0 && !t->bodies.orienting) ||
+                    (c->b < 0 && (c->wall < 0 || c->wall >= t->wall_count ||
+                 (t->stage.list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
+                return demi_lie(r, "contact of domain", d);
+        }
+    }
+    if (t->stage.list_valid || !t->filed.count) return 1;
+    for (k = 0; k <= t->filed.rows; k++)
+        if (t->filed.start[k] < (k ? t->filed.start[k - 1] : 0) ||
+            t->filed.start[k] > t->filed.count || (!k && t->filed.start[k]))
+            return demi_lie(r, "contact history of slot", k);
+    if (t->filed.start[t->filed.rows] != t->filed.count)
+        return demi_lie(r, "contact history of slot", t->filed.rows);
+    for (k = 0; k < t->filed.count; k++) {
+        const int32_t p = t->filed.partner[k], other = p < 0 ? ~p : p;
+        if (other >= t->bodies.slot_count) return demi_lie(r, "partner in the contact history, "
+                                                           "entry", k);
+    }
+    return 1;
+}
+/* Poses turn and do not stretch; motions are of the kind that the scene has. */
+static int demi_walls_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->wall_count; i++) {
+        const demi_wall *wall = &r->t->walls[i], *own = &r->w->walls[i];
+        const dem_motion *m = &wall->motion;
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
+            !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
+            return demi_lie(r, "pose of wall", i);
+        if (m->kind != own->motion.kind || !demi_motion_sane(m))
+            return demi_lie(r, "motion of wall", i);
+    }
+    return 1;
+}
+/* What fields and feeds count cannot be more than they were given. */
+static int demi_measured_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->field_count; i++)
+        if (!demi_finite_double(r->t->fields[i].next))
+            return demi_lie(r, "next sampling time of field", i);
+    for (i = 0; i < r->t->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(r->t, i);
+        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
+            return demi_lie(r, "state of feed", i);
+        for (k = 0; k < f->desc.class_count; k++)
+            if (f->desc.limited && f->state.fed[k] > f->limit[k])
+                return demi_lie(r, "state of feed", i);
+    }
+    return 1;
+}
+
+/* Joints are of kinds there are, on walls there are; bodies that are no more, ids tell. */
+static int demi_joints_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->joint_count; i++) {
+        const demi_joint *j = &r->t->joints[i];
+        const dem_joint_state *o = &j->state;
+        if ((int)j->desc.kind <= 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
+            (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE || !r->t->bodies.orienting ||
+            (j->desc.motor != DEM_MOTOR_NONE && j->desc.kind != DEM_JOINT_REVOLUTE) ||
+            j->desc.wall.id < 0 || (j->desc.wall.id &&
+             demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
+            j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
+            !(DEMI_ABS(j->desc.speed) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->bank) ||
+            !(DEMI_ABS(j->desc.torque) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->held) ||
+            !demi_finite(j->left) || !demi_finite(j->apart) ||
+            !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
+            !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
+            !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
+            !demi_finite_double(o->turned) || !demi_finite_double(o->work))
+            return demi_lie(r, "joint", i);
+    }
+    return 1;
+}
+
+/* Numbers of outputs are whole. */
+static int demi_outputs_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->written_count; i++) {
+        const demi_written *o = &r->t->written[i];
+        if (o->next < DEMI_OUTPUT_UNKNOWN || (double)o->next > DEMI_OUTPUT_MOST ||
+            !demi_finite_double(o->last)) return demi_lie(r, "state of output", i);
+    }
+    return 1;
+}
+
+/* --- reading: room, and what follows from the rest --- */
+
+/* Bodies get their room as if they were added. */
+static int demi_twin_bodies_room(dem_world *t) {
+    const int orienting = t->bodies.orienting, count = t->bodies.count,
+        slots = t->bodies.slot_count;
+    int ok;
+    /* nothing to keep yet */
+    t->bodies.orienting = t->bodies.count = t->bodies.slot_count = 0;
+    ok = demi_bodies_reserve(t, (size_t)slots) && (!orienting || demi_orient_begin(t));
+    t->bodies.count = count;
+    t->bodies.slot_count = slots;
+    return ok;
+}
+/* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
+static int demi_twin_lists_room(dem_world *t) {
+    int most[5] = {0, 0, 0, 0, 0}, crowd[DEMI_DOMAINS], d, k;
+    const int each = t->domain_count ? t->bodies.count/t->domain_count : 0;
+    memset(crowd, 0, sizeof crowd);
+    for (d = 0; d < t->domain_count; d++) {
+        const demi_domain *o = &t->domains[d];
+        const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
+                              t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
+                                  ? o->walls : 0,
+                              t->domain_count > 1};
+        for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
+        crowd[d] = o->kept;
+    }
+    if (t->stage.list_valid) {
+        most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
+        most[1] = DEMI_MAX(most[1], most[4] ? DEMI_MAX(64, each*3)/4 : 0);
+        most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
+        most[3] = DEMI_MAX(most[3], 64);
+    }
+    for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
+    most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
+    demi_kept_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->kept_first);
+    if (!demi_wall_sums_room(t) ||
+        !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
+    return !t->stage.list_valid ||
+           (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
+            demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
+            demi_species_room(t) &&
+            demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
+            demi_cross_reserve(t) &&
+            demi_wall_lists_reserve(t, most[3]) &&
+            demi_quiet_reserve(t, t->bodies.count));
+}
+/* What follows from the rest, and is not stored. 0 when memory ran out. */
+static int demi_twin_follow(dem_world *t) {
+    const demi_periods p = demi_periods_of(t);
+    int d, k, l;
+    demi_image_shifts(t);
+    demi_walls_repeat(t);
+    for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
+    demi_kernel_choose(t);
+    if (!t->stage.list_valid) return 1;
+    if (!t->stage.pairs_changed) demi_species_lay(t);
+    demi_species_vary(t);
+    if (t->bodies.shaped && !demi_centres_lay(t)) return 0;
+    for (d = 0; d < t->domain_count; d++) {
+        const demi_domain *o = &t->domains[d];
+        const int first = d*t->near.stride;
+        for (l = 0; l < 2; l++) {
+            demi_list *list = l ? &t->cross : &t->own;
+            const int begin = d*list->stride, count = l ? o->cross : o->own;
+            for (k = begin; k < begin + count; k++)
+                list->image[k] = demi_pair_image(t, &p, list->a[k], list->b[k]);
+        }
+        for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
+            const int a = t->near.a[first + k], b = t->near.b[first + k];
+            t->near.image[first + k] = demi_pair_image(t, &p, a, b);
+            if (!t->effects.uniform && !(t->stage.pairs_changed && demi_many_species(t)))
+                demi_near_coefs(t, &t->near, d, k, a, b);
+        }
+        for (k = o->near_shaped; k < o->near_shaped_end; k++)
+            t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
+                                                       t->near.b[first + k]);
+        demi_near_adopt(t, d);
+    }
+    t->touching_valid = 0;
+    demi_cross_index(t);
+    for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
+    return 1;
+}
+
+/* Fills the twin from the rest of the file. A memory error has no sentence yet. */
+static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
+    dem_world *t = r->t;
+    demi_stream *s = &r->s;
+    demi_visit_numbers(t, s);
+    if (s->cut) demi_lie(r, "length", -1);
+    if (s->cut || !demi_numbers_check(r)) return DEM_ERROR_FORMAT;
+    demi_effects_memory(t);
+    demi_visit(s, t->domains, (size_t)t->domain_count*sizeof(demi_domain));
+    if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
+    *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
+    if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
+        !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
+        !DEMI_GROW(t, t->written, (size_t)t->written_count)) return DEM_ERROR_MEMORY;
+    demi_visit_bodies(t, s);
+    demi_visit_joints(t, s);
+    if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
+    demi_visit_lists(t, s);
+    demi_visit_contacts(t, s);
+    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
+    demi_visit_walls(t, s);
+    demi_visit_measured(t, s);
+    demi_visit_outputs(t, s);
+    if (s->cut || s->left) demi_lie(r, "length", -1);
+    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
+        !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+    return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
+}
+/* Reads a checkpoint from memory. */
+static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const char *data,
+                                        size_t size) {
+    demi_checkpoint_head head;
+    demi_reader r;
+    unsigned char *seen = 0;
+    dem_result result = demi_checkpoint_check(w, path, data, size, &head);
+    if (result != DEM_OK) return result;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.path = path;
+    r.s.from = data + sizeof head;
+    r.s.left = (size_t)head.body_size;
+    r.t = demi_twin_make(w);
+    if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
+    result = demi_checkpoint_scene(w, r.t, path, &r.s, head.parts);
+    if (result == DEM_OK) result = demi_twin_read(&r, &seen);
+    demi_free(r.t, seen);
+    if (result == DEM_OK) {
+        demi_twin_adopt(w, r.t);
+        return DEM_OK;
+    }
+    demi_twin_free(w, r.t);
+    return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
+}
+/* What a checkpoint would hold, in memory: the same visit, so that a copy has what a restart has.
+   Null when that ran out. */
+static char *demi_state_keep(dem_world *w, size_t *size) {
+    dem_world look = *w;
+    demi_stream s = {0, 0, 0, 0, 0, 0, 0};
+    char *bytes;
+    if (look.stage.list_valid) look.filed.count = 0;  /* as dem_checkpoint_write has it */
+    if (!look.filed.count) look.filed.rows = look.filed.stride = 0;
+    demi_visit_state(&look, &s);
+    *size = s.size;
+    bytes = (char *)demi_alloc(w, s.size + 1, 1);
+    s.to = bytes;
+    if (bytes) demi_visit_state(&look, &s);
+    return bytes;
+}
+/* A world in that state, to be tried out: it looks at the shapes and the geometry of walls of w,
+   whose facets must have been weighed, and has all else for itself. Null when memory ran out. */
+static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t size) {
+    demi_reader r;
+    unsigned char *seen = 0;
+    dem_result result;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.path = "a copy of the world";
+    r.s.from = bytes;
+    r.s.left = size;
+    r.t = demi_twin_make(w);
+    if (!r.t) return 0;
+    r.t->pairs = (demi_pair *)demi_hold(r.t, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                        sizeof(demi_pair));
+    if (r.t->pairs)
+        memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
+    result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
+    demi_free(r.t, seen);
+    r.t->facets_valid = 1;
+    if (result == DEM_OK) return r.t;
+    demi_twin_free(w, r.t);
+    return 0;
+}
+
+DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
+    if (demi_null(w, "dem_checkpoint_read", w, "world")) return DEM_ERROR_ARGUMENT;
+    char *bytes = 0;
+    size_t size = 0;
+    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
+    if (result == DEM_OK)
+        result = demi_checkpoint_parse(w, path, bytes, size);
+    demi_free(w, bytes);
+    return result;
+}

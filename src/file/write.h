@@ -1,0 +1,864 @@
+/* ---------------------------------------------------------------------------------------------
+   >>write
+   demi_out_open creates a file of a name that nobody has, path.XXXXXXXX.tmp; demi_out_close renames
+   it to path when all went well and removes it otherwise, so what is under path is whole. A
+   symbolic link stays: the file it leads to is the one replaced. Pipes and terminals are refused; a
+   device such as /dev/null is written to as it is. Write errors stick to the FILE and are looked at
+   once, on closing. Text has decimal points whatever the locale says.
+   --------------------------------------------------------------------------------------------- */
+
+typedef struct demi_out {
+    dem_world *world;
+    const char *call, *path;
+    char *place;                /* path, or where it leads when it is a link                      */
+    char *temporary;            /* place.XXXXXXXX.tmp; null: place itself is written to           */
+    size_t room;                /* bytes of each of the two                                       */
+    FILE *file;
+} demi_out;
+
+/* Where a symbolic link leads; 0: path is none. C has no word for links: on Unix we ask readlink by
+   its name in the C library, without the header, whose names would then stand in every program.
+   Elsewhere a link is replaced by a file. */
+#if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
+    !defined(__CYGWIN__)
+long demi_readlink(const char *path, char *to, size_t size) __asm__("readlink");
+#elif defined(__APPLE__) && defined(__GNUC__)
+long demi_readlink(const char *path, char *to, size_t size) __asm__("_readlink");
+#else
+static long demi_readlink(const char *path, char *to, size_t size) {
+    (void)path; (void)to; (void)size;
+    return -1;
+}
+#endif
+enum { DEMI_LINK = 1024, DEMI_LINKS = 16 };   /* bytes of a link's target; links on the way */
+enum { DEMI_SUFFIX = 14 };                      /* bytes of .XXXXXXXX.tmp and the 0 */
+/* Replaces place by what it leads to when it is a link. 0: too long, or in a circle. */
+static int demi_link_follow(char *place, size_t room) {
+    char to[DEMI_LINK];
+    int i;
+    for (i = 0; i < DEMI_LINKS; i++) {
+        const long n = demi_readlink(place, to, sizeof to);
+        const char *slash = strrchr(place, '/');
+        const size_t folder = n < 1 || to[0] == '/' || !slash ? 0 : (size_t)(slash - place) + 1;
+        if (n < 0) return 1;
+        if ((size_t)n >= sizeof to || folder + (size_t)n + DEMI_SUFFIX > room) return 0;
+        memcpy(place + folder, to, (size_t)n);
+        place[folder + (size_t)n] = 0;
+    }
+    return 0;
+}
+
+static void demi_out_free(demi_out *o) {
+    demi_free(o->world, o->place);
+    demi_free(o->world, o->temporary);
+}
+/* Creates a file of a name that nobody has or can guess. C11's "x" refuses a name that is taken,
+   also by a link; a library that does not know it is asked first whether the name is. */
+static FILE *demi_out_create(demi_out *o) {
+    uint64_t random = (uint64_t)time(0) ^ (uint64_t)(uintptr_t)o << 20 ^ (uint64_t)clock() << 40 ^
+        (uint64_t)(uintptr_t)o->temporary ^ (uint64_t)(1e9*fmod(demi_clock(), 1e6));
+    FILE *file = 0;
+    int tries;
+    for (tries = 0; tries < 100 && !file; tries++) {
+        sprintf(o->temporary, "%s.%08lx.tmp", o->place,
+                (unsigned long)(demi_random(&random) >> 32));
+        errno = 0;
+        file = fopen(o->temporary, "wbx");
+        if (file || errno == EEXIST) continue;
+        if (errno != EINVAL) return 0;
+        file = fopen(o->temporary, "rb");
+        if (file) { fclose(file); file = 0; continue; }
+        return fopen(o->temporary, "wb");
+    }
+    return file;
+}
+/* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
+   to replace a file (Windows), the old one is removed first; a folder of that name never is. */
+static dem_result demi_out_close(demi_out *o) {
+    int whole = o->file && fflush(o->file) == 0 && !ferror(o->file), cause = errno;
+    if (o->file && fclose(o->file) != 0 && whole) {
+        whole = 0;
+        cause = errno;
+    }
+    if (whole && o->temporary && rename(o->temporary, o->place) != 0) {
+        cause = errno;
+        whole = (cause == EEXIST || cause == EACCES) && remove(o->place) == 0 &&
+                rename(o->temporary, o->place) == 0;
+    }
+    if (!whole) {
+        if (o->file && o->temporary) remove(o->temporary);
+        demi_fail(o->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
+                  "exists, may be written to and has room", o->call, o->path,
+                  cause ? strerror(cause) : "unknown cause");
+    }
+    demi_out_free(o);
+    return whole ? DEM_OK : DEM_ERROR_FILE;
+}
+
+/* Ends a file that is not to be: what was there stays. */
+static void demi_out_drop(demi_out *o) {
+    fclose(o->file);
+    if (o->temporary) remove(o->temporary);
+    demi_out_free(o);
+}
+/* Is an open file of this size a device, which must not be replaced by a file? C has no word for
+   devices. They have their places in /dev (but for /dev/shm, which holds files); elsewhere a device
+   seems empty and yet can be read from, or has no place beyond its end to go to. */
+static int demi_is_device(const char *place, FILE *file, size_t size) {
+    int reads;
+    if (!strncmp(place, "/dev/", 5) && strncmp(place, "/dev/shm/", 9)) return 1;
+    if (size) return 0;
+    reads = fgetc(file) != EOF;
+    clearerr(file);
+    return reads || fseek(file, 1, SEEK_SET) != 0 || ftell(file) != 1 ||
+        fseek(file, 0, SEEK_SET) != 0;
+}
+/* Begins a file under a temporary name. If this fails there is nothing to close. */
+static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
+    size_t length;
+    FILE *there;
+    size_t size;
+    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    memset(o, 0, sizeof *o);
+    o->world = w;
+    o->call = call;
+    o->path = path;
+    length = strlen(path);
+    o->room = length + DEMI_LINK + DEMI_SUFFIX;
+    o->place = (char *)demi_alloc(w, o->room, 1);
+    o->temporary = (char *)demi_alloc(w, o->room, 1);
+    if (!o->place || !o->temporary) {
+        demi_out_free(o);
+        return demi_fail(w, DEM_ERROR_MEMORY, "%s: not enough memory for a file name; free some",
+                         call);
+    }
+    memcpy(o->place, path, length + 1);
+    there = fopen(path, "r+b");                 /* of a pipe: does not wait for its other end */
+    size = there ? demi_file_size(there) : 0;
+    if (size == DEMI_ENDLESS) {
+        fclose(there);
+        demi_out_free(o);
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a file, "
+                         "because a file is written whole or not at all; write a file and send "
+                         "that", call, path);
+    }
+    if (!demi_link_follow(o->place, o->room)) {
+        if (there) fclose(there);
+        demi_out_free(o);
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads to itself or through "
+                         "too many other links; give the file itself", call, path);
+    }
+    if (there && demi_is_device(o->place, there, size)) {
+        demi_free(w, o->temporary);
+        o->temporary = 0;
+        o->file = there;
+        return DEM_OK;
+    }
+    if (there) fclose(there);
+    o->file = demi_out_create(o);
+    return o->file ? DEM_OK : demi_out_close(o);
+}
+
+/* One binary number of at most 8 bytes, turned round if asked. */
+static void demi_out_number(demi_out *o, const void *number, size_t size, int turn) {
+    unsigned char bytes[8];
+    size_t i;
+    for (i = 0; i < size; i++) bytes[i] = ((const unsigned char *)number)[turn ? size - 1 - i : i];
+    fwrite(bytes, 1, size, o->file);
+}
+
+/* An array in a picture: count rows of `components` numbers. Without data it is the row of numbers
+   first, first + stride, ... */
+typedef struct demi_column {
+    const char *section, *name; /* section: of a VTP file                                         */
+    char type;                  /* r dem_real, i int32, u uint32                                  */
+    int components, count;      /* numbers in a row, rows                                        */
+    int stride, first;          /* numbers from row to row; to the first                         */
+    const void *data;
+} demi_column;
+
+static size_t demi_column_size(const demi_column *c) { /* bytes of one number */
+    return c->type == 'r' ? sizeof(dem_real) : 4;
+}
+
+static uint64_t demi_column_bytes(const demi_column *c) {
+    return (uint64_t)c->count*(uint64_t)c->components*demi_column_size(c);
+}
+
+/* A column without data counts: first, first + stride, and so on. */
+static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
+    const char *data = (const char *)c->data;
+    size_t size = demi_column_size(c);
+    int i, k;
+    for (i = 0; i < c->count; i++) {
+        if (!data) {
+            const int32_t number = c->first + i*c->stride;
+            demi_out_number(o, &number, sizeof number, turn);
+            continue;
+        }
+        for (k = 0; k < c->components; k++) {
+            size_t at = (size_t)i*(size_t)c->stride + (size_t)(c->first + k);
+            demi_out_number(o, data + at*size, size, turn);
+        }
+    }
+}
+
+enum { DEMI_GRAIN_COLUMNS = 10 + DEM_BODY_REALS };
+
+/* What is drawn of the bodies: the arrays as they are or, where there are clusters and ellipsoids,
+   one row for each part, in arrays of its own. */
+typedef struct demi_drawing {
+    int count;
+    const dem_real *pos, *vel, *spin;              /* count x 4 */
+    const dem_real *orient, *axes;                 /* count x 4; null: no orientations */
+    const uint32_t *slots;
+    const int32_t *materials;
+    const dem_real *reals;                         /* count x real_count */
+    int real_count;
+    char names[DEM_BODY_REALS][24];
+    dem_real *own;                                 /* count x 20, and reals */
+    int32_t *own_ids;                              /* count x 2 */
+} demi_drawing;
+/* 0 when memory ran out. */
+static int demi_drawing_make(dem_world *w, demi_drawing *g) {
+    const dem_real *places = demi_wrapped(w);
+    dem_real *row;
+    size_t reals;
+    int i, k, e, n = 0;
+    memset(g, 0, sizeof *g);
+    g->count = w->bodies.count;
+    g->pos = places; g->vel = w->bodies.vel; g->spin = w->bodies.spin;
+    g->slots = w->bodies.slot; g->materials = w->bodies.material;
+    g->reals = w->bodies.reals; g->real_count = w->bodies.real_count;
+    for (k = 0; k < g->real_count; k++) {
+        const char *name = demi_name(w->desc.body_reals, k, &n);
+        sprintf(g->names[k], "%.*s", n, name);
+    }
+    n = 0;
+    if (!w->bodies.orienting) return 1;
+    g->count = 0;
+    for (i = 0; i < w->bodies.count; i++) g->count += demi_parts_count(w, i);
+    reals = 20*(size_t)g->count;
+    g->own = (dem_real *)demi_alloc(w, reals + (size_t)(g->real_count*g->count) + 1,
+                                    sizeof(dem_real));
+    g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
+    if (!g->own || !g->own_ids) return 0;
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < demi_parts_count(w, i); k++, n++) {
+            const demi_part p = demi_part_of(w, i, k);
+            row = g->own + 4*n;
+            demi_put(row, demi_add(demi_at(places + 4*i), p.centre));
+            row[3] = p.radius;
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_velocity_at(w->bodies.vel, w->bodies.spin, i, p.centre));
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_at(w->bodies.spin + 4*i));
+            row += 4*(size_t)g->count;
+            for (e = 0; e < 4; e++) row[e] = w->bodies.orient[4*i + e];
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_shape_rows[p.kind].drawn(&p));
+            g->own_ids[n] = (int32_t)w->bodies.slot[i];
+            g->own_ids[n + g->count] = w->bodies.material[i];
+            for (e = 0; e < g->real_count; e++)
+                g->own[reals + (size_t)(g->real_count*n + e)] = g->reals[g->real_count*i + e];
+        }
+    g->reals = g->own + reals;
+    g->pos = g->own;
+    g->vel = g->own + 4*(size_t)g->count;
+    g->spin = g->own + 8*(size_t)g->count;
+    g->orient = g->own + 12*(size_t)g->count;
+    g->axes = g->own + 16*(size_t)g->count;
+    g->slots = (const uint32_t *)g->own_ids;
+    g->materials = g->own_ids + g->count;
+    return 1;
+}
+static void demi_drawing_free(dem_world *w, demi_drawing *g) {
+    if (!w->bodies.orienting) return;
+    demi_free(w, g->own);
+    demi_free(w, g->own_ids);
+}
+static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
+    demi_drawing_free(w, g);
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: not enough memory for the %d parts of the bodies; "
+                     "free some", call, g->count);
+}
+
+/* What is told of grains; the last two make a cell of every point, so that it is drawn. */
+/* Answers how many columns there are; the last two hold no data. */
+static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
+    const demi_column all[] = {
+        {"Points",    "position",     'r', 3, g->count, 4, 0, g->pos},
+        {"PointData", "radius",       'r', 1, g->count, 4, 3, g->pos},
+        {"PointData", "velocity",     'r', 3, g->count, 4, 0, g->vel},
+        {"PointData", "spin",         'r', 3, g->count, 4, 0, g->spin},
+        {"PointData", "id",           'u', 1, g->count, 1, 0, g->slots},
+        {"PointData", "material",     'i', 1, g->count, 1, 0, g->materials},
+        {"PointData", "orientation",  'r', 4, g->count, 4, 0, g->orient},
+        {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
+        {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
+        {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
+    const int known = g->orient ? 8 : 6;
+    int k;
+    memcpy(columns, all, (size_t)known*sizeof *all);
+    for (k = 0; k < g->real_count; k++) {
+        const demi_column own = {"PointData", g->names[k], 'r', 1, g->count, g->real_count, k,
+                                 g->reals};
+        columns[known + k] = own;
+    }
+    memcpy(columns + known + k, all + 8, 2*sizeof *all);
+    return known + k + 2;
+}
+
+/* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
+   array after its size in bytes. The first column holds the points. */
+static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
+                           const demi_column *column, int columns, int verts, int lines,
+                           int polys) {
+    demi_out o;
+    char time[32];
+    const char *section = "";
+    uint64_t offset = 0, bytes;
+    int i;
+    dem_result result = demi_out_open(&o, w, call, path);
+    if (result != DEM_OK) return result;
+    fprintf(o.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+            "byte_order=\"%s\" header_type=\"UInt64\">\n<PolyData>\n<FieldData><DataArray "
+            "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">%s"
+            "</DataArray></FieldData>\n<Piece NumberOfPoints=\"%d\" NumberOfVerts=\"%d\" "
+            "NumberOfLines=\"%d\" NumberOfStrips=\"0\" NumberOfPolys=\"%d\">\n",
+            demi_is_little_endian() ? "LittleEndian" : "BigEndian",
+            demi_format_real(time, dem_world_time_get(w), 17), column[0].count, verts, lines,
+            polys);
+    for (i = 0; i < columns; i++) {
+        const demi_column *c = column + i;
+        if (i > 0 && strcmp(c->section, section) != 0) fprintf(o.file, "</%s>\n", section);
+        if (strcmp(c->section, section) != 0) fprintf(o.file, "<%s>\n", c->section);
+        section = c->section;
+        fprintf(o.file, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" "
+                "format=\"appended\" offset=\"%.0f\"/>\n", c->type == 'u' ? "UInt32" :
+                c->type == 'i' ? "Int32" : sizeof(dem_real) == 4 ? "Float32" : "Float64", c->name,
+                c->components, (double)offset);
+        offset += 8 + demi_column_bytes(c);
+    }
+    fprintf(o.file, "</%s>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_", section);
+    for (i = 0; i < columns; i++) {
+        bytes = demi_column_bytes(column + i);
+        demi_out_number(&o, &bytes, sizeof bytes, 0);
+        demi_column_write(&o, column + i, 0);
+    }
+    fputs("\n</AppendedData>\n</VTKFile>\n", o.file);
+    return demi_out_close(&o);
+}
+
+DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
+    if (demi_null_write(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    demi_column column[DEMI_GRAIN_COLUMNS];
+    demi_drawing g;
+    dem_result result;
+    int n;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtp_write", &g);
+    n = demi_grain_columns(&g, column);
+    result = demi_vtp(world, "dem_vtp_write", path, column, n, column[0].count, 0, 0);
+    demi_drawing_free(world, &g);
+    return result;
+}
+
+/* Contacts as lines: first counted, then laid down. */
+typedef struct demi_lines {
+    const dem_world *w;
+    int count, room, stride;
+    dem_real *ends, *force, *overlap, *memory;     /* x 6, x 3, x 1, x stride */
+    int32_t *wall;
+} demi_lines;
+static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *user) {
+    demi_lines *l = (demi_lines *)user;
+    const demi_periods p = demi_periods_of(l->w);
+    const int n = l->count++;
+    dem_body_state a, b;
+    dem_vec3 to = c->point;
+    dem_real *end;
+    int k;
+    if (n >= l->room || dem_body_get(l->w, c->a, &a) != DEM_OK) return;
+    end = l->ends + 6*(size_t)n;
+    if (!c->wall && dem_body_get(l->w, c->b, &b) == DEM_OK) to = b.position;
+    demi_put(end, a.position);
+    demi_put(end + 3, to);
+    for (k = 0; k < 3; k++)                     /* the image of b that is near */
+        end[3 + k] = end[k] + demi_image(end[3 + k] - end[k], p.half[k], p.period[k]);
+    demi_put(l->force + 3*(size_t)n, c->force);
+    l->overlap[n] = c->overlap;
+    l->wall[n] = c->wall;
+    for (k = 0; k < l->stride; k++) l->memory[(size_t)(n*l->stride + k)] = memory[k];
+}
+DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
+    if (demi_null_write(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    dem_result result = DEM_ERROR_ARGUMENT;
+    demi_column column[7 + DEMI_MEMORY];
+    char names[DEMI_MEMORY][24];
+    demi_lines l;
+    size_t room;
+    int k, length;
+    memset(&l, 0, sizeof l);
+    l.w = world;
+    if (dem_contacts_each(world, demi_line_put, &l) < 0) return DEM_ERROR_ARGUMENT;
+    l.room = l.count;
+    l.count = 0;
+    l.stride = world->memory_stride;
+    room = (size_t)l.room + 1;
+    l.ends = (dem_real *)demi_alloc(world, (10 + (size_t)l.stride)*room, sizeof(dem_real));
+    l.wall = (int32_t *)demi_alloc(world, room, sizeof(int32_t));
+    if (l.ends && l.wall) {
+        l.force = l.ends + 6*room;
+        l.overlap = l.force + 3*room;
+        l.memory = l.overlap + room;
+        dem_contacts_each(world, demi_line_put, &l);
+        const demi_column known[] = {
+            {"Points",   "position",     'r', 3, 2*l.room, 3,        0, l.ends},
+            {"CellData", "force",        'r', 3, l.room,   3,        0, l.force},
+            {"CellData", "overlap",      'r', 1, l.room,   1,        0, l.overlap},
+            {"CellData", "wall",         'i', 1, l.room,   1,        0, l.wall},
+            {"Lines",    "connectivity", 'i', 1, 2*l.room, 1,        0, 0},
+            {"Lines",    "offsets",      'i', 1, l.room,   2,        2, 0}};
+        memcpy(column, known, 4*sizeof *known);
+        for (k = 0; k < l.stride; k++) {
+            const char *name = demi_name(world->desc.law_memory_names, k, &length);
+            const demi_column own = {"CellData", names[k], 'r', 1, l.room, l.stride, k, l.memory};
+            if (k == world->laws.at_sliding && !demi_impulsive(world)) sprintf(names[k], "sliding");
+            else if (name) sprintf(names[k], "%.*s", length, name);
+            else sprintf(names[k], "memory%d", k);
+            column[4 + k] = own;
+        }
+        memcpy(column + 4 + k, known + 4, 2*sizeof *known);
+        result = demi_vtp(world, "dem_contacts_vtp_write", path, column, 6 + k, 0, l.room, 0);
+    } else result = demi_no_memory(world, "dem_contacts_vtp_write");
+    demi_free(world, l.ends);
+    demi_free(world, l.wall);
+    return result;
+}
+
+/* Legacy VTK, in its binary form: numbers are big-endian. */
+DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
+    if (demi_null_write(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    demi_column column[DEMI_GRAIN_COLUMNS];
+    demi_out o;
+    const char *real = sizeof(dem_real) == 4 ? "float" : "double";
+    double time = dem_world_time_get(world);
+    int i, n, count, turn = demi_is_little_endian();
+    demi_drawing g;
+    dem_result result;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtk_write", &g);
+    result = demi_out_open(&o, world, "dem_vtk_write", path);
+    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
+    n = demi_grain_columns(&g, column);
+    count = column[0].count;
+    fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
+          "TIME 1 1 double\n", o.file);
+    demi_out_number(&o, &time, sizeof time, turn);
+    fprintf(o.file, "\nPOINTS %d %s\n", count, real);
+    demi_column_write(&o, column, turn);
+    fprintf(o.file, "\nVERTICES %d %.0f\n", count, 2*(double)count);
+    for (i = 0; i < count; i++) { /* a cell: the number of its points, then their indices */
+        int32_t cell[2];
+        cell[0] = 1;
+        cell[1] = i;
+        demi_out_number(&o, cell, 4, turn);
+        demi_out_number(&o, cell + 1, 4, turn);
+    }
+    fprintf(o.file, "\nPOINT_DATA %d\n", count);
+    for (i = 1; i < n - 2; i++) {
+        const demi_column *c = column + i;
+        const char *type = c->type == 'u' ? "unsigned_int" : c->type == 'i' ? "int" : real;
+        if (c->components == 4)
+            fprintf(o.file, "SCALARS %s %s 4\nLOOKUP_TABLE default\n", c->name, type);
+        else if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
+        else fprintf(o.file, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", c->name, type);
+        demi_column_write(&o, c, turn);
+        fputs("\n", o.file);
+    }
+    demi_drawing_free(world, &g);
+    return demi_out_close(&o);
+}
+
+/* Extended XYZ. Species, which ASE wants to be chemical elements, tell the material: H is 1, He 2,
+   and so on. A domain becomes the lattice; an axis without extent gets 1 m. */
+DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
+    if (demi_null_write(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    static const char elements[] =
+        "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
+        "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
+    demi_drawing g;
+    dem_world_desc desc = dem_world_desc_get(world);
+    dem_box d = desc.domain;
+    double length[3];
+    char text[3][32];
+    demi_out o;
+    int i, k;
+    dem_result result;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_xyz_write", &g);
+    result = demi_out_open(&o, world, "dem_xyz_write", path);
+    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
+    length[0] = (double)(d.hi.x - d.lo.x);
+    length[1] = (double)(d.hi.y - d.lo.y);
+    length[2] = (double)(d.hi.z - d.lo.z);
+    fprintf(o.file, "%d\n", g.count);
+    if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
+        for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
+        fprintf(o.file, "Lattice=\"%s 0 0 0 %s 0 0 0 %s\" ", text[0], text[1], text[2]);
+        demi_format_real(text[0], (double)d.lo.x, 9);
+        demi_format_real(text[1], (double)d.lo.y, 9);
+        demi_format_real(text[2], (double)d.lo.z, 9);
+        fprintf(o.file, "Origin=\"%s %s %s\" pbc=\"", text[0], text[1], text[2]);
+        for (k = 0; k < 3; k++)
+            fprintf(o.file, desc.boundary[k] == DEM_BOUNDARY_PERIODIC ? "T%s" : "F%s",
+                    k < 2 ? " " : "\" ");
+    }
+    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%s",
+            g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "");
+    for (k = 0; k < g.real_count; k++) fprintf(o.file, "%s:R:1:", g.names[k]);
+    fprintf(o.file, "id:I:1 Time=%s\n", demi_format_real(text[0], dem_world_time_get(world), 12));
+    for (i = 0; i < g.count; i++) {
+        const char *element = elements + 2*((g.materials[i] - 1) & 63);
+        fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
+        for (k = 0; k < 7; k++) {
+            const dem_real *row = (k < 4 ? g.pos : g.vel) + 4*(size_t)i;
+            fprintf(o.file, " %s", demi_format_real(text[0], (double)row[k < 4 ? k : k - 4], 9));
+        }
+        for (k = 0; k < 7 && g.orient; k++) {   /* x y z w, then the axes */
+            const dem_real *row = (k < 4 ? g.orient : g.axes) + 4*(size_t)i;
+            fprintf(o.file, " %s", demi_format_real(text[0],
+                    (double)row[k < 4 ? (k + 1)%4 : k - 4], 9));
+        }
+        for (k = 0; k < g.real_count; k++)
+            fprintf(o.file, " %s", demi_format_real(text[0],
+                    (double)g.reals[g.real_count*i + k], 9));
+        fprintf(o.file, " %lu\n", (unsigned long)g.slots[i]);
+    }
+    demi_drawing_free(world, &g);
+    return demi_out_close(&o);
+}
+
+/* ---- bodies as surfaces ---- */
+
+/* A round part has its poles and rings of points between them. */
+enum { DEMI_ROUND_RINGS = 7, DEMI_ROUND_SIDES = 16,
+       DEMI_ROUND_POINTS = 2 + DEMI_ROUND_RINGS*DEMI_ROUND_SIDES };
+/* Polygons under way; without arrays they are only counted. */
+typedef struct demi_surfaces {
+    int64_t points, polygons, links;
+    dem_real *place, *velocity;    /* points x 3: m, m/s */
+    int32_t *body;                 /* points: index */
+    int32_t *link, *end;           /* links: points; polygons: where each ends among them */
+} demi_surfaces;
+static void demi_surface_point(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
+                               dem_vec3 arm) {
+    if (s->place) {
+        demi_put(s->place + 3*s->points, demi_add(centre, arm));
+        demi_put(s->velocity + 3*s->points,
+                 demi_velocity_at(w->bodies.vel, w->bodies.spin, body, arm));
+        s->body[s->points] = body;
+    }
+    s->points++;
+}
+static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t *corners,
+                                 int count) {
+    int k;
+    if (s->link) {
+        for (k = 0; k < count; k++) s->link[s->links + k] = (int32_t)(first + corners[k]);
+        s->end[s->polygons] = (int32_t)(s->links + count);
+    }
+    s->links += count;
+    s->polygons++;
+}
+/* An ellipsoid, its first point a pole. */
+static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
+                               const demi_part *p) {
+    const dem_vec3 a = demi_shape_rows[p->kind].drawn(p);
+    const int64_t first = s->points;
+    const int last = DEMI_ROUND_POINTS - 1;
+    int i, k;
+    for (i = 0; i < DEMI_ROUND_POINTS; i++) {
+        const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES;
+        const int side = (i - 1)%DEMI_ROUND_SIDES;
+        const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
+        const double round = 2*DEMI_PI*side/(int)DEMI_ROUND_SIDES, out = demi_sin(polar);
+        dem_vec3 x = demi_v(a.x*(dem_real)(out*demi_cos(round)),
+                            a.y*(dem_real)(out*demi_sin(round)), a.z*(dem_real)demi_cos(polar));
+        if (p->kind != DEMI_BALL) x = dem_quat_rotate(p->q, x);
+        demi_surface_point(s, w, body, centre, demi_add(p->centre, x));
+    }
+    for (i = 0; i <= DEMI_ROUND_RINGS; i++)
+        for (k = 0; k < DEMI_ROUND_SIDES; k++) {
+            const int up = 1 + (i - 1)*DEMI_ROUND_SIDES, down = 1 + i*DEMI_ROUND_SIDES;
+            const int next = (k + 1)%DEMI_ROUND_SIDES;
+            int32_t c[4];
+            c[0] = i ? up + k : 0;
+            c[1] = i < DEMI_ROUND_RINGS ? down + k : last;
+            c[2] = i && i < DEMI_ROUND_RINGS ? down + next : i ? up + next : down + next;
+            c[3] = up + next;
+            demi_surface_polygon(s, first, c, i && i < DEMI_ROUND_RINGS ? 4 : 3);
+        }
+}
+static void demi_surface_hull(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
+                              const demi_part *p) {
+    const demi_shape *shape = p->shape;
+    const int32_t *loops = shape->rim + shape->faces + 1;
+    const double *x = shape->hull + 4*shape->faces;
+    const int64_t first = s->points;
+    int i;
+    for (i = 0; i < shape->corners; i++, x += 3) {
+        const dem_vec3 at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
+        demi_surface_point(s, w, body, centre,
+                           demi_add(p->centre, dem_quat_rotate(p->q, demi_scale(at, p->scale))));
+    }
+    for (i = 0; i < shape->faces; i++)
+        demi_surface_polygon(s, first, loops + shape->rim[i], shape->rim[i + 1] - shape->rim[i]);
+}
+/* All of them. */
+static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
+    const dem_real *places = demi_wrapped(w);
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < demi_parts_count(w, i); k++) {
+            const demi_part p = demi_part_of(w, i, k);
+            if (p.kind != DEMI_BALL && p.shape->faces)
+                demi_surface_hull(s, w, i, demi_at(places + 4*i), &p);
+            else demi_surface_round(s, w, i, demi_at(places + 4*i), &p);
+        }
+}
+/* With arrays for all of it: what is told of a body stands at each of its points. 0: no memory. */
+static int demi_surfaces_room(dem_world *w, demi_surfaces *s, dem_real **reals, int32_t **told) {
+    const size_t points = (size_t)s->points + 1, n = (size_t)w->bodies.real_count;
+    if (s->points >= DEMI_ELEMENTS_MAX || s->links >= DEMI_ELEMENTS_MAX) return 0;
+    s->place = (dem_real *)demi_alloc(w, 6*points, sizeof(dem_real));
+    s->body = (int32_t *)demi_alloc(w, points, sizeof(int32_t));
+    s->link = (int32_t *)demi_alloc(w, (size_t)s->links + 1, sizeof(int32_t));
+    s->end = (int32_t *)demi_alloc(w, (size_t)s->polygons + 1, sizeof(int32_t));
+    *reals = (dem_real *)demi_alloc(w, n*points + 1, sizeof(dem_real));
+    *told = (int32_t *)demi_alloc(w, 2*points, sizeof(int32_t));
+    if (s->place) s->velocity = s->place + 3*points;
+    s->points = s->polygons = s->links = 0;
+    return s->place && s->body && s->link && s->end && *reals && *told;
+}
+DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
+    const char *call = "dem_surfaces_vtp_write";
+    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    const int n = world->bodies.real_count;
+    char names[DEM_BODY_REALS][24];
+    demi_column column[7 + DEM_BODY_REALS];
+    demi_surfaces s;
+    dem_real *reals = 0;
+    int32_t *told = 0;
+    dem_result result;
+    int i, k, length = 0, count = 0;
+    memset(&s, 0, sizeof s);
+    demi_surfaces_draw(world, &s);
+    if (demi_surfaces_room(world, &s, &reals, &told)) {
+        demi_surfaces_draw(world, &s);
+        for (i = 0; i < s.points; i++) {
+            told[i] = (int32_t)world->bodies.slot[s.body[i]];
+            told[s.points + i] = world->bodies.material[s.body[i]];
+            for (k = 0; k < n; k++)
+                reals[(size_t)n*(size_t)i + (size_t)k] = world->bodies.reals[n*s.body[i] + k];
+        }
+        {
+            const int points = (int)s.points;
+            const demi_column all[] = {
+                {"Points",    "position",     'r', 3, points, 3, 0, s.place},
+                {"PointData", "velocity",     'r', 3, points, 3, 0, s.velocity},
+                {"PointData", "id",           'u', 1, points, 1, 0, told},
+                {"PointData", "material",     'i', 1, points, 1, 0, told + s.points},
+                {"Polys",     "connectivity", 'i', 1, (int)s.links, 1, 0, s.link},
+                {"Polys",     "offsets",      'i', 1, (int)s.polygons, 1, 0, s.end}};
+            for (; count < 4; count++) column[count] = all[count];
+            for (k = 0; k < n; k++) {
+                const demi_column own = {"PointData", names[k], 'r', 1, points, n, k, reals};
+                const char *name = demi_name(world->desc.body_reals, k, &length);
+                sprintf(names[k], "%.*s", length, name);
+                column[count++] = own;
+            }
+            for (k = 4; k < 6; k++) column[count++] = all[k];
+        }
+        result = demi_vtp(world, call, path, column, count, 0, 0, (int)s.polygons);
+    } else result = demi_fail(world, DEM_ERROR_MEMORY, "%s: not enough memory for the surfaces of "
+                              "%d bodies; free some", call, world->bodies.count);
+    demi_free(world, s.place);
+    demi_free(world, s.body);
+    demi_free(world, s.link);
+    demi_free(world, s.end);
+    demi_free(world, reals);
+    demi_free(world, told);
+    return result;
+}
+
+/* ---- walls and loads out ---- */
+
+/* A surface of revolution, as demi_wall_draw has it. */
+static void demi_rings_draw(const demi_wall *wall, int64_t *points, int64_t *triangles,
+                            dem_real *place, int32_t *corners, int32_t *id) {
+    const int64_t base = *points, first = *triangles;
+    const int all = 2*(wall->ring_count - 1)*DEMI_RING_SIDES;
+    int k, c;
+    *points += wall->ring_count*DEMI_RING_SIDES;
+    *triangles += all;
+    if (!place) return;
+    for (k = 0; k < wall->ring_count*DEMI_RING_SIDES; k++) {
+        dem_real local[3];
+        demi_ring_corner(wall, k/DEMI_RING_SIDES, k%DEMI_RING_SIDES, local);
+        demi_put(place + 3*(base + k), demi_add(wall->pose.position,
+                                                demi_rotate(wall->pose.rotation, demi_at(local))));
+    }
+    for (k = 0; k < all; k++) {
+        for (c = 0; c < 3; c++)
+            corners[3*(first + k) + c] = (int32_t)(base + demi_ring_triangle(k, c));
+        id[first + k] = wall->id;
+    }
+}
+/* Adds wall i as it lies now: its points (those of a profile at z[0], then at z[1]) and triangles
+   (a segment a b, with A B above it, becomes a b B and a B A). Without arrays it only counts. */
+static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t *points,
+                           int64_t *triangles, dem_real *place, int32_t *corners, int32_t *id) {
+    const demi_wall *wall = w->walls + i;
+    int64_t k, up = wall->vertex_count, base = *points;
+    int c, profile = demi_wall_is(wall, DEMI_DRAWN), sides = profile ? 2 : 1;
+    dem_pose pose;
+    dem_wall handle;
+    handle.id = wall->id;
+    if (wall->ring_count) {
+        demi_rings_draw(wall, points, triangles, place, corners, id);
+        return;
+    }
+    if (demi_wall_per(wall) < 2) return;
+    *points += sides*up;
+    *triangles += sides*(int64_t)wall->element_count;
+    if (!place || dem_wall_pose_get(w, handle, &pose) != DEM_OK) return;
+    for (k = 0; k < sides*up; k++) {
+        dem_vec3 local = demi_at(wall->vertices + 3*(k%up));
+        if (profile) local.z = z[k/up];
+        demi_put(place + 3*(base + k), demi_add(pose.position, demi_rotate(pose.rotation, local)));
+    }
+    for (k = 0; k < sides*(int64_t)wall->element_count; k++) {
+        int64_t at = *triangles - sides*(int64_t)wall->element_count + k;
+        const int32_t *from = wall->corners + (profile ? k/2*2 : 3*k);
+        int64_t to[3];
+        to[0] = from[0];
+        to[1] = profile && k%2 ? from[1] + up : from[1];
+        to[2] = !profile ? from[2] : (k%2 ? from[0] : from[1]) + up;
+        for (c = 0; c < 3; c++) corners[3*at + c] = (int32_t)(base + to[c]);
+        id[at] = wall->id;
+    }
+}
+
+DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
+                                       dem_real z1) {
+    if (demi_null_write(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    int64_t points = 0, triangles = 0, p = 0, t = 0;
+    dem_real z[2], *place = 0;
+    int32_t *corners = 0, *id = 0;
+    size_t room[2];
+    int i, profiles = 0;
+    dem_result result;
+    z[0] = z0;
+    z[1] = z1;
+    for (i = 0; i < world->wall_count; i++) {
+        demi_wall_draw(world, i, z, &points, &triangles, 0, 0, 0);
+        profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
+    }
+    if (profiles && !(z1 > z0))
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g m and z1 is %g "
+                         "m, but z0 must be below z1 to extrude a profile between them; change "
+                         "them", (double)z0, (double)z1);
+    room[0] = 3*(size_t)points + 1; /* never nothing */
+    room[1] = (size_t)triangles + 1;
+    if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
+        place = (dem_real *)demi_alloc(world, room[0], sizeof(dem_real));
+        corners = (int32_t *)demi_alloc(world, 3*room[1], sizeof(int32_t));
+        id = (int32_t *)demi_alloc(world, room[1], sizeof(int32_t));
+    }
+    if (place && corners && id) {
+        for (i = 0; i < world->wall_count; i++)
+            demi_wall_draw(world, i, z, &p, &t, place, corners, id);
+        const demi_column column[] = {
+            {"Points",   "position",     'r', 3, (int)points,      3, 0, place},
+            {"CellData", "wall",         'i', 1, (int)triangles,   1, 0, id},
+            {"Polys",    "connectivity", 'i', 1, (int)triangles*3, 1, 0, corners},
+            {"Polys",    "offsets",      'i', 1, (int)triangles,   3, 3, 0}};
+        result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, 0, (int)triangles);
+    } else {
+        result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: not enough memory for "
+                           "%.0f points and %.0f triangles; free some", (double)points,
+                           (double)triangles);
+    }
+    demi_free(world, place);
+    demi_free(world, corners);
+    demi_free(world, id);
+    return result;
+}
+
+/* Appends a line to a CSV file, its heading before when the file is new or empty. Appending cannot
+   go by way of a temporary name. Instead the line goes out in one piece, and after one that was cut
+   short (a full disk, a killed run) a new line is begun. */
+enum { DEMI_CSV_LINE = 1200 };
+static dem_result demi_csv_append(dem_world *w, const char *call, const char *path,
+                                  const char *heading, const char *line) {
+    char text[2*DEMI_CSV_LINE];
+    int n = 0, last = '\n', whole, cause;
+    FILE *file;
+    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    errno = 0;
+    file = fopen(path, "r+b");                  /* of a pipe: does not wait, and is refused */
+    whole = !file || demi_file_size(file) != DEMI_ENDLESS;
+    if (file) fclose(file);
+    file = whole ? fopen(path, "a+b") : 0;
+    whole = file && fseek(file, 0, SEEK_END) == 0;
+    if (whole && ftell(file) > 0) {
+        whole = fseek(file, -1, SEEK_END) == 0;
+        last = whole ? fgetc(file) : last;
+        whole = whole && fseek(file, 0, SEEK_END) == 0; /* C wants a seek between read and write */
+        n = snprintf(text, sizeof text, "%s", last == '\n' ? "" : "\n");
+    } else n = snprintf(text, sizeof text, "%s\n", heading);
+    n += snprintf(text + n, sizeof text - (size_t)n, "%s\n", line);
+    whole = whole && fwrite(text, 1, (size_t)n, file) == (size_t)n && fflush(file) == 0;
+    cause = errno;
+    if (file) fclose(file);
+    if (whole) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
+                     "exists, may be written to and has room", call, path,
+                     cause ? strerror(cause) : "unknown cause");
+}
+/* The time and so many values, as a line. */
+static void demi_csv_line(char *line, double time, const double *value, int count) {
+    char number[32];
+    int i, n = snprintf(line, DEMI_CSV_LINE, "%s", demi_format_real(number, time, 12));
+    for (i = 0; i < count; i++)
+        n += snprintf(line + n, (size_t)(DEMI_CSV_LINE - n), ",%s",
+                      demi_format_real(number, value[i], 9));
+}
+static const char demi_loads_heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts";
+enum { DEMI_LOADS = 9 };
+/* What that heading names, the time left out. */
+static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wall, double *value) {
+    dem_wall_loads c;
+    if (dem_wall_loads_get(w, wall, &c) != DEM_OK)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %ld does not exist; give one that was "
+                         "added and not removed", call, (long)wall.id);
+    value[0] = (double)c.force.x;
+    value[1] = (double)c.force.y;
+    value[2] = (double)c.force.z;
+    value[3] = (double)c.torque.x;
+    value[4] = (double)c.torque.y;
+    value[5] = (double)c.torque.z;
+    value[6] = (double)c.torque_axial;
+    value[7] = (double)c.power;
+    value[8] = c.contacts;
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path) {
+    if (demi_null_write(world, "dem_wall_loads_csv_write", world,
+                        "world")) return DEM_ERROR_ARGUMENT;
+    const char *call = "dem_wall_loads_csv_write";
+    double value[DEMI_LOADS];
+    char line[DEMI_CSV_LINE];
+    if (demi_loads_values(world, call, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    demi_csv_line(line, dem_world_time_get(world), value, DEMI_LOADS);
+    return demi_csv_append(world, call, path, demi_loads_heading, line);
+}

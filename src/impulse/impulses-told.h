@@ -1,0 +1,339 @@
+/* ---------------------------------------------------------------------------------------------
+   >>impulses-told
+   What the impulses found do: forces of the step to come, which move bodies, act on walls and stand
+   in files; memory of contacts; losses. And overlaps that are left are undone in part, by places
+   alone.
+   --------------------------------------------------------------------------------------------- */
+
+/* Room for all contacts there may be. 0: memory ran out. */
+static int demi_impulses_room(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
+    const size_t bodies = (size_t)w->bodies.count;
+    size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
+    int d;
+    if (!demi_impulsive(w)) return 1;
+    if (!demi_joints_room(w)) return 0;
+    movers += (size_t)w->joint_count;
+    for (d = 0; d < w->domain_count; d++) {
+        s->meeting_first[d] = (int)n;
+        n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
+    }
+    s->twisted = demi_impulses_twist(w);
+    return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
+        DEMI_GROW(w, s->beside, n) && DEMI_GROW(w, s->runs, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
+        DEMI_GROW(w, s->movers, vectors ? 2*movers : movers) &&
+        DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
+        (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
+        (!vectors || (DEMI_GROW(w, s->vectors, vectors*n) && DEMI_GROW(w, s->degrees, bodies))) &&
+        (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
+}
+/* Overlaps that are left are undone in part: lifts are velocities that move bodies in this step and
+   are forgotten, so that they bring no energy. They move bodies without turning them. */
+enum { DEMI_LIFTS = 5 };
+#define DEMI_LIFTED DEM_R(0.2)                  /* of an overlap, per step */
+static void demi_impulses_lift(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_real ia = s->movers[c->a].inv, ib = s->movers[c->b].inv;
+        demi_beside *beside = s->beside + i;
+        dem_real *la = s->lifts + 4*c->a, *lb = ib > 0 ? s->lifts + 4*c->b : 0;
+        const dem_vec3 a = ia > 0 ? demi_at(la) : demi_v(0, 0, 0), n = c->normal;
+        const dem_vec3 b = lb ? demi_at(lb) : demi_v(0, 0, 0);
+        const dem_real part = beside->gap < 0 ? DEMI_LIFTED*beside->gap : beside->gap;
+        const dem_real want = beside->lift -
+            (demi_dot(demi_sub(b, a), n) + part/s->dt)*beside->mass;
+        const dem_real lift = DEMI_MAX(want, 0), by = lift - beside->lift;
+        beside->lift = lift;
+        if (ia > 0) demi_put(la, demi_sub(a, demi_scale(n, by*ia)));
+        if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
+    }
+}
+/* Forces of a domain's bodies: what brings them from what they would do to what they do. */
+static void demi_movers_force(dem_world *w, int d) {
+    const demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    int i, k;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        const demi_mover *m = s->movers + i;
+        const demi_lane b = demi_lane_move(w, i);
+        dem_real *torque = w->bodies.torque + 4*i;
+        if (!(m->inv > 0)) continue;
+        for (k = 0; k < 3; k++) b.f[k] = ((m->v[k] - b.v[k])*per - b.g[k])/m->inv;
+        if (w->bodies.shaped && w->bodies.shape[i]) {
+            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+            const dem_vec3 local = dem_quat_unrotate(q, demi_at(m->w));
+            const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
+            demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
+        } else
+            for (k = 0; k < 3; k++)
+                torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
+    }
+}
+/* What a domain's meetings have come to: memory, forces on walls, losses: with velocities half of
+   before and half of after, what an impulse takes is exact. */
+static void demi_impulses_tell(dem_world *w, int d) {
+    demi_solver *s = &w->solver;
+    demi_domain *domain = &w->domains[d];
+    const dem_real per = 1/s->dt;
+    /* m/s: a slip that the solve may have left, or round-off */
+    const dem_real slow = (dem_real)(10*w->booked.residual + (DEMI_SINGLE ? 1e-5 : 1e-10)*
+                                     w->booked.speed_max);
+    double *lost = domain->energy;              /* of the step to come */
+    int i, e;
+    domain->contacts = domain->kept_walls = 0;
+    for (i = 0; i < s->meeting_count[d]; i++) {
+        const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+        const demi_impulse *c = s->contacts + m->at;
+        const demi_spot o = demi_meeting_place(w, d, m);
+        demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+        dem_real *memory = k ? k->memory : w->near.memory +
+            (size_t)d*DEMI_IMPULSE_REALS*o.stride + m->home;
+        const dem_real push = c->push - s->beside[m->at].pull;
+        const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
+        const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
+        const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
+        const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, c), after), DEM_R(0.5));
+        const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
+            moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
+            demi_dot(after, c->normal), s->beside[m->at].turns,
+            demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride])};
+        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
+        lost[DEMI_E_DASHPOT] -= (double)demi_dot(demi_sub(p, c->slip), u);
+        lost[DEMI_E_SLIDE] -= (double)demi_dot(c->slip, u);
+        if (s->twisted) {
+            const dem_vec3 wb = demi_add(demi_at(s->movers[m->b].w), m->b < w->bodies.count
+                ? demi_at(w->bodies.spin + 4*m->b) : demi_at(s->movers[m->b].w));
+            const dem_vec3 wa = demi_add(demi_at(s->movers[m->a].w),
+                                         demi_at(w->bodies.spin + 4*m->a));
+            lost[DEMI_E_ROLL] -= (double)demi_dot(moment, demi_sub(wb, wa))/2;
+        }
+        if (c->push > 0) {
+            const int own = w->bodies.material[m->a] - 1;
+            domain->met[DEMI_MIN(own, o.material)] |= UINT64_C(1) << DEMI_MAX(own, o.material);
+        }
+        if (k) k->force = demi_scale(p, -per);
+        if (k && k->b < 0) {
+            demi_wall_sum *sum = w->wall_sums + (size_t)d*(size_t)w->wall_count + k->wall;
+            const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*m->a), k->shift);
+            const dem_vec3 at = demi_add(x, k->arm_a);
+            demi_wall_sum_add(w, sum, k->wall, at, demi_scale(p, -per), demi_scale(moment, -per),
+                              demi_at(s->movers[m->b].v));
+            sum->contacts += c->push > 0;
+            domain->kept_walls += c->push > 0;
+        } else domain->contacts += c->push > 0;
+    }
+}
+/* Bodies that stand still, or go as they are told, feel what acts on them, too. */
+static void demi_impulses_fixed(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    int d, i, k;
+    for (d = 0; d < w->domain_count && w->effects.fixed_count; d++)
+        for (i = 0; i < s->meeting_count[d]; i++) {
+            const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+            const demi_impulse *c = s->contacts + m->at;
+            const demi_spot o = demi_meeting_place(w, d, m);
+            const dem_real push = c->push - s->beside[m->at].pull;
+            const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
+            for (k = 0; k < 2; k++) {
+                const int body = k ? m->b : m->a;
+                const dem_real sign = k ? per : -per;
+                dem_vec3 torque = demi_cross(k ? o.arm_b : o.arm_a, p);
+                if (body >= w->bodies.count || s->movers[body].inv > 0) continue;
+                if (s->twisted) torque = demi_add(torque, s->twists[m->at].moment);
+                demi_force_add(w->bodies.force + 4*body, demi_scale(p, sign));
+                demi_force_add(w->bodies.torque + 4*body, demi_scale(torque, sign));
+            }
+        }
+}
+/* J, of all domains in this step. */
+static double demi_sum_energy(const dem_world *w, int what) {
+    double sum = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
+    return sum;
+}
+/* Newton's restitution and friction together may give energy where slip turns round. Where an
+   impact would, e is taken down, at last to 0, which takes energy whatever the shapes. Answers how
+   many there were. */
+enum { DEMI_TAMINGS = 4 };
+static int demi_impulses_tame(dem_world *w, int last) {
+    demi_solver *s = &w->solver;
+    int i, tamed = 0;
+    for (i = 0; i < s->count; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_vec3 before, after, p;
+        dem_real gain;
+        if (!s->beside[i].bounces || !(c->bias < 0) || !(c->push > 0)) continue;
+        before = demi_impulse_before(w, c);
+        after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
+        p = demi_add(demi_scale(c->normal, c->push), c->slip);
+        gain = demi_dot(p, demi_add(before, after));
+        if (!(gain > (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-14))*-c->bias*c->push)) continue;
+        c->bias = last ? 0 : c->bias/2;
+        tamed++;
+    }
+    return tamed;
+}
+/* Number of contacts whose friction is at its limit: where many of them hold one body, sweeps
+   converge with a power of their number only (docs/impulses.md). */
+static int demi_solver_limited(const demi_solver *s) {
+    int i, limited = 0;
+    for (i = 0; i < s->count; i++) {
+        const demi_impulse *c = &s->contacts[i];
+        const dem_real most = c->mu*c->push*DEM_R(0.999999);
+        limited += most > 0 && demi_dot(c->slip, c->slip) >= most*most;
+    }
+    return limited;
+}
+/* Impulses of the step to come, as forces. Fields of force have been added by now. */
+static void demi_impulses(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const int most = w->desc.sweeps ? w->desc.sweeps : 200;
+    demi_solved solved = {0, 0, 0};
+    double farthest = 0;
+    int i;
+    s->dt = w->clock.dt;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_lay);
+    demi_joints_lay(w);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_meet);
+    demi_impulses_colour(w);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_lay);
+    if (s->count || w->joint_count) {
+        demi_colours_all(w, demi_impulses_warm);
+        demi_joints_warm(w);
+        solved = demi_solvers[w->desc.solver].solve(w, most);
+        for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
+            solved = demi_solvers[w->desc.solver].solve(w, most);
+    }
+    w->booked.sweeps = solved.sweeps;
+    w->booked.residual = solved.worst;
+    w->booked.residual_rms = solved.rms;
+    if (demi_solved_open(w, &solved)) {
+        w->booked.unsolved++;
+        s->limited = demi_solver_limited(s);
+    }
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_force);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_tell);
+    demi_impulses_fixed(w);
+    demi_joints_tell(w);
+    w->booked.due[0] = demi_sum_energy(w, DEMI_E_DASHPOT);
+    w->booked.due[1] = demi_sum_energy(w, DEMI_E_SLIDE);
+    w->booked.due[2] = demi_sum_energy(w, DEMI_E_ROLL);
+    w->booked.due[3] = 0;
+    if (!w->stage.forces_valid) return;         /* only looked at */
+    for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
+        demi_force_add(w->bodies.last_pos + 4*i, way);
+        farthest = DEMI_MAX(farthest, (double)demi_length(way));
+    }
+    demi_joints_bank(w);
+    farthest += demi_joints_shift(w);
+    w->margin.gone += farthest;
+    w->margin.creep += 2*farthest;
+}
+/* Contacts are found half a step ahead, where bodies get with the velocities they have: there
+   impulses act, and so do fields of force, so that a step is the same forwards and backwards, of
+   second order. Some bodies go there, and come back. */
+enum { DEMI_AHEAD = 1024 };                     /* bodies at a time */
+static void demi_some_ahead(dem_world *w, int index) {
+    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
+    const dem_real h = w->clock.dt/2;
+    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
+    int i, k;
+    memcpy(w->bodies.last_pos + first, w->bodies.pos + first, size);
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 3 && w->bodies.went[i]; k++)
+            w->bodies.pos[k] += w->bodies.vel[k]*h;
+    if (!w->bodies.orienting) return;
+    memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
+    demi_orient_move(w, 0, begin, end, DEMI_TURN_AHEAD);
+}
+static void demi_some_back(dem_world *w, int index) {
+    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
+    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
+    int i;
+    memcpy(w->bodies.pos + first, w->bodies.last_pos + first, size);
+    if (!w->bodies.orienting) return;
+    memcpy(w->bodies.orient + first, w->bodies.last_orient + first, size);
+    for (i = begin; i < end; i++) {
+        const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+        if (!w->bodies.shape[i] || !(w->bodies.inv_mass[i] > 0)) continue;
+        demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
+            demi_at(w->bodies.angular + 4*i), demi_v(1/I.x, 1/I.y, 1/I.z)));
+        if (w->bodies.centres_valid && w->shapes[w->bodies.shape[i] - 1].count)
+            demi_centres_rotate(w, i);
+    }
+}
+/* Bodies and walls half a step ahead: `mid` keeps where walls are. Surfaces have the velocities of
+   a whole step ahead, the middle between two places where contacts are found. */
+static void demi_ahead(dem_world *w) {
+    const double dt = (double)w->clock.dt;
+    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
+    int i;
+    demi_parallel(w, w->desc.threads, runs, demi_some_ahead);
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        dem_pose pose;
+        wall->was = wall->ahead;
+        wall->mid = wall->ahead = wall->pose;
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
+        demi_wall_pose_at(wall, w->clock.time + dt/2, &pose);
+        if (demi_pose_sane(&pose)) wall->pose = pose;
+        demi_wall_pose_at(wall, w->clock.time + dt, &pose);
+        if (demi_pose_sane(&pose)) wall->ahead = pose;
+    }
+}
+static void demi_ahead_back(dem_world *w) {
+    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
+    int i;
+    demi_parallel(w, w->desc.threads, runs, demi_some_back);
+    for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
+}
+/* Walls' and motors' work of the step to come. */
+static void demi_impulses_due(dem_world *w) {
+    int i;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_joint *j = &w->joints[i];
+        w->booked.due[0] -= j->held;
+        w->booked.due[3] += (double)j->state.power*(double)w->clock.dt;
+    }
+    for (i = 0; i < w->wall_count; i++)
+        w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
+}
+/* What was due is done, now that bodies have moved by it. */
+static void demi_impulses_book(dem_world *w) {
+    static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
+    int i;
+    for (i = 0; i < 4; i++) w->booked.energy[flows[i]] += w->booked.due[i];
+    w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
+    w->booked.throughput += fabs(w->booked.due[3]);
+}
+/* One pair of spheres, if it pushes or overlaps, as demi_contact_force tells those of springs. */
+static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                             dem_vec3 *branch) {
+    const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;
+    const dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
+    const int a = w->near.a[at], b = w->near.b[at];
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const demi_periods periods = demi_periods_of(w);
+    const dem_vec3 way = demi_near_way(w, at);
+    const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
+    if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
+    if (!out) return 1;
+    out->a = dem_body_id_get(w, a);
+    out->b = dem_body_id_get(w, b);
+    out->wall = 0;
+    out->normal = demi_scale(way, 1/l);
+    out->overlap = overlap;
+    if (branch) *branch = way;
+    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(way, x[3]/(x[3] + y[3]))));
+    out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
+                          demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
+    return 1;
+}

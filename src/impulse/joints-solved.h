@@ -1,0 +1,752 @@
+/* ---------------------------------------------------------------------------------------------
+   >>joints-solved
+   The system that joints and the bodies they hold make: the order of elimination, the blocks, the
+   factor; sweeps over it, the guard of energy, and what joints have come to. Owns rods, knots and
+   what belongs to them in the solver. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
+   --------------------------------------------------------------------------------------------- */
+
+/* Joins knot b to the list of a. 0: memory ran out. */
+static int demi_knot_link(dem_world *w, int32_t *list, int to) {
+    demi_solver *s = &w->solver;
+    if (!DEMI_GROW(w, s->links, (size_t)s->link_count + 1)) return 0;
+    s->links[s->link_count].to = to;
+    s->links[s->link_count].next = *list;
+    *list = s->link_count++;
+    return 1;
+}
+static int demi_knot_add(demi_solver *s, int mover, int rod) {
+    demi_knot *k = s->knots + s->knot_count;
+    memset(k, 0, sizeof *k);
+    k->mover = mover;
+    k->rod = rod;
+    k->links = k->waiting = k->rank = k->mark = -1;
+    k->group = s->knot_count;
+    return s->knot_count++;
+}
+static int demi_knot_group(demi_solver *s, int knot) {
+    while (s->knots[knot].group != knot)
+        knot = s->knots[knot].group = s->knots[s->knots[knot].group].group;
+    return knot;
+}
+/* May it be eliminated? A body may. A joint may when a body of its own is gone, one for each, or
+   both of its bodies are: only then does something give way to it. */
+static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
+    int e, gone = 1;
+    if (k->rod < 0 || k->paid) return 1;
+    for (e = 0; e < 2; e++) {
+        const int end = s->rods[k->rod].ends[e];
+        gone &= end < 0 || s->knots[end].rank >= 0;
+    }
+    return gone;
+}
+/* Eliminates one: those it is linked to become its column, and are linked to each other. */
+static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
+    demi_solver *s = &w->solver;
+    const int first = s->row_count;
+    int i, j, e, paid = s->knots[knot].rod >= 0;
+    s->knots[knot].rank = rank;
+    s->knots[rank].order = knot;
+    s->knots[knot].first = first;
+    for (e = s->knots[knot].links; e >= 0; e = s->links[e].next) {
+        const int to = s->links[e].to;
+        if (s->knots[to].rank >= 0) continue;
+        if (!DEMI_GROW(w, s->rows, (size_t)s->row_count + 1)) return 0;
+        s->rows[s->row_count++] = to;
+        if (paid || s->knots[to].rod < 0 || s->knots[to].paid ||
+            (s->rods[s->knots[to].rod].ends[0] != knot &&
+             s->rods[s->knots[to].rod].ends[1] != knot)) continue;
+        s->knots[to].paid = paid = 1;
+    }
+    s->knots[knot].count = s->row_count - first;
+    for (i = first; i < s->row_count; i++) {
+        const int a = s->rows[i];
+        for (e = s->knots[a].links; e >= 0; e = s->links[e].next)
+            s->knots[s->links[e].to].mark = a;
+        s->knots[a].degree--;
+        for (j = first; j < s->row_count; j++) {
+            const int b = s->rows[j];
+            if (b == a || s->knots[b].mark == a) continue;
+            if (!demi_knot_link(w, &s->knots[a].links, b)) return 0;
+            s->knots[a].degree++;
+        }
+        if (demi_knot_ready(s, s->knots + a) &&
+            !demi_knot_link(w, &s->knots[s->knots[a].degree].waiting, a)) return 0;
+    }
+    return 1;
+}
+/* Whichever has the fewest neighbours goes first: from the leaves of a tree to its root, where
+   nothing is filled in, and around loops what fills in little. */
+static int demi_knots_order(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i, rank = 0, d;
+    for (i = s->knot_count - 1; i >= 0; i--)
+        if (s->knots[i].rod < 0 &&
+            !demi_knot_link(w, &s->knots[s->knots[i].degree].waiting, i)) return 0;
+    for (d = 0; d < s->knot_count; ) {
+        demi_knot *k = s->knots + d;
+        const int e = k->waiting;
+        if (e < 0) { d++; continue; }
+        k->waiting = s->links[e].next;
+        i = s->links[e].to;
+        if (s->knots[i].rank >= 0 || s->knots[i].degree != d) continue;
+        if (!demi_knot_eliminate(w, i, rank++)) return 0;
+        d = 0;
+    }
+    return 1;
+}
+/* Joints as they are in force in this step, and room for what solves them; those that have lost a
+   body go. 0: memory ran out. */
+static int demi_joints_room(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const size_t bodies = (size_t)w->bodies.count;
+    int i, n = 0, e;
+    for (i = 0; i < w->joint_count; i++)
+        if (demi_joint_alive(w, w->joints + i)) {
+            if (n < i) w->joints[n] = w->joints[i];
+            n++;
+        }
+    w->joint_count = n;
+    s->knot_count = s->link_count = s->row_count = 0;
+    if (!n) return 1;
+    if (!DEMI_GROW(w, s->rods, (size_t)n) || !DEMI_GROW(w, s->joined, bodies) ||
+        !DEMI_GROW(w, s->knot_of, bodies) || !DEMI_GROW(w, s->knots, 3*(size_t)n)) return 0;
+    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->knot_of[i] = -1;
+    for (i = 0; i < n; i++) {
+        const dem_joint_desc *d = &w->joints[i].desc;
+        demi_rod *r = s->rods + i;
+        const int body[2] = {demi_joint_body(w, d->a),
+                             d->b.slot ? demi_joint_body(w, d->b) : -1};
+        memset(r, 0, sizeof *r);
+        r->a = body[0];
+        r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->kept_first[DEMI_DOMAINS] + i;
+        for (e = 0; e < 2; e++) {
+            r->ends[e] = -1;
+            if (body[e] < 0) continue;
+            r->next[e] = s->joined[body[e]];
+            s->joined[body[e]] = i;
+            if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
+            if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
+            r->ends[e] = s->knot_of[body[e]];
+            r->rows = d->kind == DEM_JOINT_POINT ? 3 : 5 + (d->motor == DEM_MOTOR_SPEED);
+        }
+        if (!r->rows) continue;
+        r->knot = demi_knot_add(s, -1, i);
+        for (e = 0; e < 2; e++) {
+            const int end = r->ends[e];
+            if (end < 0) continue;
+            s->knots[demi_knot_group(s, r->knot)].group = demi_knot_group(s, end);
+            if (!demi_knot_link(w, &s->knots[end].links, r->knot) ||
+                !demi_knot_link(w, &s->knots[r->knot].links, end)) return 0;
+            s->knots[end].degree++;
+            s->knots[r->knot].degree++;
+        }
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *group = s->knots + demi_knot_group(s, i);
+        const demi_rod *r = s->rods + s->knots[i].rod;
+        group->excess += s->knots[i].rod < 0 ? -1 : 1;
+        group->grounded |= s->knots[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
+    }
+    return demi_knots_order(w) &&
+        DEMI_GROW(w, s->blocks, 36*((size_t)s->knot_count + (size_t)s->row_count));
+}
+
+/* --- the system of one step --- */
+
+/* One end of a joint: the arm from its centre, the point in space, the axis; as it stands, or
+   (ahead) a step later, with the velocities that the impulses found so far make. */
+typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
+/* s: from where contacts are found in this step to where they are found in the next. A body that
+   has made no step since it was set is found at its beginning, not in its middle. */
+static dem_real demi_knot_ahead(const dem_world *w, int body) {
+    return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
+}
+static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int ahead) {
+    const demi_joint *j = &w->joints[joint];
+    const demi_solver *s = &w->solver;
+    const demi_rod *r = s->rods + joint;
+    const int body = end ? r->b : r->a;
+    const dem_real by = ahead ? demi_knot_ahead(w, body) : 0;
+    demi_rod_end o;
+    if (body < w->bodies.count) {
+        const dem_quat q = ahead && r->ends[end] >= 0 ? s->knots[r->ends[end]].turned
+            : demi_quat_at(w->bodies.orient + 4*body);
+        o.arm = dem_quat_rotate(q, j->arm[end]);
+        o.axis = dem_quat_rotate(q, j->axis[end]);
+        o.point = demi_add(demi_add(demi_at(w->bodies.pos + 4*body), o.arm),
+                           demi_scale(demi_at(s->movers[body].v), by));
+    } else {
+        o.arm = demi_v(0, 0, 0);
+        o.point = j->arm[end];
+        o.axis = j->axis[end];
+        if (j->desc.wall.id) {
+            const dem_pose *pose = &w->walls[demi_wall_place(j->desc.wall)].pose;
+            const dem_quat q = demi_quat_exp(demi_scale(pose->spin, by));
+            o.point = dem_quat_rotate(q, demi_rotate(pose->rotation, o.point));
+            o.point = demi_add(demi_add(pose->position, o.point), demi_scale(pose->velocity, by));
+            o.axis = dem_quat_rotate(q, demi_rotate(pose->rotation, o.axis));
+        }
+    }
+    return o;
+}
+/* Velocity of a against b in the rows. */
+static void demi_rod_velocity(const demi_solver *s, const demi_rod *r, dem_real *u) {
+    const demi_mover *a = s->movers + r->a, *b = s->movers + r->b;
+    const dem_vec3 turn = demi_sub(demi_at(a->w), demi_at(b->w));
+    const dem_vec3 va = demi_add(demi_at(a->v), demi_cross(demi_at(a->w), r->arm[0]));
+    const dem_vec3 vb = demi_add(demi_at(b->v), demi_cross(demi_at(b->w), r->arm[1]));
+    int k;
+    demi_put(u, demi_sub(va, vb));
+    for (k = 3; k < 6; k++) u[k] = demi_dot(turn, r->along[k - 3]);
+}
+/* Torque of impulses in the rows, on a. */
+static dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
+    dem_vec3 l = demi_v(0, 0, 0);
+    int k;
+    for (k = 3; k < 6; k++) l = demi_add(l, demi_scale(r->along[k - 3], p[k]));
+    return l;
+}
+static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p,
+                           dem_vec3 l) {
+    const demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    const dem_vec3 f = demi_at(p), back = demi_scale(f, -1);
+    demi_mover_push(s, r->a, f, demi_add(l, demi_cross(r->arm[0], f)), shaped);
+    demi_mover_push(s, r->b, back, demi_sub(demi_cross(r->arm[1], back), l), shaped);
+}
+/* Length of a body, to compare turning with moving by, and how far a joint is closed in a step: it
+   is off by more only where somebody has moved a body. */
+static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
+    const dem_real a = w->bodies.pos[4*r->a + 3];
+    return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
+}
+/* Is row k of a joint in force? In the plane nothing tilts; a motor at its limit is a torque. */
+static int demi_rod_row(const dem_world *w, const demi_rod *r, int k) {
+    return k < r->rows && (k < 3 || (k < 5 ? !w->desc.planar : !r->stuck));
+}
+/* Row k of a joint's end as a row of six: what the velocity and spin there are taken by. */
+static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, int k, double *row) {
+    static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const int body = end ? r->b : r->a;
+    const double sign = end ? -1 : 1;
+    const dem_vec3 l = k < 3 ? demi_cross(r->arm[end], unit[k]) : r->along[k - 3];
+    const dem_real turn[3] = {l.x, l.y, l.z};
+    int i;
+    for (i = 0; i < 3; i++) {
+        const int turns = (w->bodies.inv_inertia[body] > 0 || demi_shape_of(w, body)) &&
+            (i == 2 || !w->desc.planar);
+        row[i] = i == k ? sign : 0;
+        row[3 + i] = turns ? sign*(double)turn[i] : 0;
+    }
+}
+/* Mass and inertia of a body, 6 x 6; 1 where nothing turns. */
+static void demi_knot_mass(const dem_world *w, int body, double *m) {
+    const double inv = (double)w->bodies.inv_inertia[body];
+    int i, k;
+    memset(m, 0, 36*sizeof *m);
+    for (i = 0; i < 3; i++) {
+        m[7*i] = 1/(double)w->bodies.inv_mass[body];
+        m[7*(3 + i)] = inv > 0 ? 1/inv : 1;
+    }
+    if (!w->bodies.shaped || !w->bodies.shape[body]) return;
+    if (w->desc.planar) {
+        m[35] = 1/(double)w->solver.tensors[6*body + 2];
+        return;
+    }
+    for (i = 0; i < 3; i++) {
+        const dem_vec3 axis = demi_v(i == 0, i == 1, i == 2);
+        const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
+        const dem_vec3 x = dem_quat_unrotate(q, axis), I = demi_at(w->bodies.moment + 4*body);
+        const dem_vec3 y = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+        const dem_real column[3] = {y.x, y.y, y.z};
+        for (k = 0; k < 3; k++) m[6*(3 + k) + 3 + i] = (double)column[k];
+    }
+}
+/* Inverse of a symmetric matrix, 6 x 6, sign times a positive definite one, in place. Squares of
+   its factor's diagonal are at least those of `least`, if given. */
+static void demi_block_invert(double *m, double sign, const dem_real *least) {
+    double f[36], inv[36];
+    int i, j, k;
+    for (i = 0; i < 6; i++)
+        for (j = i; j < 6; j++) {
+            double sum = sign*m[6*j + i];
+            for (k = 0; k < i; k++) sum -= f[6*i + k]*f[6*j + k];
+            f[6*j + i] = j > i ? sum*f[7*i] : 1/sqrt(DEMI_MAX(sum, least ? (double)least[i]
+                                                                        : DBL_MIN));
+        }
+    for (i = 0; i < 6; i++) {                   /* of the factor; f's diagonal is inverse already */
+        inv[7*i] = f[7*i];
+        for (j = i + 1; j < 6; j++) {
+            double sum = 0;
+            for (k = i; k < j; k++) sum -= f[6*j + k]*inv[6*k + i];
+            inv[6*j + i] = sum*f[7*j];
+        }
+    }
+    for (i = 0; i < 6; i++)
+        for (j = 0; j <= i; j++) {
+            double sum = 0;
+            for (k = i; k < 6; k++) sum += inv[6*k + i]*inv[6*k + j];
+            m[6*i + j] = m[6*j + i] = sign*sum;
+        }
+}
+/* c -= a b', 6 x 6 */
+static void demi_block_less(double *c, const double *a, const double *b) {
+    int i, j, k;
+    for (i = 0; i < 6; i++)
+        for (j = 0; j < 6; j++) {
+            double sum = 0;
+            for (k = 0; k < 6; k++) sum += a[6*i + k]*b[6*j + k];
+            c[6*i + j] -= sum;
+        }
+}
+/* y -= a x, or a' x */
+static void demi_block_times(double *y, const double *a, const double *x, int transposed) {
+    int i, k;
+    for (i = 0; i < 6; i++)
+        for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
+}
+/* The block of two knots that are linked: in the column of whichever goes first, rows of the other.
+   */
+static double *demi_knots_block(const demi_solver *s, int a, int b) {
+    const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
+    int e = s->knots[early].first;
+    while (s->rows[e] != late) e++;
+    return s->blocks + 36*((size_t)s->knot_count + (size_t)e);
+}
+/* [M -J'; -J -give], factored: M of bodies, J rows of joints, give their softness. */
+static void demi_knots_factor(dem_world *w) {
+    demi_solver *s = &w->solver;
+    double row[6];
+    int i, k, e, l, rank;
+    memset(s->blocks, 0, 36*((size_t)s->knot_count + (size_t)s->row_count)*sizeof *s->blocks);
+    for (i = 0; i < s->knot_count; i++) {
+        const demi_rod *r = s->rods + s->knots[i].rod;
+        if (s->knots[i].rod < 0) demi_knot_mass(w, s->knots[i].mover, s->blocks + 36*(size_t)i);
+        for (k = 0; k < 6 && s->knots[i].rod >= 0; k++) {
+            const int on = demi_rod_row(w, r, k);
+            s->blocks[36*(size_t)i + 7*(size_t)k] = on ? -(double)r->give[k] : -1;
+            for (e = 0; e < 2; e++) {
+                const int body = r->ends[e];
+                double *block;
+                if (!on || body < 0) continue;
+                block = demi_knots_block(s, i, body);
+                demi_rod_jacobian(w, r, e, k, row);
+                for (l = 0; l < 6; l++)
+                    block[s->knots[body].rank < s->knots[i].rank ? 6*k + l : 6*l + k] -= row[l];
+            }
+        }
+    }
+    for (rank = 0; rank < s->knot_count; rank++) {
+        const int v = s->knots[rank].order, first = s->knots[v].first;
+        const int end = first + s->knots[v].count;
+        const double *columns = s->blocks + 36*(size_t)s->knot_count;
+        double *pivot = s->blocks + 36*(size_t)v;
+        if (s->knots[v].rod < 0) demi_block_invert(pivot, 1, 0);
+        else demi_block_invert(pivot, -1, s->rods[s->knots[v].rod].give);
+        for (k = first; k < end; k++) {
+            const int a = s->rows[k];
+            double by[36];
+            memset(by, 0, sizeof by);
+            demi_block_less(by, columns + 36*(size_t)k, pivot);    /* - B D^-1 */
+            for (l = 0; l < 36; l++) by[l] = -by[l];
+            demi_block_less(s->blocks + 36*(size_t)a, by, columns + 36*(size_t)k);
+            for (l = first; l < end; l++)
+                if (s->knots[s->rows[l]].rank < s->knots[a].rank)
+                    demi_block_less(demi_knots_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
+        }
+    }
+}
+/* From the right-hand sides x of all knots to the solution. */
+static void demi_knots_solve(demi_solver *s) {
+    const double *columns = s->blocks + 36*(size_t)s->knot_count;
+    int rank, e;
+    for (rank = 0; rank < s->knot_count; rank++) {
+        const demi_knot *k = s->knots + s->knots[rank].order;
+        double y[6] = {0, 0, 0, 0, 0, 0};
+        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);       /* - D^-1 x */
+        for (e = 0; e < 6; e++) y[e] = -y[e];
+        for (e = k->first; e < k->first + k->count; e++)
+            demi_block_times(s->knots[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
+    }
+    while (rank-- > 0) {
+        demi_knot *k = s->knots + s->knots[rank].order;
+        double y[6] = {0, 0, 0, 0, 0, 0};
+        for (e = k->first; e < k->first + k->count; e++)
+            demi_block_times(k->x, columns + 36*(size_t)e, s->knots[s->rows[e]].x, 1);
+        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);
+        for (e = 0; e < 6; e++) k->x[e] = -y[e];
+    }
+}
+/* Rows of joint i, with what is remembered. */
+static void demi_rod_lay(dem_world *w, int i) {
+    demi_solver *s = &w->solver;
+    demi_joint *j = &w->joints[i];
+    demi_rod *r = s->rods + i;
+    const demi_periods p = demi_periods_of(w);
+    const demi_rod_end x = demi_rod_end_of(w, i, 0, 0), y = demi_rod_end_of(w, i, 1, 0);
+    const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
+    const int b = r->b < w->bodies.count;
+    const demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+    const dem_real give = group->excess + !group->grounded > 0 ? DEMI_GIVE_LOOPS : DEMI_GIVE;
+    int k, e;
+    /* to one place: angular momentum */
+    r->arm[0] = demi_sub(x.arm, demi_scale(off, DEM_R(0.5)));
+    r->arm[1] = b ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
+    j->state.gap = demi_length(off);
+    j->state.tilt = demi_length(demi_cross(y.axis, x.axis));
+    if (j->desc.kind == DEM_JOINT_REVOLUTE) {
+        r->along[0] = demi_across(x.axis);
+        r->along[1] = demi_cross(x.axis, r->along[0]);
+        r->along[2] = x.axis;
+        r->most = j->desc.motor == DEM_MOTOR_SPEED ? j->desc.torque*s->dt : 0;
+        r->torque = j->desc.motor == DEM_MOTOR_TORQUE ? j->desc.torque*s->dt : 0;
+    }
+    demi_put(r->given, demi_scale(j->state.force, s->dt));
+    for (k = 3; k < 5; k++) r->given[k] = demi_dot(j->state.torque, r->along[k - 3])*s->dt;
+    r->given[5] = r->rows == 6 ? j->state.motor_torque*s->dt : 0;
+    if (r->most > 0) {
+        r->stuck = (r->given[5] >= r->most) - (r->given[5] <= -r->most);
+        r->given[5] = DEMI_MAX(-r->most, DEMI_MIN(r->given[5], r->most));
+    }
+    for (k = 0; k < 6; k++) {
+        dem_real sum = 0;
+        for (e = 0; e < 2; e++) {
+            const int body = e ? r->b : r->a;
+            static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+            const dem_vec3 l = k < 3 ? demi_cross(r->arm[e], unit[k]) : r->along[k - 3];
+            if (r->ends[e] < 0) continue;
+            sum += demi_dot(l, demi_mover_turn(s, body, l, w->bodies.shaped > 0));
+            if (k < 3) sum += s->movers[body].inv;
+        }
+        r->give[k] = sum*(k < 5 ? give : give*DEM_R(1e-3));
+        if (k >= r->rows) r->given[k] = 0;
+    }
+}
+/* Joints as they stand in this step. */
+static void demi_joints_lay(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i, e;
+    for (i = 0; i < w->joint_count; i++) {
+        demi_joint *j = &w->joints[i];
+        demi_rod *r = s->rods + i;
+        if (r->b >= w->bodies.count) {
+            demi_mover *m = s->movers + r->b;
+            memset(m, 0, sizeof *m);
+            if (j->desc.wall.id) {
+                const dem_pose *pose = &w->walls[demi_wall_place(j->desc.wall)].pose;
+                demi_put(m->v, demi_surface_at(pose, demi_rod_end_of(w, i, 1, 0).point));
+                demi_put(m->w, pose->spin);
+            }
+        }
+        if (w->stage.forces_valid) j->state.work += (double)j->state.power*(double)s->dt;
+        demi_rod_lay(w, i);
+        for (e = 0; e < 2; e++) {               /* velocities before the step */
+            const int body = e ? r->b : r->a;
+            const dem_real sign = e ? -1 : 1;
+            dem_vec3 v = demi_at(s->movers[r->b].v), turn = demi_at(s->movers[r->b].w);
+            int k;
+            if (body < w->bodies.count) {
+                v = demi_at(w->bodies.vel + 4*body);
+                turn = demi_at(w->bodies.spin + 4*body);
+            }
+            v = demi_add(v, demi_cross(turn, r->arm[e]));
+            r->before[0] += sign*v.x; r->before[1] += sign*v.y; r->before[2] += sign*v.z;
+            for (k = 3; k < 6; k++) r->before[k] += sign*demi_dot(turn, r->along[k - 3]);
+        }
+        if (w->stage.forces_valid) j->state.turned += (double)(s->dt*r->before[5]);
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        const int body = s->knots[i].mover;
+        demi_knot *group = s->knots + demi_knot_group(s, i);
+        if (body < 0) {
+            demi_joint *j = w->joints + s->knots[i].rod;
+            const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
+            const dem_real gap = j->state.gap + j->state.tilt*size;
+            group->bank += j->bank;
+            j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
+            group->open |= (gap > 100*DEMI_JOINED*size) | (j->apart > few)*2;
+        } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
+            demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
+            (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
+    }
+    s->factored = 0;
+}
+/* Begins with what is remembered, and what motors of a given torque do. */
+static void demi_joints_warm(dem_world *w) {
+    int i;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = w->solver.rods + i;
+        if (r->rows) demi_rod_apply(w, r, r->given, demi_add(demi_rod_twist(r, r->given),
+                                                             demi_scale(r->along[2], r->torque)));
+    }
+}
+/* Orientations a step later, as the integrator will bring them about. */
+static void demi_knots_ahead(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    int i;
+    for (i = 0; i < s->knot_count; i++) {
+        const int body = s->knots[i].mover;
+        dem_quat q;
+        dem_vec3 turn;
+        dem_real dt;
+        if (body < 0) continue;
+        dt = demi_knot_ahead(w, body);
+        q = demi_quat_at(w->bodies.orient + 4*body);
+        turn = demi_at(s->movers[body].w);
+        if (w->bodies.shaped && w->bodies.shape[body]) {
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*body);
+            const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z), m = dem_quat_unrotate(q, turn);
+            const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
+            if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_flight_spiral(&q, L, I, inv, dt);
+            else if (w->desc.rotation == DEM_ROTATION_FINCHAM) demi_flight_fincham(&q, L, I, dt);
+            else demi_flight_splitting(&q, L, I, dt);
+        } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
+        s->knots[i].turned = q;
+    }
+}
+/* By what velocities a joint is off: that its points, and axes, be together at the end of the step;
+   or, where that would give energy, that the velocity after the step be the opposite of that before
+   (`shifts`: what is left then, which is made good by places alone). Answers its square. */
+static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
+    const demi_solver *s = &w->solver;
+    const demi_rod *r = s->rods + i;
+    const dem_real size = demi_rod_size(w, r);
+    dem_real u[6], left = 0;
+    int k;
+    memset(lacks, 0, 6*sizeof *lacks);
+    if (!r->rows) return 0;
+    demi_rod_velocity(s, r, u);
+    if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
+        const dem_real back = s->knots[s->knots[r->knot].group].guarded > 1 ? 1 : DEM_R(0.5);
+        for (k = 0; k < 5; k++) lacks[k] = -back*r->before[k] - u[k];
+    } else {
+        const demi_periods p = demi_periods_of(w);
+        const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
+        const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
+        const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
+        const dem_real dt = DEMI_MAX(demi_knot_ahead(w, r->a), demi_knot_ahead(w, r->b));
+        const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/dt;
+        const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/dt;
+        demi_put(lacks, demi_scale(off, -part));
+        for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
+    }
+    if (!shifts) lacks[5] = w->joints[i].desc.speed - u[5];
+    for (k = 0; k < 6; k++) {
+        if (!demi_rod_row(w, r, k)) lacks[k] = 0;
+        else if (!shifts) lacks[k] -= r->give[k]*r->given[k];
+        left += lacks[k]*lacks[k]*(k < 3 ? 1 : size*size);
+    }
+    return left;
+}
+/* Solves all joints at once; answers the farthest that one was from it, squared, m/s. x of the
+   knots: what it has changed. */
+static dem_real demi_joints_solve(dem_world *w, int shifts) {
+    demi_solver *s = &w->solver;
+    dem_real worst = 0, lacks[6];
+    int i, k;
+    if (!s->factored) demi_knots_factor(w);
+    s->factored = 1;
+    demi_knots_ahead(w);
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *knot = s->knots + i;
+        memset(knot->x, 0, sizeof knot->x);
+        if (knot->rod < 0) continue;
+        worst = DEMI_MAX(worst, demi_rod_lacks(w, knot->rod, shifts, lacks));
+        for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
+    }
+    demi_knots_solve(s);
+    for (i = 0; i < w->joint_count && !shifts; i++) {
+        demi_rod *r = s->rods + i;
+        dem_real by[6];
+        if (!r->rows) continue;
+        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->knots[r->knot].x[k];
+        demi_rod_apply(w, r, by, demi_rod_twist(r, by));
+    }
+    return worst;
+}
+/* Motors that have come to their limit push with that; those that push the wrong way are let go
+   (`free`). Answers how many. */
+static int demi_motors_bound(dem_world *w, int free) {
+    demi_solver *s = &w->solver;
+    int i, n = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        demi_rod *r = s->rods + i;
+        dem_real by[6] = {0, 0, 0, 0, 0, 0}, u[6];
+        if (r->rows < 6 || !(r->most > 0)) continue;
+        if (r->stuck && free) {
+            demi_rod_velocity(s, r, u);
+            if (!((w->joints[i].desc.speed - u[5])*(dem_real)r->stuck < 0)) continue;
+            r->stuck = 0;
+            n++;
+        } else if (!r->stuck && DEMI_ABS(r->given[5]) > r->most) {
+            r->stuck = r->given[5] > 0 ? 1 : -1;
+            by[5] = (dem_real)r->stuck*r->most - r->given[5];
+            r->given[5] = (dem_real)r->stuck*r->most;
+            demi_rod_apply(w, r, by, demi_rod_twist(r, by));
+            n++;
+        }
+    }
+    if (n) s->factored = 0;
+    return n;
+}
+/* One sweep over the joints; answers as demi_joints_solve, or 0 below the last digits of places. */
+static dem_real demi_joints_sweep(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    const dem_real enough = DEMI_JOINED*w->effects.radius_min/s->dt;
+    dem_real worst, left, far2 = 0, digit;
+    int rounds = 0, i;
+    if (!s->knot_count) return 0;
+    for (i = 0; i < s->knot_count; i++) {
+        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->knots[i].mover, 0);
+        far2 = DEMI_MAX(far2, demi_dot(demi_at(x), demi_at(x)));
+    }
+    digit = 8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))/s->dt;
+    demi_motors_bound(w, 1);
+    worst = left = demi_joints_solve(w, 0);
+    while (demi_motors_bound(w, 0) || (++rounds < 8 && left > enough*enough))
+        left = demi_joints_solve(w, 0);
+    return worst > digit*digit*far2 ? worst : 0;
+}
+/* J, what a joint's impulses have given, but for its motor: exactly, by the mean of the velocities
+   before and after. */
+static double demi_rod_work(const dem_world *w, const demi_rod *r) {
+    dem_real u[6];
+    double work = 0;
+    int k;
+    demi_rod_velocity(&w->solver, r, u);
+    for (k = 0; k < 5; k++)
+        if (demi_rod_row(w, r, k)) work += (double)(r->given[k]*(r->before[k] + u[k]))/2;
+    return work;
+}
+/* Whether joints that hang together would give more energy than they have taken before: such are
+   bound to turn their velocities round, which gives none, whatever else acts. Answers how many
+   were not yet. */
+static int demi_joints_guard(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i, n = 0;
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        if (r->rows) s->knots[demi_knot_group(s, r->knot)].work += demi_rod_work(w, r);
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *k = s->knots + i;
+        if (k->group != i || k->guarded > 1 || !(k->work > DEMI_MAX(k->bank, 0))) continue;
+        k->guarded++;
+        n++;
+    }
+    for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
+    return n;
+}
+/* What guarded joints are still off is undone by places alone, as far as what they have taken pays
+   for what that lifts; a gap that somebody has made by moving a body is closed at any price.
+   Answers how far one has gone, m. */
+static double demi_joints_shift(dem_world *w) {
+    demi_solver *s = &w->solver;
+    double farthest = 0;
+    int i, any = 0;
+    for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
+    if (!any) return 0;
+    demi_joints_solve(w, 1);
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->knot_count; i++) {
+        const demi_knot *k = s->knots + i;
+        const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                             (double)w->desc.gravity.z};
+        if (k->mover >= 0)
+            s->knots[k->group].work -= (g[0]*k->x[0] + g[1]*k->x[1] + g[2]*k->x[2])*
+                (double)(w->bodies.mass[k->mover]*s->dt);
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        const demi_knot *k = s->knots + i, *group = s->knots + k->group;
+        const double paid = group->open > 1 || !(group->work > group->bank) ? 1
+            : DEMI_MAX(group->bank, 0)/group->work;
+        const dem_real by = (dem_real)paid*s->dt;
+        const dem_vec3 way = demi_v((dem_real)k->x[0]*by, (dem_real)k->x[1]*by,
+                                    (dem_real)k->x[2]*by);
+        const dem_vec3 turn = demi_v((dem_real)k->x[3]*by, (dem_real)k->x[4]*by,
+                                     (dem_real)k->x[5]*by);
+        dem_quat q;
+        dem_real *o;
+        if (!group->guarded || !group->open) continue;
+        if (k->mover < 0) {
+            if (group->work > 0 && group->bank > 0)
+                w->joints[k->rod].bank *= 1 - DEMI_MIN(1, group->work/group->bank);
+            continue;
+        }
+        o = w->bodies.last_orient + 4*k->mover;  /* where demi_ahead_back puts it */
+        q = demi_quat_again(dem_quat_multiply(demi_quat_exp(turn), demi_quat_at(o)));
+        o[0] = q.w; o[1] = q.x; o[2] = q.y; o[3] = q.z;
+        demi_force_add(w->bodies.last_pos + 4*k->mover, way);
+        farthest = DEMI_MAX(farthest, (double)(demi_length(way) + demi_length(turn)*
+                                               w->bodies.pos[4*k->mover + 3]));
+    }
+    return farthest;
+}
+/* What joints have taken is theirs to give back, up to a part of the kinetic energy: velocities
+   that are together with places swing about those that keep energy. */
+static void demi_joints_bank(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i;
+    for (i = 0; i < s->knot_count; i++) s->knots[i].bank = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        w->joints[i].bank -= w->joints[i].held;
+        if (r->rows) s->knots[demi_knot_group(s, r->knot)].bank += w->joints[i].bank;
+    }
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        const demi_knot *k = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        if (!k) w->joints[i].bank = 0;
+        else if (k->bank > DEMI_BANKED*k->kinetic)
+            w->joints[i].bank *= DEMI_BANKED*k->kinetic/k->bank;
+    }
+}
+/* m, by how much a joint will be apart at the end of the step, tilt and all. */
+static dem_real demi_rod_gap(const dem_world *w, int i) {
+    const demi_periods p = demi_periods_of(w);
+    const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
+    return demi_length(demi_nearest(&p, demi_sub(x.point, y.point))) +
+        demi_length(demi_cross(y.axis, x.axis))*demi_rod_size(w, w->solver.rods + i);
+}
+/* What joints have come to: forces, power; on walls, and on bodies that go as they are told. */
+static void demi_joints_tell(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    int i, k;
+    demi_knots_ahead(w);
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        demi_joint *j = &w->joints[i];
+        dem_joint_state *o = &j->state;
+        const int wall = j->desc.b.slot || !j->desc.wall.id ? -1
+            : demi_wall_place(j->desc.wall);
+        dem_real u[6];
+        j->held = 0;
+        j->left = 0;
+        o->force = demi_scale(demi_at(r->given), per);
+        o->motor_torque = r->rows ? (r->given[5] + r->torque)*per : 0;
+        o->torque = demi_v(0, 0, 0);
+        o->power = 0;
+        if (!r->rows) continue;
+        o->torque = demi_scale(demi_add(demi_rod_twist(r, r->given),
+                                        demi_scale(r->along[2], r->torque)), per);
+        demi_rod_velocity(s, r, u);
+        j->left = demi_rod_gap(w, i);
+        o->power = o->motor_torque*(r->before[5] + u[5])/2;
+        j->held = demi_rod_work(w, r);
+        for (k = 0; k < 2; k++) {
+            const int body = k ? r->b : r->a;
+            const dem_real sign = k ? -1 : 1;
+            const dem_vec3 f = demi_scale(o->force, sign);
+            const dem_vec3 t = demi_scale(demi_add(o->torque, demi_cross(r->arm[k], o->force)),
+                                          sign);
+            if (body >= w->bodies.count || r->ends[k] >= 0) continue;
+            demi_force_add(w->bodies.force + 4*body, f);
+            demi_force_add(w->bodies.torque + 4*body, t);
+        }
+        if (wall >= 0)
+            demi_wall_sum_add(w, w->wall_sums + wall, wall, demi_rod_end_of(w, i, 1, 0).point,
+                              o->force, o->torque, demi_at(s->movers[r->b].v));
+    }
+}

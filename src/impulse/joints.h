@@ -1,0 +1,184 @@
+/* ---------------------------------------------------------------------------------------------
+   >>joints
+   Joints hold bodies together, to walls or to the space. A joint has rows: three of velocity at the
+   common point, for a hinge two of spin across its axis, and one of a motor. J u of them is the
+   velocity of a against b. All joints are solved at once,
+       [ M  -J'  ] [ dv ]   [  0 ]
+       [ -J -give] [ dp ] = [ -r ]   (M: mass and inertia; r: by what the rows are off)
+   by block LDL' in an order of fewest neighbours: from the leaves of a tree to its root, O(n) and
+   without fill ([BAR96]); loops fill in a little. `give` is a softness: 1e-9 of what an impulse
+   brings (DEMI_GIVE); 1e-6 in groups with loops, which may hold more than is needed.
+   r is by what points and axes will be apart where the next step finds them (in its middle, see
+   demi_ahead), with rotations as the integrator makes them, over dt: SHAKE, with a few Newton
+   steps. Its energy swings by O(dt^2).
+   Impulses p of joints that hang together give p (J u before + J u after)/2, exactly. Where that
+   is more than they have taken before (at most 1e-3 of their kinetic energy is remembered), rows
+   are wanted at J u after = -J u before/2, and if need be at -J u before, which gives nothing
+   whatever contacts, motors and fields do. Gaps that are left are closed by moving places alone.
+   A motor with a limit is a row until it reaches that, and then a torque.
+   Owns w->joints. Tests: tests/impulse/test_joints.c.
+   --------------------------------------------------------------------------------------------- */
+
+/* Index of a body by its id; -1: it is no more. */
+static int demi_joint_body(const dem_world *w, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
+    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
+}
+/* Is what a joint holds still there? */
+static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
+    if (demi_joint_body(w, j->desc.a) < 0) return 0;
+    if (j->desc.b.slot) return demi_joint_body(w, j->desc.b) >= 0;
+    return !j->desc.wall.id || demi_wall_there(w, j->desc.wall);
+}
+static int demi_joints_in_force(const dem_world *w) {
+    int i, n = 0;
+    for (i = 0; i < w->joint_count; i++) n += demi_joint_alive(w, w->joints + i);
+    return n;
+}
+/* Its index, or -1 with a sentence. Ids rise and are never given again, so they are in order. */
+static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
+    int low = 0, high = w->joint_count;
+    while (low < high) {
+        const int mid = low + (high - low)/2;
+        if (w->joints[mid].id < joint.id) low = mid + 1;
+        else high = mid;
+    }
+    if (low < w->joint_count && w->joints[low].id == joint.id &&
+        demi_joint_alive(w, w->joints + low)) return low;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it, one of its "
+              "bodies or its wall was removed, or adding it failed", call, (int)joint.id,
+              demi_joints_in_force(w));
+    return -1;
+}
+/* What is wrong with a motor; 0 with a sentence. The limit is far beyond any machine, and squares
+   of what such a motor brings about are still numbers. */
+#define DEMI_MOTOR_MOST DEM_R(1e12)
+static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, dem_motor motor,
+                           dem_real speed, dem_real torque) {
+    if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && DEMI_ABS(speed) <= DEMI_MOTOR_MOST &&
+        DEMI_ABS(torque) <= DEMI_MOTOR_MOST && !(motor == DEM_MOTOR_SPEED && torque < 0) &&
+        (motor == DEM_MOTOR_NONE || kind == DEM_JOINT_REVOLUTE)) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; speed and "
+              "torque must lie within +-1e12, and the limit on torque of DEM_MOTOR_SPEED must be "
+              ">= 0 (0: no limit); likely the units are not SI, or the joint is not revolute: "
+              "only revolute joints have motors", call, (int)motor, (double)speed, (double)torque);
+    return 0;
+}
+/* A place or direction, as seen from body `index` (with `place`: from its centre). */
+static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, int place) {
+    const demi_periods p = demi_periods_of(w);
+    if (place) x = demi_nearest(&p, demi_sub(x, demi_at(w->bodies.pos + 4*index)));
+    return dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*index), x);
+}
+/* What is wrong with a desc, but its motor; 0 with a sentence. */
+static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
+    const dem_real size = demi_length(d->axis);
+    int a, b = -1;
+    if (!demi_impulsive(w)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
+                  "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
+        return 0;
+    }
+    if ((d->kind != DEM_JOINT_POINT && d->kind != DEM_JOINT_REVOLUTE) || !demi_place(d->point) ||
+        (d->kind == DEM_JOINT_REVOLUTE && (!demi_finite3(d->axis) || !(size > 0) ||
+                                           !demi_finite(size)))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: kind is %d, point (%g, %g, %g) m, axis (%g, %g, %g); "
+                  "kind must be DEM_JOINT_POINT or DEM_JOINT_REVOLUTE, the point within 1e15 m of "
+                  "the origin, the axis of a revolute joint finite and not 0", call, (int)d->kind,
+                  (double)d->point.x, (double)d->point.y, (double)d->point.z, (double)d->axis.x,
+                  (double)d->axis.y, (double)d->axis.z);
+        return 0;
+    }
+    if (w->desc.planar && d->kind == DEM_JOINT_REVOLUTE &&
+        !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z, because "
+                  "discs rotate about no other axis", call, (double)d->axis.x, (double)d->axis.y,
+                  (double)d->axis.z);
+        return 0;
+    }
+    a = demi_body_index(w, call, d->a);
+    if (a < 0) return 0;
+    if (d->b.slot && (b = demi_body_index(w, call, d->b)) < 0) return 0;
+    if (!d->b.slot && d->wall.id && demi_wall_find(w, call, d->wall) < 0) return 0;
+    if (!w->desc.orientations && (!demi_shape_of(w, a) || (b >= 0 && !demi_shape_of(w, b)))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is a sphere, and this world does not follow "
+                  "the orientations of spheres; create the world with desc.orientations = 1", call,
+                  (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
+        return 0;
+    }
+    if (a != b && w->bodies.inv_mass[a] + (b >= 0 ? w->bodies.inv_mass[b] : 0) > 0) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a is body %u and b is body %u (0: none), but %s; a "
+              "joint holds two different bodies, at least one of which can move",
+              call, (unsigned)d->a.slot,
+              (unsigned)d->b.slot, a == b ? "they are the same" : "neither can move");
+    return 0;
+}
+DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
+    const char *call = "dem_joint_add";
+    demi_joint j;
+    dem_joint id;
+    if (demi_null(w, call, d, "desc")) return demi_no_joint;
+    if (!demi_joint_sane(w, call, d) ||
+        !demi_motor_sane(w, call, d->kind, d->motor, d->speed, d->torque)) return demi_no_joint;
+    if (!demi_orient_begin(w) || !DEMI_GROW(w, w->joints, (size_t)w->joint_count + 1)) {
+        demi_no_memory(w, call);
+        return demi_no_joint;
+    }
+    memset(&j, 0, sizeof j);
+    j.desc = *d;
+    j.desc.axis = d->kind == DEM_JOINT_REVOLUTE ? demi_unit(d->axis) : demi_v(0, 0, 0);
+    if (d->b.slot) j.desc.wall.id = 0;          /* not used, and so of no meaning */
+    else j.desc.b.generation = 0;
+    j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
+    j.axis[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), j.desc.axis, 0);
+    j.arm[1] = d->point;
+    j.axis[1] = j.desc.axis;
+    if (d->b.slot) {
+        const int b = demi_body_index(w, call, d->b);
+        j.arm[1] = demi_joint_from_body(w, b, d->point, 1);
+        j.axis[1] = demi_joint_from_body(w, b, j.desc.axis, 0);
+    } else if (d->wall.id) {
+        const dem_pose *pose = &w->walls[demi_wall_place(d->wall)].pose;
+        j.arm[1] = demi_unrotate(pose->rotation, demi_sub(d->point, pose->position));
+        j.axis[1] = demi_unrotate(pose->rotation, j.desc.axis);
+    }
+    id.id = j.id = ++w->joint_last;
+    w->joints[w->joint_count++] = j;
+    demi_scene_changed(w);
+    demi_built(w, call);
+    return id;
+}
+DEM_API dem_result dem_joint_motor_set(dem_world *w, dem_joint joint, dem_motor motor,
+                                       dem_real speed,
+                                   dem_real torque) {
+    const char *call = "dem_joint_motor_set";
+    int i;
+    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, call, joint);
+    if (i < 0 || !demi_motor_sane(w, call, w->joints[i].desc.kind, motor, speed, torque))
+        return DEM_ERROR_ARGUMENT;
+    w->joints[i].desc.motor = motor;
+    w->joints[i].desc.speed = speed;
+    w->joints[i].desc.torque = torque;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_joint_get(const dem_world *w, dem_joint joint, dem_joint_state *state) {
+    int i;
+    if (demi_null_look(w, "dem_joint_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find((dem_world *)w, "dem_joint_get", joint);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *state = w->joints[i].state;
+    return DEM_OK;
+}
+DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
+    int i;
+    if (demi_null(w, "dem_joint_remove", w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, "dem_joint_remove", joint);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    w->joint_count--;
+    memmove(w->joints + i, w->joints + i + 1, (size_t)(w->joint_count - i)*sizeof *w->joints);
+    demi_scene_changed(w);
+    return DEM_OK;
+}

@@ -1,0 +1,506 @@
+/* ---------------------------------------------------------------------------------------------
+   >>solvers
+   Impulses for what >>impulses has laid down. Velocities stand in movers; what a solver changes in
+   an impulse it applies to both bodies. How far a contact is from being solved is told by the step
+   that would solve it alone, in m/s (the natural map in the metric of its inverse mass).
+     Gauss-Seidel   contact after contact, each solved exactly in its own metric: [JEA99], and for
+                    the convex cone [TAS10] with its projection in that metric (a cone again, with
+                    mu sqrt(gt/gn)).
+     Jacobi         all at once, each taking a part of its step as small as its bodies have
+                    contacts [TON12]. For comparison: six to twelve times the sweeps.
+     APGD           Nesterov's gradients with restarts [MAZ15]; one product of N = D' M^-1 D with
+                    impulses in each sweep, since products of sums are sums of products.
+     Spectral       gradients with steps of Barzilai and Borwein [BIR00] [HEY13], shortened to the
+                    exact minimum along each way.
+   The last two minimise over the convex cone. Coulomb's law is that cone with mu |ut| added to the
+   normal velocity (de Saxce): it is added anew every few sweeps, until it stays.
+   >>add-solver: a row in demi_solvers and a constant in dem_solver.
+   --------------------------------------------------------------------------------------------- */
+
+/* Velocity of b relative to a where they meet. */
+DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
+    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
+    const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
+    const dem_vec3 v = demi_sub(demi_at(b->v), demi_at(a->v));
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        const dem_vec3 vb = b->inv > 0 ? demi_add(v, demi_cross(wb, arms[1])) : v;
+        return demi_sub(vb, demi_cross(wa, arms[0]));
+    }
+    return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
+                                  c->normal));
+}
+/* Both bodies get an impulse p: b this, a the opposite. */
+DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
+                                   int shaped) {
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_cross(p, arms[0]), 1);
+        demi_mover_push(s, c->b, p, demi_cross(arms[1], p), 1);
+    } else {
+        const dem_vec3 l = demi_cross(p, c->normal);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_scale(l, c->reach_a), 0);
+        demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
+    }
+}
+/* What is left of a vector of this size when it may be `most` long. */
+DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
+    const dem_real l2 = demi_dot(t, t);
+    return l2 > most*most ? demi_scale(t, most/DEMI_SQRT(l2)) : t;
+}
+/* The impulse allowed that is nearest to this one. Coulomb: push first, then friction within what
+   it allows. Convex: in the metric of steps, 1/per_n and 1/per_t. */
+DEM_INLINE void demi_impulse_bound(const demi_impulse *c, dem_real *push, dem_vec3 *slip,
+                                   int convex) {
+    if (convex && c->mu > 0) {
+        const dem_real a = DEMI_SQRT(c->per_n/c->per_t), mu = c->mu*a, size = a*demi_length(*slip);
+        if (size > mu**push) {
+            const dem_real p = mu*size <= -*push ? 0 : (*push + mu*size)/(1 + mu*mu);
+            *push = DEMI_MAX(p, 0);
+            *slip = demi_scale(*slip, mu**push/(size + DEMI_TINY));
+        }
+    } else {
+        *push = DEMI_MAX(*push, 0);
+        *slip = demi_impulse_cap(*slip, c->mu**push);
+    }
+}
+/* The impulse that solves a contact alone at this velocity; answers the change, squared, m/s. */
+DEM_INLINE dem_real demi_impulse_wanted(const demi_impulse *c, dem_vec3 u, dem_real *push,
+                                        dem_vec3 *slip, int convex) {
+    const dem_real un = demi_dot(u, c->normal);
+    const dem_vec3 ut = demi_sub(u, demi_scale(c->normal, un));
+    dem_real dn;
+    dem_vec3 dt;
+    *push = (c->push*c->gn - (un + c->bias))*c->per_n;
+    *slip = demi_sub(c->slip, demi_scale(ut, c->per_t));
+    demi_impulse_bound(c, push, slip, convex);
+    dn = (*push - c->push)*c->gn;
+    dt = demi_scale(demi_sub(*slip, c->slip), c->gt);
+    return dn*dn + demi_dot(dt, dt);
+}
+/* 1 where friction has reached its limit, to round-off, and the slip u (m/s) is faster than `slow`:
+   of several points that hold a body, one may reach its limit at rest. Without a push as it was. */
+DEM_INLINE dem_real demi_impulse_slides(const demi_impulse *c, dem_vec3 u, dem_real slow,
+                                        dem_real was) {
+    const dem_real most = c->mu*c->push*(1 - (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-12)));
+    const dem_vec3 slip = demi_sub(u, demi_scale(c->normal, demi_dot(u, c->normal)));
+    if (!(c->push > 0)) return was;
+    return demi_dot(c->slip, c->slip) >= most*most && demi_dot(slip, slip) > slow*slow ? DEM_R(1)
+                                                                                        : DEM_R(0);
+}
+/* Rolling and spinning friction of one contact. */
+DEM_INLINE void demi_twist_solve(const demi_solver *s, const demi_impulse *c, int shaped) {
+    demi_twist *t = s->twists + (c - s->contacts);
+    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
+    const dem_vec3 n = c->normal, w = demi_sub(demi_at(b->w), demi_at(a->w));
+    const dem_real wn = demi_dot(w, n), mn = demi_dot(t->moment, n), most = t->spin*c->push;
+    const dem_vec3 wt = demi_sub(w, demi_scale(n, wn)), mt = demi_sub(t->moment, demi_scale(n, mn));
+    const dem_real spin = DEMI_MAX(-most, DEMI_MIN(most, mn - wn*t->per_spin));
+    const dem_vec3 roll = demi_impulse_cap(demi_sub(mt, demi_scale(wt, t->per_roll)),
+                                           t->roll*c->push);
+    const dem_vec3 moment = demi_add(roll, demi_scale(n, spin)), by = demi_sub(moment, t->moment);
+    t->moment = moment;
+    demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(by, -1), shaped);
+    demi_mover_push(s, c->b, demi_v(0, 0, 0), by, shaped);
+}
+/* Sums of one run of contacts: the farthest from being solved (its square), the squares of all; two
+   more that solvers need. */
+typedef struct demi_run_sums { dem_real worst, squares, first, second; } demi_run_sums;
+DEM_INLINE void demi_sums_add(demi_run_sums *o, dem_real change2) {
+    o->worst = DEMI_MAX(o->worst, change2);
+    o->squares += change2;
+}
+/* Contacts of one run in the colour being swept (of all, when `first` and `last` are those). */
+static void demi_run_bounds(const demi_solver *s, int index, int *begin, int *end) {
+    *begin = s->first + index*DEMI_SWEEP_RUN;
+    *end = DEMI_MIN(*begin + DEMI_SWEEP_RUN, s->last);
+}
+/* Every colour once: the task over its runs. */
+static void demi_colours_all(dem_world *w, demi_task task) {
+    demi_solver *s = &w->solver;
+    int k;
+    s->run = 0;
+    for (k = 0; k < DEMI_COLOURS && s->begins[k] < s->count; k++) {
+        const int n = s->begins[k + 1] - s->begins[k];
+        const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
+        s->first = s->begins[k];
+        s->last = s->begins[k + 1];
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->desc.threads, runs, task);
+        s->run += runs;
+    }
+}
+/* All contacts, whatever their colour: tasks that change no body. */
+static void demi_runs_all(dem_world *w, demi_task task) {
+    demi_solver *s = &w->solver;
+    s->first = s->run = 0;
+    s->last = s->count;
+    demi_parallel(w, w->desc.threads, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
+    s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
+}
+/* Sums over the runs of the last round, in their order. */
+static demi_run_sums demi_runs_sum(const demi_solver *s) {
+    demi_run_sums all = {0, 0, 0, 0};
+    int i;
+    for (i = 0; i < s->run; i++) {
+        all.worst = DEMI_MAX(all.worst, s->runs[i].worst);
+        all.squares += s->runs[i].squares;
+        all.first += s->runs[i].first;
+        all.second += s->runs[i].second;
+    }
+    return all;
+}
+/* Begins with what is remembered. */
+static void demi_impulses_warm(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_real push = c->push - s->beside[i].pull;
+        demi_impulse_apply(s, c, demi_add(demi_scale(c->normal, push), c->slip), shaped);
+        if (!s->twisted) continue;
+        demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(s->twists[i].moment, -1), shaped);
+        demi_mover_push(s, c->b, demi_v(0, 0, 0), s->twists[i].moment, shaped);
+    }
+}
+
+/* --- Gauss-Seidel --- */
+
+enum { DEMI_SOON = 8 }; /* bodies are fetched this many contacts ahead: a tenth of the time */
+#define DEMI_SEIDEL(NAME, CONVEX, SHAPED) \
+    static void NAME(dem_world *w, int index) { \
+        demi_solver *s = &w->solver; \
+        demi_run_sums sums = {0, 0, 0, 0}; \
+        int i, end; \
+        for (demi_run_bounds(s, index, &i, &end); i < end; i++) { \
+            demi_impulse *c = s->contacts + i; \
+            dem_real push; \
+            dem_vec3 slip, by; \
+            if (i + DEMI_SOON < end) { \
+                DEMI_FETCH(s->movers + c[DEMI_SOON].a); \
+                DEMI_FETCH(s->movers + c[DEMI_SOON].b); \
+            } \
+            demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
+                                                     &push, &slip, CONVEX)); \
+            by = demi_add(demi_scale(c->normal, push - c->push), demi_sub(slip, c->slip)); \
+            c->push = push; \
+            c->slip = slip; \
+            demi_impulse_apply(s, c, by, SHAPED); \
+            if (s->twisted) demi_twist_solve(s, c, SHAPED); \
+        } \
+        s->runs[s->run + index] = sums; \
+    }
+DEMI_SEIDEL(demi_seidel_spheres, 0, 0)
+DEMI_SEIDEL(demi_seidel_spheres_convex, 1, 0)
+DEMI_SEIDEL(demi_seidel_shapes, 0, 1)
+DEMI_SEIDEL(demi_seidel_shapes_convex, 1, 1)
+#undef DEMI_SEIDEL
+/* How a solver went on: sweeps, and what the last left (m/s): farthest, rms. */
+typedef struct demi_solved { int sweeps; double worst, rms; } demi_solved;
+static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums sums) {
+    o->worst = sqrt((double)sums.worst);
+    o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
+}
+/* Not there yet? By the tolerance given, for the farthest; else by one for the rms. */
+static int demi_solved_open(const dem_world *w, const demi_solved *o) {
+    const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
+    const double enough = 0.05*kick + 1e-5*w->booked.speed_max + 1e-12;
+    if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
+    return o->rms > enough || o->worst > 30*enough;
+}
+static demi_solved demi_solve_seidel(dem_world *w, int most) {
+    const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
+                                demi_seidel_shapes, demi_seidel_shapes_convex};
+    const demi_task task = kinds[(w->desc.cone == DEM_CONE_CONVEX) + 2*(w->bodies.shaped > 0)];
+    demi_solved o = {0, 0, 0};
+    do {
+        demi_run_sums sums;
+        demi_colours_all(w, task);
+        sums = demi_runs_sum(&w->solver);
+        sums.worst = DEMI_MAX(sums.worst, demi_joints_sweep(w));
+        demi_solved_tell(&w->solver, &o, sums);
+    } while ((++o.sweeps < most && demi_solved_open(w, &o)) || demi_joints_guard(w));
+    return o;
+}
+
+/* --- Jacobi --- */
+
+/* What each contact would change, at the same velocities, and the part of it that it may. */
+static void demi_jacobi_look(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        const dem_real ia = s->movers[c->a].inv, ib = s->movers[c->b].inv;
+        const dem_real ka = ia > 0 ? (dem_real)s->degrees[c->a] : 0;
+        const dem_real kb = ib > 0 ? (dem_real)s->degrees[c->b] : 0;
+        const dem_real part = DEMI_MIN(1, DEM_R(1.5)*(ia + ib)/(ka*ia + kb*ib));
+        dem_real push;
+        dem_vec3 slip;
+        demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, shaped), &push,
+                                                 &slip, convex));
+        push = part*(push - c->push);
+        slip = demi_scale(demi_sub(slip, c->slip), part);
+        s->vectors[i] = demi_add(demi_scale(c->normal, push), slip);
+        c->push += push;
+        c->slip = demi_add(c->slip, slip);
+    }
+    s->runs[index] = sums;
+}
+/* Applies the vectors of a run. */
+static void demi_vectors_apply(dem_world *w, int index) {
+    const demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++)
+        demi_impulse_apply(s, s->contacts + i, s->vectors[i], shaped);
+}
+static demi_solved demi_solve_jacobi(dem_world *w, int most) {
+    demi_solver *s = &w->solver;
+    demi_solved o = {0, 0, 0};
+    int i;
+    memset(s->degrees, 0, (size_t)w->bodies.count*sizeof *s->degrees);
+    for (i = 0; i < s->count; i++) {
+        s->degrees[s->contacts[i].a]++;
+        if (s->contacts[i].b < w->bodies.count) s->degrees[s->contacts[i].b]++;
+    }
+    do {
+        demi_run_sums sums;
+        demi_runs_all(w, demi_jacobi_look);
+        sums = demi_runs_sum(s);
+        demi_solved_tell(s, &o, sums);
+        demi_colours_all(w, demi_vectors_apply);
+    } while (++o.sweeps < most && demi_solved_open(w, &o));
+    return o;
+}
+
+/* --- gradients --- */
+
+/* Columns of vectors: a change to be applied; impulses and contacts' velocities at the point left
+   and at the one where the gradient is looked at; what the change brings; where it began. */
+enum { DEMI_BY, DEMI_X, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN, DEMI_GIVEN };
+DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
+    return s->vectors + (size_t)column*(size_t)s->count + i;
+}
+DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
+    return demi_add(demi_scale(c->normal, c->push), c->slip);
+}
+DEM_INLINE void demi_impulse_put(demi_impulse *c, dem_vec3 p) {
+    c->push = demi_dot(p, c->normal);
+    c->slip = demi_sub(p, demi_scale(c->normal, c->push));
+}
+/* Gradient at impulse p where velocity is u. */
+DEM_INLINE dem_vec3 demi_gradient(const demi_impulse *c, dem_vec3 u, dem_vec3 p) {
+    const dem_real soft = 1/c->per_n - c->gn;
+    return demi_add(u, demi_scale(c->normal, c->bias + soft*demi_dot(p, c->normal)));
+}
+/* |x|^2 of an impulse, in the metric of 1/per_n and 1/per_t. */
+DEM_INLINE dem_real demi_impulse_size2(const demi_impulse *c, dem_vec3 p) {
+    const dem_real n = demi_dot(p, c->normal);
+    return n*n/c->per_n + (demi_dot(p, p) - n*n)/c->per_t;
+}
+/* Where a step against the gradient leads, within the cone; p and u: a column, and its velocity. */
+static void demi_gradient_step(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_vec3 p = *demi_vector_at(s, DEMI_Y, i);
+        const dem_vec3 g = demi_gradient(c, *demi_vector_at(s, DEMI_UY, i), p);
+        const dem_real gn = demi_dot(g, c->normal), pn = demi_dot(p, c->normal);
+        const dem_vec3 gt = demi_sub(g, demi_scale(c->normal, gn));
+        dem_vec3 slip = demi_sub(demi_sub(p, demi_scale(c->normal, pn)),
+                                 demi_scale(gt, s->step*c->per_t));
+        dem_real push = pn - s->step*gn*c->per_n;
+        demi_impulse_bound(c, &push, &slip, 1);
+        *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_add(demi_scale(c->normal, push), slip), p);
+        sums.first += demi_dot(g, *demi_vector_at(s, DEMI_BY, i));
+    }
+    s->runs[index] = sums;
+}
+/* What the change brings: first: with the change; second: its size; squares: the change's own. */
+static void demi_gradient_brought(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_vec3 by = *demi_vector_at(s, DEMI_BY, i), u = demi_impulse_velocity(s, c, shaped);
+        const dem_real soft = 1/c->per_n - c->gn;
+        const dem_vec3 all = demi_add(u, demi_scale(c->normal, soft*demi_dot(by, c->normal)));
+        const dem_real n = demi_dot(all, c->normal);
+        *demi_vector_at(s, DEMI_BROUGHT, i) = u;
+        sums.first += demi_dot(by, all);
+        sums.second += n*n*c->per_n + (demi_dot(all, all) - n*n)*c->per_t;
+        sums.squares += demi_impulse_size2(c, by);
+    }
+    s->runs[index] = sums;
+}
+/* The product of the change with N, into DEMI_BROUGHT. */
+static demi_run_sums demi_gradient_product(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const int movers = w->bodies.count + w->kept_first[DEMI_DOMAINS];
+    int i, k;
+    for (i = 0; i < movers; i++)
+        for (k = 0; k < 3; k++) s->movers[i].v[k] = s->movers[i].w[k] = 0;
+    demi_colours_all(w, demi_vectors_apply);
+    demi_runs_all(w, demi_gradient_brought);
+    return demi_runs_sum(s);
+}
+/* Goes `step` of the change from Y; what is left there; first: the gradient left with the way from
+   X. Coulomb's law is asked with the bias as it was given. */
+static void demi_gradient_go(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int convex = w->desc.cone == DEM_CONE_CONVEX;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_vec3 *y = demi_vector_at(s, DEMI_Y, i), *uy = demi_vector_at(s, DEMI_UY, i);
+        const dem_vec3 g = demi_gradient(c, *uy, *y);
+        const dem_real bias = c->bias;
+        dem_real push;
+        dem_vec3 slip;
+        *y = demi_add(*y, demi_scale(*demi_vector_at(s, DEMI_BY, i), s->step));
+        *uy = demi_add(*uy, demi_scale(*demi_vector_at(s, DEMI_BROUGHT, i), s->step));
+        demi_impulse_put(c, *y);
+        if (!convex) c->bias = demi_vector_at(s, DEMI_GIVEN, i)->x;
+        demi_sums_add(&sums, demi_impulse_wanted(c, *uy, &push, &slip, convex));
+        c->bias = bias;
+        sums.first += demi_dot(g, demi_sub(*y, *demi_vector_at(s, DEMI_X, i)));
+    }
+    s->runs[index] = sums;
+}
+/* Y becomes X's: on by `step` of the way there was from X. */
+static void demi_gradient_on(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const dem_vec3 y = *demi_vector_at(s, DEMI_Y, i), uy = *demi_vector_at(s, DEMI_UY, i);
+        const dem_vec3 way = demi_sub(y, *demi_vector_at(s, DEMI_X, i));
+        const dem_vec3 gone = demi_sub(uy, *demi_vector_at(s, DEMI_UX, i));
+        *demi_vector_at(s, DEMI_X, i) = y;
+        *demi_vector_at(s, DEMI_UX, i) = uy;
+        *demi_vector_at(s, DEMI_Y, i) = demi_add(y, demi_scale(way, s->step));
+        *demi_vector_at(s, DEMI_UY, i) = demi_add(uy, demi_scale(gone, s->step));
+    }
+}
+/* Coulomb's law: mu |ut| is added to the bias, by the velocities there are. */
+static void demi_gradient_saxce(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        const dem_vec3 u = *demi_vector_at(s, DEMI_UY, i);
+        const dem_vec3 ut = demi_sub(u, demi_scale(c->normal, demi_dot(u, c->normal)));
+        c->bias = demi_vector_at(s, DEMI_GIVEN, i)->x + c->mu*demi_length(ut);
+    }
+}
+/* Where gradients begin. */
+static void demi_gradient_begin(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_vec3 p = demi_impulse_vector(c), u = demi_impulse_velocity(s, c, shaped);
+        *demi_vector_at(s, DEMI_X, i) = *demi_vector_at(s, DEMI_Y, i) = p;
+        *demi_vector_at(s, DEMI_UX, i) = *demi_vector_at(s, DEMI_UY, i) = u;
+        *demi_vector_at(s, DEMI_BEGAN, i) = p;
+        *demi_vector_at(s, DEMI_GIVEN, i) = demi_v(c->bias, 0, 0);
+    }
+}
+/* One step of Nesterov's method; theta and L go from step to step. */
+static demi_run_sums demi_step_apgd(dem_world *w, double *theta, double *L) {
+    demi_solver *s = &w->solver;
+    demi_run_sums sums, gone;
+    double next, beta;
+    int tries;
+    for (tries = 0; tries < 60; tries++) {      /* L doubles: in fewer it is past any there is */
+        s->step = (dem_real)(1/ *L);
+        demi_runs_all(w, demi_gradient_step);
+        gone = demi_gradient_product(w);
+        if (!((double)gone.first > *L*(double)gone.squares)) break;
+        *L *= 2;
+    }
+    s->step = 1;
+    demi_runs_all(w, demi_gradient_go);
+    sums = demi_runs_sum(s);
+    next = (-*theta**theta + *theta*sqrt(*theta**theta + 4))/2;
+    beta = *theta*(1 - *theta)/(*theta**theta + next);
+    *theta = sums.first > 0 ? 1 : next;         /* uphill: begin anew */
+    s->step = (dem_real)(sums.first > 0 ? 0 : beta);
+    demi_runs_all(w, demi_gradient_on);
+    *L *= 0.9;
+    return sums;
+}
+/* One step of Barzilai and Borwein's; its length goes from step to step. */
+static demi_run_sums demi_step_spectral(dem_world *w, double *length, double *odd) {
+    demi_solver *s = &w->solver;
+    demi_run_sums gone;
+    double down;
+    s->step = (dem_real)*length;
+    demi_runs_all(w, demi_gradient_step);
+    down = (double)demi_runs_sum(s).first;
+    gone = demi_gradient_product(w);
+    s->step = gone.first > 0 ? (dem_real)DEMI_MIN(1, -down/(double)gone.first) : 1;
+    if (!(s->step > 0)) s->step = 1;
+    demi_runs_all(w, demi_gradient_go);
+    *odd = 1 - *odd;
+    *length = !(gone.first > 0) ? 1 : *odd > 0 ? (double)gone.squares/(double)gone.first
+        : (double)gone.first/(double)gone.second;
+    *length = DEMI_MAX(1e-6, DEMI_MIN(*length, 1e6));
+    return demi_runs_sum(s);
+}
+enum { DEMI_SAXCE = 25 };                       /* steps between two looks at Coulomb's law */
+static demi_solved demi_solve_gradient(dem_world *w, int most,
+                                       demi_run_sums (*step)(dem_world *w, double *a, double *b)) {
+    demi_solver *s = &w->solver;
+    const size_t movers = (size_t)(w->bodies.count + w->kept_first[DEMI_DOMAINS]);
+    const int coulomb = w->desc.cone == DEM_CONE_COULOMB;
+    demi_solved o = {0, 0, 0};
+    double a = 1, b = 1;
+    int i;
+    memcpy(s->movers + movers, s->movers, movers*sizeof *s->movers);
+    demi_runs_all(w, demi_gradient_begin);
+    do {
+        demi_run_sums sums;
+        if (coulomb && o.sweeps % DEMI_SAXCE == 0) {
+            demi_runs_all(w, demi_gradient_saxce);
+            a = b = 1;
+        }
+        sums = step(w, &a, &b);
+        demi_solved_tell(s, &o, sums);
+    } while (++o.sweeps < most && demi_solved_open(w, &o));
+    memcpy(s->movers, s->movers + movers, movers*sizeof *s->movers);
+    for (i = 0; i < s->count; i++)
+        *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_impulse_vector(s->contacts + i),
+                                               *demi_vector_at(s, DEMI_BEGAN, i));
+    demi_colours_all(w, demi_vectors_apply);
+    return o;
+}
+static demi_solved demi_solve_apgd(dem_world *w, int most) {
+    return demi_solve_gradient(w, most, demi_step_apgd);
+}
+static demi_solved demi_solve_spectral(dem_world *w, int most) {
+    return demi_solve_gradient(w, most, demi_step_spectral);
+}
+
+/* vectors: columns it needs; moments: does it know rolling and spinning friction; joints: are they
+   known to it? */
+typedef struct demi_solver_row {
+    const char *name;
+    int vectors, moments, joints;
+    demi_solved (*solve)(dem_world *w, int most);
+} demi_solver_row;
+static const demi_solver_row demi_solvers[] = {
+    {"Gauss-Seidel", 0, 1, 1, demi_solve_seidel},
+    {"Jacobi", 1, 0, 0, demi_solve_jacobi},
+    {"APGD", DEMI_GIVEN + 1, 0, 0, demi_solve_apgd},
+    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, demi_solve_spectral}
+};
+enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };

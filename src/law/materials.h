@@ -1,0 +1,401 @@
+/* ---------------------------------------------------------------------------------------------
+   >>materials
+   Users say what a material is (density, Young's modulus, Poisson's ratio, restitution, friction);
+   the pair table says what holds between two; demi_coefficients turns a pair and two radii into the
+   numbers a law multiplies with. Restitution comes first, damping is derived from it.
+   --------------------------------------------------------------------------------------------- */
+static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
+    const int linear_k = !demi_normal_is(w, DEMI_HERTZIAN) && d->stiffness > 0;
+    /* restitution may then be left to the two stiffnesses */
+    const int two_k = demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0;
+    struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
+    int i;
+#define DEMI_GOOD(k, field, good, text) \
+    rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
+    DEMI_GOOD(0, density, d->density > 0, "> 0 kg/m3 (required)");
+    DEMI_GOOD(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) &&
+                                        DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
+    DEMI_GOOD(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
+    DEMI_GOOD(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
+                                        DEMI_ABS(d->restitution) <= 0)) &&
+             d->restitution <= 1, "> 0 and <= 1 (required; impulses: >= 0)");
+    DEMI_GOOD(4, friction, d->friction >= 0, ">= 0");
+    DEMI_GOOD(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
+             d->friction_static >= d->friction,
+             "0, or at least the sliding friction");
+    DEMI_GOOD(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
+    DEMI_GOOD(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
+    DEMI_GOOD(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
+    DEMI_GOOD(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
+             (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
+             "0, or at least the stiffness of loading, which must then be set (N/m)");
+    DEMI_GOOD(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (the magnitude of the "
+             "slope)");
+#undef DEMI_GOOD
+    for (i = 0; i < 11; i++) {
+        const double most = (i >= 4 && i <= 6) || i == 8 ? DEMI_MOST_RATIO : DEMI_MOST;
+        if (!rows[i].ok || !((double)rows[i].value <= most))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s, and at most %g; set "
+                             "it in the desc before the call", call, rows[i].name,
+                             (double)rows[i].value, rows[i].limit, most);
+    }
+    if (two_k && d->restitution > 0 && fabs((double)d->restitution*(double)d->restitution*
+        (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
+                         "stiffness_unloading) is %g; give one of the two and leave the other 0",
+                         call, (double)d->restitution,
+                         sqrt((double)d->stiffness/(double)d->stiffness_unloading));
+    return DEM_OK;
+}
+
+/* One pair from two materials: Hertz's series of compliances for the moduli, geometric means for
+   the rest. */
+static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
+    dem_pair p;
+    const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson;
+    const double nb = (double)b->poisson;
+    const int sticks = a->friction_static > 0 || b->friction_static > 0;
+    const double sa = (double)(a->friction_static > 0 ? a->friction_static : a->friction);
+    const double sb = (double)(b->friction_static > 0 ? b->friction_static : b->friction);
+    memset(&p, 0, sizeof p);
+    if (Ea > 0 && Eb > 0) {
+        p.young_eff = (dem_real)(1/((1 - na*na)/Ea + (1 - nb*nb)/Eb));
+        p.shear_eff = (dem_real)(1/((2 - na)*2*(1 + na)/Ea + (2 - nb)*2*(1 + nb)/Eb));
+    }
+    p.restitution = (dem_real)sqrt((double)a->restitution*(double)b->restitution);
+    p.friction = (dem_real)sqrt((double)a->friction*(double)b->friction);
+    p.friction_static = sticks ? (dem_real)sqrt(sa*sb) : 0;   /* 0: follows the sliding one */
+    p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
+    p.tangent_damping = 1;
+    p.stiffness_adhesion =
+        (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
+    /* springs in series; equal materials: their own value */
+    if (a->stiffness > 0 && b->stiffness > 0)
+        p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
+    /* one has a modulus only, the other a stiffness only */
+    else if (p.young_eff <= 0)
+        p.stiffness = DEMI_MAX(a->stiffness, b->stiffness);
+    if (a->stiffness_ratio > 0 && b->stiffness_ratio > 0)
+        p.stiffness_ratio = DEMI_SQRT(a->stiffness_ratio*b->stiffness_ratio);
+    else                                        /* Mindlin's ratio 2(1-nu)/(2-nu), of the mean nu */
+        p.stiffness_ratio = (dem_real)(2*(1 - (na + nb)/2)/(2 - (na + nb)/2));
+    return p;
+}
+
+/* beta = -ln e / sqrt(pi^2 + ln^2 e), the share of critical damping that gives restitution e */
+static double demi_damping_ratio(double e) {
+    const double l = demi_log(e);
+    return -l/sqrt(DEMI_PI*DEMI_PI + l*l);
+}
+/* Restitution of a dashpot of `beta` times the critical when the contact ends at zero force [SP07]:
+   exp(-beta/w acos(2 beta^2 - 1)), w = sqrt(1 - beta^2); beyond the critical by hyperbolic
+   functions. Holds for the linear law and, with [TSU92]'s dashpot, for Hertz. */
+static double demi_restitution_clipped(double beta) {
+    const double w = sqrt(fabs(1 - beta*beta));
+    if (beta < 1 - 1e-9) return demi_exp(-beta/w*demi_acos(2*beta*beta - 1));
+    if (beta > 1 + 1e-9) return demi_exp(-beta/w*demi_log((beta + w)/(beta - w)));
+    return demi_exp(-2.0);
+}
+/* The share of critical damping that gives restitution e, as tension is treated. */
+static double demi_damping_for(double e, dem_tension tension) {
+    double lo = 0, hi = 1;
+    int i;
+    if (tension != DEM_TENSION_COMPENSATED || e >= 1) return demi_damping_ratio(e);
+    while (demi_restitution_clipped(hi) > e && hi < 1e6) hi *= 2;
+    for (i = 0; i < 100; i++) {                 /* falls with beta */
+        const double mid = (lo + hi)/2;
+        if (demi_restitution_clipped(mid) > e) lo = mid;
+        else hi = mid;
+    }
+    return (lo + hi)/2;
+}
+
+/* What holds between two materials, in both orders; the damping that gives their restitution is
+   worked out here, once, since it takes a search (algorithm at demi_damping_for). */
+static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
+    demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
+    pair->given = *p;
+    pair->damping = demi_impulsive(w) ? 0 : demi_damping_for((double)p->restitution,
+                                                             w->desc.tension);
+    w->pairs[j*DEMI_MATERIALS + i] = *pair;
+}
+/* Unset, or below the sliding one, it follows that. */
+static dem_real demi_static_friction(const dem_world *w, int a, int b) {
+    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
+    return DEMI_MAX(p->friction, p->friction_static);
+}
+DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
+    if (demi_null(w, "dem_material_add", desc, "desc")) return demi_no_material;
+    dem_material id; int i, n = w->material_count;
+    id.id = 0;
+    if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
+    if (n == DEMI_MATERIALS) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, which "
+                  "is the limit; reuse one of them", n);
+        return id;
+    }
+    w->materials[n] = *desc;
+    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
+        w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
+    w->material_count = n + 1;
+    for (i = 0; i <= n; i++) {
+        const dem_pair pair = demi_mix(&w->materials[i], &w->materials[n]);
+        demi_pair_put(w, i, n, &pair);
+    }
+    demi_built(w, "dem_material_add");
+    id.id = n + 1;
+    return id;
+}
+
+/* From the id that a user holds to an index, or a sentence in the name of `call`. */
+static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
+    if (m.id < 1 || m.id > w->material_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; "
+                         "add it with dem_material_add and check the id that this returns", call,
+                         (int)m.id, w->material_count);
+    *index = m.id - 1;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
+                                    dem_material_desc *desc) {
+    if (demi_null_look(world, "dem_material_get", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    int m = 0;
+    if (demi_material_index((dem_world *)world, "dem_material_get", material, &m))
+        return DEM_ERROR_ARGUMENT;
+    *desc = world->materials[m];
+    return DEM_OK;
+}
+DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
+                                    const dem_material_desc *desc) {
+    if (demi_null(w, "dem_material_set", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    dem_material_desc before;
+    int m = 0, i;
+    if (demi_material_index(w, "dem_material_set", material, &m) ||
+        demi_material_check(w, "dem_material_set", desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    before = w->materials[m];
+    if (desc->density < before.density || desc->density > before.density)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_set: density of material %d is %g "
+                         "kg/m3, must stay %g, because masses of bodies were computed from it; "
+                         "add another material", m + 1, (double)desc->density,
+                         (double)before.density);
+    w->materials[m] = *desc;
+    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
+        w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
+    for (i = 0; i < w->material_count; i++) {
+        const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
+        const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
+        /* what dem_pair_set has put there stays */
+        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
+            demi_pair_put(w, i, m, &now);
+    }
+    w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
+    w->stage.dt_valid = 0;
+    demi_built(w, "dem_material_set");
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
+                                dem_pair *pair) {
+    if (demi_null_look(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
+    dem_world *w = (dem_world *)world;          /* only the error sentence is written */
+    int i = 0, j = 0;
+    if (demi_material_index(w, "dem_pair_get", a, &i) ||
+        demi_material_index(w, "dem_pair_get", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    *pair = w->pairs[i*DEMI_MATERIALS + j].given;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
+    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
+    int i = 0, j = 0;
+    const char *bad = 0, *limit = "";
+    dem_real value = 0;
+    double most = 0;
+    if (demi_material_index(w, "dem_pair_set", a, &i) ||
+        demi_material_index(w, "dem_pair_set", b, &j))
+        return DEM_ERROR_ARGUMENT;
+#define DEMI_BAD(field, good, highest, text) \
+    if (!bad && (!((double)p->field <= (highest)) || !(good))) { \
+        bad = #field; value = p->field; limit = text; most = highest; \
+    }
+    DEMI_BAD(young_eff, p->young_eff > 0 || (demi_impulsive(w) && p->young_eff >= 0) ||
+             (p->young_eff >= 0 && p->stiffness > 0 &&
+             !demi_normal_is(w, DEMI_HERTZIAN)), DEMI_MOST, "> 0 Pa")
+    DEMI_BAD(shear_eff, p->shear_eff >= 0, DEMI_MOST, ">= 0 Pa")
+    DEMI_BAD(restitution, (p->restitution > 0 || (demi_impulsive(w) && p->restitution >= 0)) &&
+             p->restitution <= 1, DEMI_MOST_RATIO, "> 0 (impulses: >= 0) and <= 1")
+    DEMI_BAD(friction, p->friction >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
+             p->friction_static >= p->friction,
+             DEMI_MOST_RATIO, "0 (the same as the sliding friction), or at least the sliding "
+                 "friction")
+    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(stiffness, p->stiffness >= 0, DEMI_MOST, ">= 0 N/m")
+    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, DEMI_MOST, ">= 0 N/m")
+    DEMI_BAD(normal_damping, p->normal_damping >= 0, DEMI_MOST, ">= 0 N s/m")
+#define DEMI_IMPULSES_ALONE(field, unit) \
+    DEMI_BAD(field, p->field >= 0 && (demi_impulsive(w) || !(p->field > 0)), DEMI_MOST, \
+             ">= 0" unit ", and 0 where springs answer (desc.response)")
+    DEMI_IMPULSES_ALONE(spinning_friction, "")
+    DEMI_IMPULSES_ALONE(cohesion, " N")
+    DEMI_IMPULSES_ALONE(compliance, " m/N")
+#undef DEMI_IMPULSES_ALONE
+#undef DEMI_BAD
+    if (bad)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
+                         "must be %s, and at most %g; start from dem_pair_get and change only "
+                         "what differs", bad, i + 1, j + 1, (double)value, limit, most);
+    demi_pair_put(w, i, j, p);
+    w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
+    demi_built(w, "dem_pair_set");
+    w->stage.dt_valid = 0;
+    return DEM_OK;
+}
+
+/* The coefficients of one contact: its law's (>>laws), and what holds for all; cn and ct without
+   what goes by the root of the mass m*: `root`, for normal and tangent, per sqrt(kg).
+   DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
+   between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff: the
+   standard one; stiff: kg, what a stiffness follows. Checked by "the eight coefficients". */
+static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_eff, double stiff,
+                                     int wall, dem_real *out, dem_real *root) {
+    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
+    demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, stiff, 0, 1, p};
+    demi_coefs k = {0, 0, 0, 0, 0, 0, 0, 0};
+    double half = 1;
+    s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
+    if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
+    if (mill) {  /* material b's own moduli: the wall's, or the grain's */
+        const dem_material_desc *d = &w->materials[b];
+        s.E = (double)d->young;
+        s.G = s.E/(2*(1 + (double)d->poisson));
+        if (wall) { s.R /= 2; s.M /= 2; half = sqrt(0.5); }
+    }
+    demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
+    if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* of half the overlap */
+        const double fourth = demi_pow(0.5, 0.25);
+        k.kn *= demi_pow(0.5, 1.5); k.kt *= sqrt(0.5);
+        k.cn *= fourth; k.ct *= fourth; k.cn_root *= fourth; k.ct_root *= fourth;
+    }
+    k.ct *= (double)p->tangent_damping;
+    k.ct_root *= (double)p->tangent_damping;
+    out[DEMI_KN] = (dem_real)k.kn; out[DEMI_CN] = (dem_real)k.cn;
+    out[DEMI_KT] = (dem_real)k.kt; out[DEMI_CT] = (dem_real)k.ct;
+    out[DEMI_K_UN] = (dem_real)k.kun; out[DEMI_K_AD] = (dem_real)k.kad;
+    out[DEMI_MU] = p->friction;
+    out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
+    out[DEMI_MU_ROLL] = p->rolling_friction;
+    out[DEMI_R_EFF] = (dem_real)r_eff;
+    root[0] = (dem_real)(half*k.cn_root);
+    root[1] = (dem_real)(half*k.ct_root);
+}
+/* All of them; m_eff: the standard mass. */
+static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
+                              double stiff, int wall, dem_real *out) {
+    const dem_real m = (dem_real)sqrt(m_eff);
+    dem_real root[2];
+    demi_coefficients_rooted(w, a, b, r_eff, stiff, wall, out, root);
+    out[DEMI_CN] += root[0]*m;
+    out[DEMI_CT] += root[1]*m;
+}
+
+/* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
+   sqrt(m/k) (with damping pi/sqrt(k/m - (c/2m)^2) [ALK07] eq 2.21; near the critical damping and
+   beyond, where that has no end, pi 2m/c: the dashpot's own time). Branched: that of its
+   steepest branch, kun, which is what a time step has to follow; the contact itself lasts longer,
+   eq 2.45. */
+static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
+                                double speed) {
+    const int branched = demi_normal_is(w, DEMI_BRANCHED);
+    const double k = (double)coef[branched ? DEMI_K_UN : DEMI_KN], c = (double)coef[DEMI_CN];
+    if (!demi_normal_is(w, DEMI_HERTZIAN)) {
+        const double eta = c/(2*m_eff);
+        return DEMI_PI/DEMI_MAX(sqrt(DEMI_MAX(k/m_eff - eta*eta, 0)), eta);
+    }
+    return 2.94327518*demi_pow(5*m_eff*speed*speed/(4*k), 0.4)/speed;
+}
+
+static double demi_sphere_mass(const dem_world *w, int material, double r) {
+    const double rho = (double)w->materials[material].density;
+    if (w->desc.planar) return rho*DEMI_PI*r*r*(double)w->desc.thickness;
+    return rho*4/3*DEMI_PI*r*r*r;
+}
+static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
+    return w->desc.planar ? mass*r*r/2 : 0.4*mass*r*r;
+}
+
+/* 1 with a sentence when a sphere or disc of this radius would have a mass or moment of inertia
+   that dem_real cannot hold, or not the inverse of: what moves it would be 0 or infinite. */
+static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_real radius, int i) {
+    const double r = (double)radius, m = demi_sphere_mass(w, material, r);
+    const double inertia = demi_sphere_inertia(w, m, r);
+    const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
+                             (dem_real)(1/inertia)};
+    int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
+        !(inertia > 0) || r > DEMI_FARTHEST;
+    for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
+    if (bad)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the radius of sphere %d is %g m and its mass %g kg, "
+                  "which is too small or too large to calculate with in %s precision; lengths are "
+                  "in metres: check the unit; nothing was added", call, i, r, m,
+                  DEMI_SINGLE ? "single" : "double");
+    return bad;
+}
+
+DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
+                                        dem_real radius_a, dem_real radius_b,
+                                        dem_coefficients *out) {
+    if (demi_null_look(world, "dem_coefficients_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    dem_world *w = (dem_world *)world;
+    int i = 0, j = 0;
+    double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
+    dem_real coef[DEMI_COEFS];
+    if (demi_material_index(w, "dem_coefficients_get", a, &i) ||
+        demi_material_index(w, "dem_coefficients_get", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m; the "
+                         "first must be > 0, the second >= 0 (0 means a wall)", ra, rb);
+    ma = demi_sphere_mass(w, i, ra);
+    r = rb > 0 ? ra*rb/(ra + rb) : ra;
+    m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
+    demi_coefficients(w, i, j, r, m, m, rb <= 0, coef);
+    out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
+    out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
+    out->ct = coef[DEMI_CT];
+    out->kun = coef[DEMI_K_UN]; out->kad = coef[DEMI_K_AD];
+    out->damping_ratio = (dem_real)w->pairs[i*DEMI_MATERIALS + j].damping;
+    out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
+                                                    ? (double)w->desc.impact_speed : 1);
+    if (demi_normal_is(w, DEMI_BRANCHED))
+        out->contact_time = (dem_real)(DEMI_PI/2*(sqrt(m/(double)out->kn) +
+                                                  sqrt(m/(double)out->kun)));
+    return DEM_OK;
+}
+
+DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
+    if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
+    int i, j;
+    fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
+            "kt/kn%s\n", demi_impulsive(w) ? "  mu_spin cohesion [N] compliance [m/N]" : "");
+    for (i = 0; i < w->material_count; i++)
+        for (j = i; j < w->material_count; j++) {
+            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
+            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
+                    i + 1, j + 1,
+                    (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
+                    (double)p->friction,
+                    (double)DEMI_MAX(p->friction, p->friction_static),
+                    (double)p->rolling_friction, (double)p->stiffness,
+                    (double)p->stiffness_ratio);
+            if (demi_impulsive(w))
+                fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
+                        (double)p->cohesion, (double)p->compliance);
+            fprintf(out, "\n");
+        }
+}

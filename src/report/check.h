@@ -1,0 +1,657 @@
+/* ---------------------------------------------------------------------------------------------
+   >>check
+   What is likely to be wrong with a scene, before it runs. Each function looks for mistakes of one
+   kind and puts a sentence in for each. Limits are such that scenes of practice pass: grains from
+   0.1 um to 0.5 m, matter from foam to osmium, moduli softened to 1e4 Pa.
+   --------------------------------------------------------------------------------------------- */
+
+/* The most severe of all findings; what is found first comes first among its like. */
+typedef struct demi_findings { dem_finding *to; int room, kept, count; } demi_findings;
+static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...)
+    DEMI_FORMAT(3, 4);
+static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...) {
+    int i = f->kept;
+    va_list arguments;
+    f->count++;
+    while (i > 0 && f->to[i - 1].severity < severity) i--;
+    if (i >= f->room) return;
+    if (f->kept < f->room) f->kept++;
+    memmove(f->to + i + 1, f->to + i, (size_t)(f->kept - 1 - i)*sizeof *f->to);
+    f->to[i].severity = severity;
+    va_start(arguments, format);
+    vsnprintf(f->to[i].text, sizeof f->to[i].text, format, arguments);
+    va_end(arguments);
+}
+
+/* Units and sizes of matter. */
+static void demi_check_materials(const dem_world *w, demi_findings *f) {
+    int used[DEMI_MATERIALS], i, k;
+    memset(used, 0, sizeof used);
+    for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) used[demi_feed_material(d, k)] = 1;
+    }
+    for (i = 0; i < w->material_count; i++) {
+        const dem_material_desc *m = &w->materials[i];
+        if (!used[i])
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
+        if (m->density < 10 || m->density > 25000)
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
+                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?",
+                      i + 1, (double)m->density,
+                      (double)(m->density < 10 ? m->density : m->density/1000));
+        if (!w->desc.law && !(m->stiffness > 0) &&
+            (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
+                      "moduli are in Pa (glass has 7e10, softened grains 1e6 to 1e8)", i + 1,
+                      (double)m->young);
+        if (m->friction > 2)
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a friction of %g: it is a "
+                      "coefficient, not an angle; tan(%g degrees) is %.3g", i + 1,
+                      (double)m->friction, (double)m->friction,
+                      demi_sin((double)m->friction*DEMI_PI/180)/
+                      demi_cos((double)m->friction*DEMI_PI/180));
+        if (m->rolling_friction > 1)
+            demi_find(f, DEM_SEVERITY_WARNING,
+                      "material %d has a rolling friction of %g: it is a fraction of the "
+                      "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
+        if (m->rolling_friction > 0 && !(m->friction > 0))
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
+                      "friction: its grains slide instead of rolling", i + 1);
+    }
+    if (w->desc.threads > demi_threads_available() && demi_threads_available() > 0)
+        demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more threads "
+                  "make the run slower", w->desc.threads, demi_threads_available());
+}
+static void demi_radii_of(const dem_world *w, double *least, double *most) {
+    int i;
+    *least = 1e300;
+    *most = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        *least = DEMI_MIN(*least, (double)w->bodies.pos[4*i + 3]);
+        *most = DEMI_MAX(*most, (double)w->bodies.pos[4*i + 3]);
+    }
+}
+static void demi_check_radii(const dem_world *w, demi_findings *f) {
+    double least, most;
+    demi_radii_of(w, &least, &most);
+    if (most > 0.5)
+        demi_find(f, DEM_SEVERITY_WARNING, "the largest grain has a radius of %g m: lengths are in "
+                  "metres, was %g mm meant?", most, most);
+    if (least < 1e-7)
+        demi_find(f, DEM_SEVERITY_WARNING, "the smallest grain has a radius of %g m: below 1e-7 m "
+                  "attraction and thermal motion outweigh the forces simulated here", least);
+}
+/* Places are numbers of so many digits: far from the origin too few are left for overlaps, which
+   are thousandths of a radius. A bead that rebounds from a plane in single precision is off by 1 %
+   where places are 2e-4 radii apart, by 5 % at 2e-3, and sticks fast at 2e-2. */
+static void demi_check_digits(const dem_world *w, demi_findings *f) {
+    const double digit = DEMI_SINGLE ? 1.1920929e-7 : 2.220446e-16;
+    double worst = 0;
+    int i, k, body = 0;
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double part =
+                fabs((double)w->bodies.pos[4*i + k])/(double)w->bodies.pos[4*i + 3]*digit;
+            if (!(part > worst)) continue;
+            worst = part;
+            body = i;
+        }
+    if (worst > 2e-4)
+        demi_find(f, worst > 2e-3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "body %d is so far "
+                  "from the origin that its position is resolved only to %.2g of its radius: "
+                  "contacts lose %s; build the scene around the origin%s",
+                  (int)w->bodies.slot[body] + 1, worst,
+                  worst > 2e-3 ? "their accuracy" : "about 1 % of accuracy",
+                  DEMI_SINGLE ? ", or use double precision" : "");
+}
+
+/* m, how far along n (unit) from the origin a wall may stop what comes that way; 1e300: without
+   end, -1e300: nowhere (a plane seen along itself or from behind, a tube through its opening). */
+static double demi_wall_far(const demi_wall *wall, dem_vec3 n) {
+    const dem_vec3 own = demi_unrotate(wall->pose.rotation, n);
+    const int drawn = demi_wall_is(wall, DEMI_DRAWN);
+    double far = -1e300;
+    int i;
+    if (demi_wall_is(wall, DEMI_FLAT)) return own.z < DEM_R(-1e-3) ? 1e300 : -1e300;
+    if (DEMI_ABS(own.z) > DEM_R(0.999) && (drawn || (wall->extent < 0 && wall->radius > 0)))
+        return -1e300;
+    if (wall->extent < 0 || (drawn && DEMI_ABS(own.z) > DEM_R(1e-6))) return 1e300;
+    for (i = 0; i < wall->vertex_count; i++)
+        far = DEMI_MAX(far, (double)demi_dot(demi_at(wall->vertices + 3*i), own));
+    if (!wall->vertex_count) far = (double)DEMI_MAX(wall->extent, wall->radius);
+    else if (demi_wall_is(wall, DEMI_BALLS)) far += (double)wall->radius;
+    return far + (double)demi_dot(wall->pose.position, n);
+}
+/* m, the longest side of its box, or its diameter. */
+static double demi_wall_size(const demi_wall *wall) {
+    const dem_vec3 box = demi_sub(wall->box.hi, wall->box.lo);
+    if (!wall->vertex_count) return 2*(double)wall->extent;
+    return (double)DEMI_MAX(box.x, DEMI_MAX(box.y, demi_wall_is(wall, DEMI_DRAWN) ? 0 : box.z));
+}
+/* Does anything move, and does anything stop it? */
+static void demi_check_motion(const dem_world *w, demi_findings *f) {
+    const dem_vec3 g = w->desc.gravity;
+    const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
+    dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
+    double lowest = -1e300, floor = -1e300, speed = 0;
+    int i, moving = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+        if (w->bodies.inv_mass[i] <= 0) { floor = DEMI_MAX(floor, h); continue; }
+        moving++;
+        lowest = DEMI_MAX(lowest, h);
+        speed = DEMI_MAX(speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
+    }
+    if (!moving && !w->feed_count) {
+        demi_find(f, DEM_SEVERITY_ERROR, "no grain can move, and there is no feed: add grains, "
+                  "for example with dem_spheres_fill");
+        return;
+    }
+    if (!pulled && !forced && !(speed > 0) && moving)
+        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
+                  "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
+    if (pulled && moving && !forced && floor < lowest && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
+        w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
+        w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
+        w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
+        demi_find(f, DEM_SEVERITY_WARNING, "gravity is (%g, %g, %g) m/s2, but no wall or fixed "
+                  "grain is below the lowest grain: grains fall for ever; add a floor, or change "
+                  "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
+}
+
+/* Is a wall with ends all behind some plane, or beyond a face where grains leave? */
+static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
+    double lo[3], hi[3];
+    int k;
+    if (demi_wall_is(wall, DEMI_DRAWN)) return 0;       /* it goes on and on */
+    demi_domain_limits(w, lo, hi);
+    for (k = 0; k < w->wall_count; k++) {
+        const demi_wall *plane = &w->walls[k];
+        const dem_vec3 n = demi_rotate(plane->pose.rotation, demi_v(0, 0, 1));
+        if (plane->kind == DEMI_WALL_NONE || !demi_wall_is(plane, DEMI_FLAT)) continue;
+        if (demi_wall_far(wall, n) < (double)demi_dot(plane->pose.position, n)) return 1;
+    }
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
+        if (w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW &&
+            (demi_wall_far(wall, n) < lo[k] || -demi_wall_far(wall, demi_scale(n, -1)) > hi[k]))
+            return 1;
+    }
+    return 0;
+}
+/* Sizes and places of walls, beside those of grains. */
+static void demi_check_walls(const dem_world *w, demi_findings *f) {
+    double least, most;
+    int i;
+    demi_radii_of(w, &least, &most);
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const double size = demi_wall_size(wall);
+        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
+        if (most > 0 && size > 2e4*most)
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, %.3g radii of the "
+                      "largest grain: was it in millimetres? scale it by 0.001", (int)wall->id,
+                      demi_wall_kinds[wall->kind].name, size, size/most);
+        else if (most > 0 && size < least)
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, less than the radius "
+                      "of the smallest grain, %g m: is it in other units?", (int)wall->id,
+                      demi_wall_kinds[wall->kind].name, size, least);
+        if (demi_wall_hidden(w, wall))
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is behind a plane or outside the "
+                      "domain: nothing can reach it; does the plane's normal point to the grains?",
+                      (int)wall->id, demi_wall_kinds[wall->kind].name);
+    }
+}
+
+/* Grains inside each other, in walls, or out of the domain. Needs lists. */
+static void demi_check_pairs(const dem_world *w, demi_findings *f) {
+    double worst = 0.01;
+    int d, k, cross, count = 0, who[2] = {0, 0};
+    for (d = 0; d < w->domain_count; d++)
+        for (cross = 0; cross < 2; cross++) {
+            const demi_list *list = cross ? &w->cross : &w->own;
+            const int from = d*list->stride, n = cross ? w->domains[d].cross : w->domains[d].own;
+            for (k = from; k < from + n; k++) {
+                const int a = list->a[k], b = list->b[k];
+                const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
+                const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
+                                                              list->image[k], r)/r);
+                if (!(deep > 0.01) || (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0))
+                    continue;
+                count++;
+                if (deep <= worst) continue;
+                worst = deep;
+                who[0] = (int)w->bodies.slot[a] + 1;
+                who[1] = (int)w->bodies.slot[b] + 1;
+            }
+        }
+    if (count)
+        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
+                  : DEM_SEVERITY_NOTE,
+                      "%d pair%s of grains begin%s with an overlap, bodies %d and %d by %.3g of "
+                  "the smaller radius: they will fly apart; place them with dem_spheres_fill, or "
+                  "farther apart", count, count > 1 ? "s" : "",
+                  count > 1 ? "" : "s", who[0], who[1], worst);
+}
+static void demi_check_in_walls(dem_world *w, demi_findings *f) {
+    double worst = 0.01;
+    int d, k, count = 0, body = 0, wall = 0;
+    if (!demi_touch(w)) return;                 /* no memory: the run will say so */
+    for (d = 0; d < w->domain_count; d++)
+        for (k = 0; k < w->domains[d].kept_next; k++) {
+            const demi_kept *c = w->kept_next + w->kept_first[d] + k;
+            if (c->b >= 0 || !((double)c->deep > 0.01)) continue;
+            count++;
+            if ((double)c->deep <= worst) continue;
+            worst = (double)c->deep;
+            body = (int)w->bodies.slot[c->a] + 1;
+            wall = w->walls[c->wall].id;
+        }
+    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
+    if (count)
+        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
+                  : DEM_SEVERITY_NOTE, "grains overlap walls at %d place%s, body %d wall %d by "
+                  "%.3g of its radius: move it, or does the normal (inside) of the wall point the "
+                  "wrong way?", count, count > 1 ? "s" : "", body, wall, worst);
+}
+static void demi_check_outside(const dem_world *w, demi_findings *f) {
+    double lo[3], hi[3];
+    int i, k, count = 0;
+    demi_domain_limits(w, lo, hi);
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->bodies.pos[4*i + k];
+            if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
+            count++;
+            break;
+        }
+    if (count)
+        demi_find(f, DEM_SEVERITY_WARNING, "%d grain%s outside the domain, whose outflow faces "
+                  "will remove them in the first step; make the domain larger", count,
+                  count > 1 ? "s are" : " is");
+}
+
+/* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
+       thin: both sides push, so that grains inside a solid body touch nothing and stay there
+       unseen. A closed container has all grains inside; where some are inside and some are not,
+       one of the two was not meant. A shell is closed if an even number of its facets meets at
+       each edge (of profiles: at each end), also if the facets belong to several walls that do not
+       move against each other. A place is inside if a line from it crosses the shell an odd number
+       of times. --- */
+typedef struct demi_probe {
+    double x[3];                   /* m, where the surface was when its motion began */
+    int odd, turn;                 /* crossings: is their number odd; sum of their directions */
+    int feed;                      /* 0: a grain; else a place of this feed's region */
+    int owner;                     /* its images have the same */
+} demi_probe;
+typedef struct demi_probes {
+    demi_probe *at;                /* in the order of y: those near the surface */
+    int count, grains, places;     /* of these; of grains that can move and feeds' places in all */
+    int owners;
+    char *seen;                    /* for each owner: has an image of it been counted */
+} demi_probes;
+enum { DEMI_FEED_PLACES = 64 };    /* places by which a feed's region is known */
+
+static int demi_probe_compare(const void *a, const void *b) {
+    const double x = ((const demi_probe *)a)->x[1], y = ((const demi_probe *)b)->x[1];
+    return x < y ? -1 : x > y;
+}
+/* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
+   moved from `home` to `pose` since. 0 when memory ran out. */
+static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
+                          const double *box, dem_vec3 x, int feed) {
+    int n, k;
+    for (n = 0; n < 27; n++) {
+        const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+        const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
+        const dem_vec3 own = demi_unrotate(wall->pose.rotation,
+                                           demi_sub(demi_add(x, by), wall->pose.position));
+        const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation, own));
+        demi_probe *to;
+        double c[3];
+        int near = 1;
+        c[0] = (double)at.x; c[1] = (double)at.y; c[2] = (double)at.z;
+        for (k = 0; k < 3; k++)
+            near = near && (!s[k] || w->wall_period[k] > 0) && c[k] >= box[k] && c[k] <= box[3 + k];
+        if (!near) continue;
+        if ((size_t)p->count == *room) {
+            demi_probe *more = (demi_probe *)demi_alloc(w, 2*(*room + 32), sizeof *more);
+            if (!more) return 0;
+            if (p->count) memcpy(more, p->at, (size_t)p->count*sizeof *more);
+            demi_free(w, p->at);
+            p->at = more;
+            *room = 2*(*room + 32);
+        }
+        to = p->at + p->count++;
+        memcpy(to->x, c, sizeof c);
+        to->odd = to->turn = 0;
+        to->feed = feed;
+        to->owner = p->owners;
+    }
+    p->owners++;
+    return 1;
+}
+static void demi_probes_free(dem_world *w, demi_probes *p) {
+    demi_free(w, p->at);
+    demi_free(w, p->seen);
+}
+/* Grains and places of feeds that may be inside a surface in this box. 0 when memory ran out. */
+static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
+                            const double *box) {
+    size_t room = 0;
+    int i, n, ok = 1;
+    memset(p, 0, sizeof *p);
+    for (i = 0; i < w->bodies.count && ok; i++) {
+        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        p->grains++;
+        ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
+    }
+    for (i = 0; i < w->feed_count && ok; i++) {
+        const demi_feed *feed = demi_feed_at(w, i);
+        uint64_t random = 1;
+        demi_region g;
+        if (feed->state.done || !demi_feed_region(w, &feed->desc, &g)) continue;
+        for (n = 0; n < DEMI_FEED_PLACES && ok; n++) {
+            const double u = demi_uniform(&random), v = demi_uniform(&random);
+            const double at[3] = {u, v, demi_uniform(&random)};
+            dem_vec3 x;
+            if (!demi_region_at(&g, at, (dem_real)feed->lo[0], &x)) continue;
+            p->places++;
+            ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
+        }
+    }
+    if (!ok || !p->count) return ok;
+    qsort(p->at, (size_t)p->count, sizeof *p->at, demi_probe_compare);
+    p->seen = (char *)demi_alloc(w, (size_t)p->owners, 1);
+    return p->seen != 0;
+}
+/* Are there probes on both sides? wall: a number; normals: 1 where its facets have any. */
+static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_probes *p, int wall,
+                              int normals) {
+    const char *name = demi_wall_kinds[w->walls[wall].kind].name, *way = "";
+    int i, grains = 0, places = 0, feed = 0, turn = 0;
+    if (p->count) memset(p->seen, 0, (size_t)p->owners);
+    for (i = 0; i < p->count; i++) {
+        if (!p->at[i].odd || p->seen[p->at[i].owner]++) continue;
+        turn += p->at[i].turn > 0 ? 1 : -1;
+        if (p->at[i].feed) { places++; feed = p->at[i].feed; } else grains++;
+    }
+    if (normals && turn) way = turn > 0 ? " with normals outwards" : " with normals inwards";
+    if (!(grains + places) || grains + places == p->grains + p->places) return;
+    if (grains)
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d "
+                  "grains begin inside wall %d, a closed %s%s, and stay inside: if the wall is "
+                  "solid, keep them out (`inside` of dem_region) or remove them; if it is hollow, "
+                  "all is well", grains, p->grains, (int)w->walls[wall].id, name, way);
+    else
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d "
+                  "inserts grains inside wall %d, a closed %s%s, and they stay inside: if the "
+                  "wall is solid, keep them out (`inside` of the feed); if it is hollow, all is "
+                  "well", feed, (int)w->walls[wall].id, name, way);
+}
+/* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
+   above; the same of a side from b to a, to the bit. */
+static int demi_probe_crosses(const double *a, const double *b, const double *x) {
+    const int up = b[1] > x[1];
+    const double *lo = up ? a : b, *hi = up ? b : a;
+    if ((a[1] > x[1]) == up) return 0;
+    if (!((lo[0] - x[0])*(hi[1] - x[1]) - (hi[0] - x[0])*(lo[1] - x[1]) > 0)) return 0;
+    return up ? 1 : -1;
+}
+/* Crossings of one facet: of a segment by lines along x, of a triangle by those along z. */
+static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
+    const int per = j->per;
+    const double *c[3], *a, *b;
+    double lo, hi, u[3], v[3], n[3];
+    int k, from = 0, to = p->count;
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + 2 + (k < per ? k : 0)];
+    lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
+    hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
+    for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
+    for (k = 0; k < 3; k++) n[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
+    while (from < to) {
+        const int mid = from + (to - from)/2;
+        if (p->at[mid].x[1] < lo) from = mid + 1;
+        else to = mid;
+    }
+    for (; from < p->count && p->at[from].x[1] <= hi; from++) {
+        demi_probe *at = p->at + from;
+        int turn = 0;
+        for (k = 0; k < (per == 3 ? 3 : 1); k++) {
+            a = c[k];
+            b = c[(k + 1)%3];
+            turn += demi_probe_crosses(a, b, at->x);
+        }
+        if (!turn || (per == 3 && !((c[0][2] - at->x[2])*fabs(n[2]) >
+            (n[0]*(at->x[0] - c[0][0]) + n[1]*(at->x[1] - c[0][1]))*(n[2] > 0 ? 1 : -1)))) continue;
+        at->odd = !at->odd;
+        at->turn += turn;
+    }
+}
+/* Shells of the join: root[i]: the first facet of the shell that facet i is of, -1: it is open. */
+static void demi_join_shells(demi_join *j, int32_t *root) {
+    demi_side *s = j->per == 3 ? j->piece : j->side;
+    const int sides = j->per == 3 ? j->sides : 2*j->facets;
+    int i, end;
+    for (i = 0; i < j->facets; i++) root[i] = i;
+    for (i = 0; i < sides && j->per == 2; i++) {
+        const int32_t at = j->facet[5*(i/2) + 2 + i%2];
+        s[i] = demi_side_of(at, at, i/2, i%2);
+    }
+    if (j->per == 2) qsort(s, (size_t)sides, sizeof *s, demi_side_compare);
+    for (i = 1; i < sides; i++) {
+        int32_t a = s[i - 1].facet, b = s[i].facet;
+        if (s[i].lo != s[i - 1].lo || s[i].hi != s[i - 1].hi) continue;
+        while (root[a] != a) a = root[a] = root[root[a]];
+        while (root[b] != b) b = root[b] = root[root[b]];
+        root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
+    }
+    for (i = 0; i < j->facets; i++) root[i] = root[root[i]];
+    for (i = 0; i < sides; i = end) {
+        const int32_t of = s[i].facet;
+        for (end = i; end < sides && s[end].lo == s[i].lo && s[end].hi == s[i].hi;) end++;
+        if ((end - i)%2) root[root[of] >= 0 ? root[of] : of] = -1;
+    }
+    for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
+}
+/* The closed shells of this wall and those that do not move against it: meshes or profiles. */
+static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
+    double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
+    int32_t *root = 0, *next = 0;
+    demi_probes p;
+    demi_join j;
+    int i, k, ok = demi_join_begin(w, &j, w->walls[wall].group, per);
+    memset(&p, 0, sizeof p);
+    for (i = 0; i < 3*j.points && ok; i++) {
+        box[i%3] = DEMI_MIN(box[i%3], j.x[i]);
+        box[3 + i%3] = DEMI_MAX(box[3 + i%3], j.x[i]);
+    }
+    if (per == 2) { box[2] = -1e300; box[5] = 1e300; }
+    if (ok) ok = demi_probes_make(w, &p, &w->walls[wall], box);
+    if (ok && p.count) {
+        demi_join_double(&j);                   /* which points are corners */
+        ok = per == 2 || demi_join_cut(w, &j);
+        root = (int32_t *)demi_alloc(w, 2*(size_t)j.facets + 1, sizeof *root);
+    }
+    if (ok && root) {
+        next = root + j.facets;
+        demi_join_shells(&j, root);
+        for (i = 0; i < j.facets; i++) next[i] = -1;
+        for (i = j.facets - 1; i >= 0; i--) {   /* facets of a shell: a list, its root first */
+            if (root[i] < 0 || root[i] == i) continue;
+            next[i] = next[root[i]];
+            next[root[i]] = i;
+        }
+        for (i = 0; i < j.facets; i++) {
+            if (root[i] != i) continue;
+            for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
+            for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
+            if (j.facet[5*i] >= 0) demi_probes_judge(w, f, &p, j.facet[5*i], per == 3);
+        }
+    }
+    demi_free(w, root);
+    demi_probes_free(w, &p);
+    demi_join_free(w, &j);
+}
+/* A surface of revolution is closed where it ends on its axis, or where it began. */
+static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
+    const demi_wall *s = &w->walls[wall];
+    const int n = s->ring_count;
+    const dem_real *r = s->ring_radius, *h = s->ring_height;
+    const int loop = !(r[0] > r[n - 1]) && !(r[0] < r[n - 1]) && !(h[0] > h[n - 1]) &&
+        !(h[0] < h[n - 1]);
+    const double e = (double)s->extent;
+    const dem_vec3 x = s->home.position;
+    double box[6];
+    demi_probes p;
+    int i, k;
+    if (!loop && (r[0] > 0 || r[n - 1] > 0)) return;
+    box[0] = (double)x.x - e; box[1] = (double)x.y - e; box[2] = (double)x.z - e;
+    for (k = 0; k < 3; k++) box[3 + k] = box[k] + 2*e;
+    if (demi_probes_make(w, &p, s, box)) {
+        for (i = 0; i < p.count; i++) {
+            const dem_vec3 at = demi_v((dem_real)p.at[i].x[0], (dem_real)p.at[i].x[1],
+                                       (dem_real)p.at[i].x[2]);
+            const dem_vec3 own = demi_unrotate(s->home.rotation, demi_sub(at, x));
+            const double c[2] = {sqrt((double)(own.x*own.x + own.y*own.y)), (double)own.z};
+            for (k = 0; k + 1 < n; k++) {
+                const double a[2] = {(double)r[k], (double)h[k]};
+                const double b[2] = {(double)r[k + 1], (double)h[k + 1]};
+                if (demi_probe_crosses(a, b, c)) p.at[i].odd = !p.at[i].odd;
+            }
+        }
+        demi_probes_judge(w, f, &p, wall, 0);
+    }
+    demi_probes_free(w, &p);
+}
+static void demi_check_enclosed(dem_world *w, demi_findings *f) {
+    int i, k, per;
+    if (!w->facets_valid && !demi_facets_weigh(w)) return;     /* no memory: the run will say so */
+    for (i = 0; i < w->wall_count; i++) {
+        const int kind = w->walls[i].kind;
+        if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
+        for (per = 2; per <= 3; per++) {
+            for (k = 0; k < i && !demi_join_member(w, k, w->walls[i].group, per);) k++;
+            if (k == i && kind != DEMI_WALL_NONE && demi_join_member(w, i, w->walls[i].group, per))
+                demi_check_shells(w, f, i, per);
+        }
+    }
+}
+
+/* The time step that was asked for, beside what the scene bears. */
+static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const double dt = (double)w->desc.dt;
+    double limit, fastest = demi_fastest(w);
+    int i, worst = 0;
+    if (!(dt > 0) || (!(a->contact_time > 0) && !demi_impulsive(w))) return;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
+    if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
+    else if (dt > (double)a->dt_max)
+        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
+                  "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
+                  (double)a->dt_max, a->binds);
+    else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
+        demi_find(f, DEM_SEVERITY_ERROR,
+                  "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
+                  "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
+                  w->press[worst].contacts);
+    else if (dt < (double)a->dt/20)
+        demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
+                  "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
+                  (double)a->dt);
+    if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
+        demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
+                  "smallest grain in a step of %g s: they would pass through each other "
+                  "undetected; use dt = 0", fastest, fastest*dt/(double)w->effects.radius_min, dt);
+}
+/* Overlaps, over the radius, of the smallest grains of each material with their like: when they
+   meet at the speed there may be, and under the weight of all, were they stacked where they are. */
+static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
+    const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
+    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
+    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, area = 0, mass = 0;
+    const double n[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                         (double)w->desc.gravity.z};
+    demi_grades grades;
+    int i, k;
+    if (w->desc.law || demi_impulsive(w)) return;       /* nothing is known of it; no overlaps */
+    for (i = 0; i < w->bodies.count; i++) {
+        if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->bodies.pos[4*i + k], r = (double)w->bodies.pos[4*i + 3];
+            lo[k] = DEMI_MIN(lo[k], x - r);
+            hi[k] = DEMI_MAX(hi[k], x + r);
+        }
+    }
+    for (k = 0; k < 3 && g > 0 && mass > 0; k++)
+        area += fabs(n[k])/g*(hi[(k + 1)%3] - lo[(k + 1)%3])*(hi[(k + 2)%3] - lo[(k + 2)%3]);
+    demi_grades_of(w, &grades);
+    for (i = 0; i < w->material_count; i++) {
+        const double r = grades.smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r)/2 : 0;
+        double deep[2] = {0, 0}, force, kn;
+        dem_real coef[DEMI_COEFS];
+        if (!(r > 0)) continue;
+        demi_coefficients(w, i, i, r/2, m, m, 0, coef);
+        kn = (double)coef[DEMI_KN];
+        force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
+        deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
+        deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
+        for (k = 0; k < 2; k++) {
+            const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
+            if (!(deep[k] > 0.05)) continue;
+            demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
+                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s; "
+                      "%s of %.2g %s would keep it below 0.01", i + 1, r, deep[k],
+                      k ? "under a weight of " : "at ", k ? force : v, k ? "N each" : "m/s",
+                      w->materials[i].stiffness > 0 ? "a stiffness" : "a Young's modulus",
+                      more*(double)(w->materials[i].stiffness > 0 ? w->materials[i].stiffness
+                                                                  : w->materials[i].young),
+                      w->materials[i].stiffness > 0 ? "N/m" : "Pa");
+        }
+    }
+}
+
+DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
+    demi_findings f;
+    dem_advice advice;
+    if (demi_null(w, "dem_world_check", w, "world")) return 0;
+    memset(&f, 0, sizeof f);
+    f.to = findings;
+    f.room = findings && capacity > 0 ? capacity : 0;
+    demi_advise(w, &advice);
+    demi_check_motion(w, &f);
+    demi_check_radii(w, &f);
+    demi_check_digits(w, &f);
+    demi_check_materials(w, &f);
+    demi_check_walls(w, &f);
+    demi_check_outside(w, &f);
+    demi_check_enclosed(w, &f);
+    demi_check_overlaps(w, &advice, &f);
+    if (!w->bodies.count) return f.count;
+    if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {
+        demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
+        return f.count;
+    }
+    demi_check_pairs(w, &f);
+    demi_check_in_walls(w, &f);
+    demi_check_step(w, &advice, &f);
+    return f.count;
+}
+
+DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
+    static const char *const severities[] = {"note", "note", "warning", "error"};
+    dem_finding findings[16];
+    int i, n = dem_world_check(w, findings, 16);
+    for (i = 0; out && i < n && i < 16; i++)
+        fprintf(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
+    return n;
+}

@@ -1,0 +1,501 @@
+/* ---------------------------------------------------------------------------------------------
+   >>effects
+   What a scene calls for, a row each: is it asked for, has it happened, and how a copy goes without
+   it. The time of a step with and without is measured on two copies that take turns, so that what
+   the machine does, it does to both.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_EFFECT_TURNS = 41, DEMI_EFFECT_STEPS = 24 };
+/* What a row tells: its state, in words what acts or why nothing does, and what is missing. */
+typedef dem_effect_state (*demi_look_fn)(const dem_world *w, dem_effect *e);
+
+DEMI_FORMAT(2, 3) static void demi_say(dem_effect *e, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(e->text, sizeof e->text, format, arguments);
+    va_end(arguments);
+}
+DEM_INLINE int demi_met(const dem_world *w, int i, int j) {
+    return (int)(w->booked.met[DEMI_MIN(i, j)] >> DEMI_MAX(i, j) & 1);
+}
+/* Materials of which there are grains, or will be, and of which there are walls, bit by bit. */
+static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
+    int i, k;
+    *grains = *walls = 0;
+    for (i = 0; i < w->bodies.count; i++) *grains |= UINT64_C(1) << (w->bodies.material[i] - 1);
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) *grains |= UINT64_C(1) << demi_feed_material(d, k);
+    }
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
+}
+/* Of what pairs of materials have: is there any of which both can meet, and has one touched? */
+static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const dem_pair *p),
+                                        const char *what, dem_effect *e) {
+    int i, j, have = 0, possible = 0, met = 0, first = 0, second = 0;
+    uint64_t grains, walls;
+    demi_made_of(w, &grains, &walls);
+    for (i = 0; i < w->material_count; i++)
+        for (j = i; j < w->material_count; j++) {
+            const int a = (int)(grains >> i & 1), b = (int)(grains >> j & 1);
+            if (!(of(&w->pairs[i*DEMI_MATERIALS + j].given) > 0)) continue;
+            have++;
+            if (!(a && (b || walls >> j & 1)) && !(b && walls >> i & 1)) continue;
+            possible++;
+            if (demi_met(w, i, j)) { met++; continue; }
+            first = i + 1;
+            second = j + 1;
+        }
+    e->missing = possible - met;
+    if (!have) demi_say(e, "no pair of materials has it");
+    else if (!possible) demi_say(e, "%s; no two materials that can touch have it", what);
+    else if (met == possible) demi_say(e, "%s", what);
+    else if (first == second)
+        demi_say(e, "%s; material %d has not touched itself so far", what, first);
+    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first,
+                  second);
+    return !have ? DEM_EFFECT_OFF : met ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
+    demi_say(e, "%s", why);
+    return DEM_EFFECT_OFF;
+}
+static dem_real demi_any(const dem_pair *p) { (void)p; return 1; }
+static dem_real demi_rubs(const dem_pair *p) { return DEMI_MAX(p->friction, p->friction_static); }
+static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
+static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
+static dem_real demi_coheres(const dem_pair *p) { return p->cohesion; }
+
+static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
+    const char *name = demi_normal_laws[w->desc.normal_law].name;
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
+    return demi_look_pairs(w, demi_any, demi_impulsive(w) ? "impulses" : name, e);
+}
+static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
+    if (!w->desc.law) return demi_look_off(e, "desc.law is null");
+    return demi_look_pairs(w, demi_any, "replaces the built-in laws", e);
+}
+static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
+    const int law = demi_tangent_meant(w);
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rubs, "impulses", e);
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
+    if (law == DEM_TANGENT_NONE) return demi_look_off(e, "tangent_law is DEM_TANGENT_NONE");
+    return demi_look_pairs(w, demi_rubs, demi_tangent_laws[law].name, e);
+}
+static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
+    const int law = demi_rolling_meant(w);
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rolls, "impulses", e);
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
+    if (law == DEM_ROLLING_NONE) return demi_look_off(e, "rolling_law is DEM_ROLLING_NONE");
+    return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
+}
+static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_coheres, "cohesion under impulses", e);
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
+    if (!demi_normal_is(w, DEMI_BRANCHED))
+        return demi_look_off(e, "only the hysteretic normal law has it");
+    return demi_look_pairs(w, demi_sticks, "hysteretic law", e);
+}
+/* Is there a force now? The field is asked for every body that moves. */
+static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
+    int i, pushed = 0;
+    if (!w->desc.force && !w->desc.body_force)
+        return demi_look_off(e, "desc.force and desc.body_force are null");
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_body id = dem_body_id_get(w, i);
+        dem_vec3 force = demi_v(0, 0, 0), torque = force;
+        dem_body_state body;
+        if (!(w->bodies.inv_mass[i] > 0) || dem_body_get(w, id, &body) != DEM_OK) continue;
+        if (w->desc.body_force)
+            w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
+        if (w->desc.force)
+            force = demi_add(force, w->desc.force(body.position, body.velocity,
+                                                  w->bodies.pos[4*i + 3], w->bodies.mass[i],
+                                                  w->clock.time, w->desc.force_user));
+        pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
+    }
+    demi_say(e, "acts on %d of %d bodies now", pushed, w->bodies.count);
+    return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
+    const int n = w->bodies.real_count;
+    int i, k, moving = 0;
+    if (!n) return demi_look_off(e, "desc.body_reals is null");
+    if (!demi_exchanges(w) && !w->desc.body_reals_fn) {
+        demi_say(e, "%s: constant; no law gives rates (law_who), and body_reals_fn is null",
+                 w->real_names);
+        return DEM_EFFECT_IDLE;
+    }
+    for (i = 0; i < w->bodies.count; i++) {
+        for (k = 0; k < n && !(DEMI_ABS(w->bodies.rates[n*i + k]) > 0);) k++;
+        moving += k < n;
+    }
+    demi_say(e, "%s: contacts change them on %d of %d bodies now", w->real_names, moving,
+             w->bodies.count);
+    return moving || w->desc.body_reals_fn ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
+    int i, count = 0, touched = 0, some = 0;
+    for (i = 0; i < w->wall_count; i++) {
+        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
+        count++;
+        if (w->walls[i].loads.touched) touched++;
+        else if (!some) some = (int)w->walls[i].id;
+    }
+    if (!count) return demi_look_off(e, "there are none");
+    e->missing = count - touched;
+    if (touched == count) demi_say(e, "%d", count);
+    else demi_say(e, "%d; wall %d%s never touched", count, some,
+                  count - touched == 1 ? " was" : " and others were");
+    return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
+    int i, count = 0, touched = 0;
+    for (i = 0; i < w->wall_count; i++) {
+        if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].motion.kind == DEM_MOTION_FIXED)
+            continue;
+        count++;
+        touched += w->walls[i].loads.touched;
+    }
+    if (!count) return demi_look_off(e, "no wall moves");
+    e->missing = count - touched;
+    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? ""
+             : ", never touched");
+    return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+/* Does any near pair reach across a face? */
+static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
+    int d, p, k, faces = 0, across = 0;
+    for (k = 0; k < 3; k++) faces += w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+    if (!faces) return demi_look_off(e, "no boundary is periodic");
+    for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = 0; p < domain->near_shaped_end; p++) {
+            const dem_real *shift;
+            if (p >= domain->near_own && p < domain->near_cross) continue;
+            if (p >= domain->near_end && p < domain->near_shaped) continue;
+            shift = w->image_shift + w->near.image[d*w->near.stride + p];
+            across += demi_dot(demi_at(shift), demi_at(shift)) > 0;
+        }
+    }
+    if (across) demi_say(e, "along %d ax%s; %d neighbour pairs cross a face", faces,
+                         faces == 1 ? "is" : "es", across);
+    else demi_say(e, "along %d ax%s; no neighbour pair crosses a face now",
+                  faces, faces == 1 ? "is" : "es");
+    return across ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
+    if (w->effects.uniform || !w->bodies.count)
+        return demi_look_off(e, "all bodies are alike: coefficients are computed once");
+    demi_say(e, "%s", demi_many_species(w) ? "coefficients per neighbour pair"
+             : "coefficients per pair of species");
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
+    if (!w->bodies.shaped) return demi_look_off(e, "all bodies are spheres");
+    demi_say(e, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
+    if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
+    if (!w->bodies.orienting) return demi_look_off(e, "desc.orientations is 0");
+    demi_say(e, "followed because desc.orientations is 1; no force depends on them");
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_ledger(const dem_world *w, dem_effect *e) {
+    if (!w->desc.ledger) return demi_look_off(e, "desc.ledger is 0");
+    demi_say(e, "every contact reports where its energy goes");
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_feeds(const dem_world *w, dem_effect *e) {
+    uint64_t came = 0;
+    int i;
+    if (!w->feed_count) return demi_look_off(e, "there are none");
+    for (i = 0; i < w->feed_count; i++) came += demi_feed_at(w, i)->state.total;
+    demi_say(e, "%d; %llu grains so far", w->feed_count, (unsigned long long)came);
+    return came ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_outlets(const dem_world *w, dem_effect *e) {
+    uint64_t went = 0;
+    int i;
+    if (!w->outlet_count) return demi_look_off(e, "there are none");
+    for (i = 0; i < w->outlet_count; i++) went += demi_outlet_at(w, i)->state.total;
+    demi_say(e, "%d; %llu grains so far", w->outlet_count, (unsigned long long)went);
+    return went ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+
+/* --- without it --- */
+
+/* What the user's functions are asked through, by copies that ask them once, or twice, of which the
+   first answer is thrown away. */
+typedef struct demi_again { dem_world_desc desc; int times, memory; } demi_again;
+typedef void (*demi_leave_fn)(dem_world *t, demi_again *own);
+/* With what rolls: loops are written for neither, for friction, and for both. */
+static void demi_leave_friction(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.tangent_law = DEM_TANGENT_NONE;
+    t->desc.rolling_law = DEM_ROLLING_NONE;
+}
+static void demi_leave_rolling(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.rolling_law = DEM_ROLLING_NONE;
+}
+static void demi_leave_ledger(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.ledger = 0;
+}
+static void demi_leave_orientations(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.orientations = t->bodies.orienting = 0;
+}
+static void demi_leave_adhesion(dem_world *t, demi_again *own) {
+    int i, j;
+    (void)own;
+    for (i = 0; i < t->material_count; i++)
+        for (j = i; j < t->material_count; j++) {
+            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
+            p.stiffness_adhesion = p.cohesion = 0;
+            demi_pair_put(t, i, j, &p);
+        }
+}
+static void demi_leave_motions(dem_world *t, demi_again *own) {
+    dem_wall id;
+    int i;
+    (void)own;
+    /* facets will be weighed anew: in arrays of its own. A wall that has no room for them goes */
+    for (i = 0; i < t->wall_count; i++)
+        if (demi_wall_own(t, &t->walls[i]) && t->walls[i].kind != DEMI_WALL_NONE) {
+            id.id = t->walls[i].id;
+            dem_wall_motion_set(t, id, &DEM_MOTION);
+        }
+}
+static void demi_leave_walls(dem_world *t, demi_again *own) {
+    dem_wall id;
+    int i;
+    (void)own;
+    for (i = 0; i < t->wall_count; i++) {
+        id.id = t->walls[i].id;
+        if (t->walls[i].kind != DEMI_WALL_NONE) dem_wall_remove(t, id);
+    }
+}
+static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const demi_again *own = (const demi_again *)c->user;
+    dem_contact mine = *c;
+    int i;
+    mine.user = own->desc.law_user;
+    for (i = 1; i < own->times; i++) {
+        dem_real spare[DEMI_MEMORY], rates[2*DEM_BODY_REALS];
+        dem_contact_force other = *f;
+        dem_contact twin = mine;
+        memcpy(spare, memory, (size_t)own->memory*sizeof *spare);
+        if (c->who.rate_a) {
+            memset(rates, 0, sizeof rates);
+            twin.who.rate_a = rates;
+            twin.who.rate_b = rates + DEM_BODY_REALS;
+        }
+        own->desc.law(&twin, spare, &other);
+    }
+    own->desc.law(&mine, memory, f);
+}
+static dem_vec3 demi_force_again(dem_vec3 position, dem_vec3 velocity, dem_real radius,
+                                 dem_real mass, double time, void *user) {
+    const demi_again *own = (const demi_again *)user;
+    int i;
+    for (i = 1; i < own->times; i++)
+        own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
+    return own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
+}
+static void demi_body_force_again(const dem_body_state *body, dem_body id, double time,
+                                  dem_vec3 *force, dem_vec3 *torque, void *user) {
+    const demi_again *own = (const demi_again *)user;
+    int i;
+    for (i = 1; i < own->times; i++) {
+        dem_vec3 f = *force, t = *torque;
+        own->desc.body_force(body, id, time, &f, &t, own->desc.force_user);
+    }
+    own->desc.body_force(body, id, time, force, torque, own->desc.force_user);
+}
+static void demi_again_law(dem_world *t, demi_again *own) {
+    t->desc.law = demi_law_again;
+    t->desc.law_user = own;
+}
+static void demi_again_field(dem_world *t, demi_again *own) {
+    if (t->desc.force) t->desc.force = demi_force_again;
+    if (t->desc.body_force) t->desc.body_force = demi_body_force_again;
+    t->desc.force_user = own;
+}
+
+/* >>add-effect: a row, its functions above. Where nothing can be left out: 0. twice: the copies ask
+   the user's function once and twice, since nothing would do its work. */
+typedef struct demi_effect_row {
+    const char *name;
+    demi_look_fn look;
+    demi_leave_fn leave;
+    int twice;
+} demi_effect_row;
+static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
+    {"contacts",         demi_look_contacts,     0,                       0},
+    {"friction",         demi_look_friction,     demi_leave_friction,     0},
+    {"rolling friction", demi_look_rolling,      demi_leave_rolling,      0},
+    {"adhesion",         demi_look_adhesion,     demi_leave_adhesion,     0},
+    {"user-defined law", demi_look_law,          demi_again_law,          1},
+    {"force field",      demi_look_field,        demi_again_field,        1},
+    {"body_reals",       demi_look_reals,        0,                       0},
+    {"walls",            demi_look_walls,        demi_leave_walls,        0},
+    {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
+    {"periodic faces",   demi_look_periodic,     0,                       0},
+    {"unlike grains",    demi_look_unlike,       0,                       0},
+    {"shapes",           demi_look_shapes,       0,                       0},
+    {"orientations",     demi_look_orientations, demi_leave_orientations, 0},
+    {"ledger",           demi_look_ledger,       demi_leave_ledger,       0},
+    {"feeds",            demi_look_feeds,        0,                       0},
+    {"outlets",          demi_look_outlets,      0,                       0}};
+
+/* --- what it costs --- */
+
+/* A copy that goes on with the time step of now. */
+static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
+                                   demi_leave_fn leave, demi_again *own) {
+    dem_world *t = demi_twin_in_state(w, state, size);
+    if (!t) return 0;
+    demi_finish(t);
+    t->desc.dt = t->clock.dt;
+    if (leave) leave(t, own);
+    t->stage.pairs_changed = 1;
+    t->stage.dt_valid = t->stage.primed = 0;
+    return t;
+}
+static double demi_steps_time(dem_world *t, int steps, dem_result *result) {
+    const double begun = demi_clock();
+    if (*result == DEM_OK) *result = dem_world_step(t, steps);
+    return demi_clock() - begun;
+}
+static int demi_double_compare(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+/* One turn: fresh copies, a few steps for their lists and memory, then some that are timed, less
+   than a contact lasts, so that both still are the same scene. Answers the time without over that
+   with the effect; 0 when memory ran out, below 0 where a copy does not run. */
+static double demi_effect_turn(dem_world *w, const char *state, size_t size,
+                               const demi_effect_row *row, int turn) {
+    demi_again once, twice;
+    dem_world *with, *without;
+    dem_result result = DEM_OK;
+    double first, second, ratio = 0;
+    once.desc = w->desc;
+    once.memory = w->desc.law_memory;
+    once.times = 1;
+    twice = once;
+    twice.times = 2;
+    with = demi_effect_twin(w, state, size, row->twice ? row->leave : 0, &once);
+    without = with ? demi_effect_twin(w, state, size, row->leave, &twice) : 0;
+    if (without) {
+        demi_steps_time(with, DEMI_EFFECT_STEPS/4, &result);
+        demi_steps_time(without, DEMI_EFFECT_STEPS/4, &result);
+        first = demi_steps_time(turn & 1 ? with : without, DEMI_EFFECT_STEPS, &result) + 1e-9;
+        second = demi_steps_time(turn & 1 ? without : with, DEMI_EFFECT_STEPS, &result) + 1e-9;
+        ratio = result != DEM_OK ? -1 : turn & 1 ? second/first : first/second;
+        demi_twin_free(w, without);
+    }
+    if (with) demi_twin_free(w, with);
+    return ratio;
+}
+/* The median of as many turns as the budget allows, and how far medians of so many scatter, by the
+   middle half of them. 0 when memory ran out. */
+static int demi_effect_cost(dem_world *w, const char *state, size_t size,
+                            const demi_effect_row *row, double budget, dem_effect *out) {
+    double ratio[DEMI_EFFECT_TURNS];
+    const double begun = demi_clock();
+    int n = 0;
+    while (n < 5 || (n < DEMI_EFFECT_TURNS && demi_clock() - begun < budget)) {
+        ratio[n] = demi_effect_turn(w, state, size, row, n);
+        if (!(ratio[n] > 0)) return ratio[n] < 0;
+        n++;
+    }
+    qsort(ratio, (size_t)n, sizeof *ratio, demi_double_compare);
+    out->measured = 1;
+    out->share = (row->twice ? -1 : 1)*(1 - ratio[n/2]);
+    /* the middle half of a normal law is 1.35 standard deviations wide; a median has 1.25 times
+       the error of a mean */
+    out->error = (ratio[3*n/4] - ratio[n/4])/1.35*1.25/sqrt((double)n);
+    return 1;
+}
+/* States alone. look: a copy of the world, in which what has touched and which laws act may be
+   worked out anew. */
+static void demi_effects_look(dem_world *look, dem_effect *out) {
+    int k;
+    if (look->stage.list_valid) demi_met_look(look, look->booked.met);
+    else demi_effects(look);
+    memset(out, 0, DEM_EFFECTS*sizeof *out);
+    for (k = 0; k < DEM_EFFECTS; k++) {
+        out[k].name = demi_effect_rows[k].name;
+        out[k].state = demi_effect_rows[k].look(look, &out[k]);
+        if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
+    }
+}
+static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
+    dem_result result = DEM_OK;
+    dem_world look;
+    int k, count = 0, ok = 1;
+    size_t size;
+    char *state;
+    if (budget > 0 && w->bodies.count) {
+        if (!w->facets_valid && !demi_facets_weigh(w))
+            result = demi_no_memory(w, "dem_effects_get");
+        else result = demi_dt_settle(w);        /* refused as a run would be */
+        if (result != DEM_OK) return -1;
+    }
+    look = *w;
+    demi_effects_look(&look, out);
+    for (k = 0; k < DEM_EFFECTS; k++)
+        count += out[k].state != DEM_EFFECT_OFF && demi_effect_rows[k].leave;
+    if (!(budget > 0) || !count || !w->bodies.count) return DEM_EFFECTS;
+    state = demi_state_keep(w, &size);
+    for (k = 0; k < DEM_EFFECTS && state && ok; k++)
+        if (out[k].state != DEM_EFFECT_OFF && demi_effect_rows[k].leave)
+            ok = demi_effect_cost(w, state, size, &demi_effect_rows[k], budget/count, &out[k]);
+    if (state) demi_free(w, state);
+    if (state && ok) return DEM_EFFECTS;
+    demi_no_memory(w, "dem_effects_get");
+    return -1;
+}
+DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
+    demi_calling was;
+    int count;
+    if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
+    if (!(budget >= 0) || !demi_finite_double(budget)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
+                  "finite; 0 gives only states, and 5 s are enough on a quiet machine", budget);
+        return -1;
+    }
+    if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
+    was = demi_calls(w, "dem_effects_get", 1);  /* laws and others are asked for copies of w */
+    count = demi_effects_ask(w, budget, out);
+    w->look.calling = was;
+    return count;
+}
+static void demi_effects_lines(const dem_effect *e, FILE *out) {
+    static const char *states[] = {"off", "idle", "active"};
+    int k, noisy = 0;
+    for (k = 0; k < DEM_EFFECTS; k++) {
+        char share[32] = "";
+        if (e[k].measured && !(e[k].error <= 0.1 && e[k].share >= -0.1 && e[k].share <= 1)) {
+            snprintf(share, sizeof share, "too noisy");
+            noisy++;
+        } else if (e[k].measured)
+            snprintf(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
+        fprintf(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
+    }
+    if (noisy)
+        fprintf(out, "  too noisy: other programs used the machine while %d of them %s measured; "
+                "measure again on a quiet machine, or with a larger budget\n", noisy,
+                noisy > 1 ? "were" : "was");
+}
+DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
+    dem_effect effects[DEM_EFFECTS];
+    if (demi_null_look(w, "dem_effects_print", out, "out")) return;
+    if (dem_effects_get(w, budget, effects) < 0) return;
+    fprintf(out, "effects, and the share of a step's time that each costs\n");
+    demi_effects_lines(effects, out);
+}

@@ -1,0 +1,411 @@
+/* ---------------------------------------------------------------------------------------------
+   >>world
+   Making one, taking it down, saying what it does. A world is made of its desc, of which every 0
+   is replaced by a choice; the report tells what was chosen and which effects the scene calls
+   for, by the same functions that a run asks, on a copy: a report changes nothing. Taking it
+   down frees two chains of blocks (demi_hold), so that no array can be forgotten.
+   --------------------------------------------------------------------------------------------- */
+DEM_API const char *dem_result_name_get(dem_result r) {
+    static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
+                                  "bad format", "time step too large",
+                                  "unstable", "stopped"};
+    return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
+}
+
+/* Why a desc's choices for how contacts answer, and from which gap on, are refused, or "". */
+static const char *demi_answer_error(const dem_world_desc *d) {
+    if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
+        !demi_finite(d->law_range_radii))
+        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; set "
+            "both to 0 to call the law only in contact";
+    if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
+                    d->law_range_radii > 0 || d->law_who))
+        return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
+            "they apply only to a user-defined law: set law, or leave them 0";
+    if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
+        return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
+            "the rate at which your law changes the numbers of bodies: set all four, or leave it "
+            "null";
+    if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
+        d->cone > DEM_CONE_CONVEX || (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
+        return "dem_world_create: response, cone or solver is not one of the enum values; start "
+            "from DEM_WORLD_DESC";
+    if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
+        return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
+            "library choose";
+    if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
+            "no contact time to choose it from: set a dt in which grains move by less than a "
+            "tenth of their radius, such as 1e-3 s";
+    if (d->response == DEM_RESPONSE_IMPULSES && (d->law ||
+                                                 (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
+                                                 d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but law or integrator is "
+            "set; impulses use neither: leave both 0";
+    return "";
+}
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
+    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
+        "began as DEM_WORLD_DESC";
+    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
+    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
+    int k;
+    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or above 1e15 "
+        "m/s2; check how it was computed";
+    for (k = 0; k < 3; k++) {
+        if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
+            return "dem_world_create: a boundary is not a DEM_BOUNDARY_ value; start from "
+                "DEM_WORLD_DESC";
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) ||
+                                                    !demi_bounded((double)lo[k]) ||
+                                                    !demi_bounded((double)hi[k])))
+            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
+                "below domain.hi there, or one is beyond 1e15 m; set domain";
+    }
+    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
+        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
+            "= 0: leave it open";
+    if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
+        "must be >= 0 m; 0 means 1 m";
+    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
+        "library choose";
+    if (!(d->impact_speed >= 0) || !((double)d->impact_speed <= DEMI_FARTHEST))
+        return "dem_world_create: impact_speed must be 0 to 1e15 m/s";
+    if (!(d->law_stiffness >= 0) || !((double)d->law_stiffness <= DEMI_MOST))
+        return "dem_world_create: law_stiffness must be 0 to 1e30 N/m; 0 means the stiffness of "
+            "the built-in law";
+    if (*demi_answer_error(d)) return demi_answer_error(d);
+    if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
+        return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
+            "digits and _, separated by one space, such as \"temperature charge\"; null means none";
+    if (demi_names(d->law_memory_names, d->law_memory) < 0)
+        return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
+            "letters, digits and _, separated by one space; null means memory0, memory1, ...";
+    if (!demi_names(d->body_reals, DEM_BODY_REALS) && d->body_reals_fn)
+        return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
+            "them, or leave both 0";
+#ifdef __TINYC__
+    if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 computes some float expressions "
+        "wrongly; compile with gcc or clang, or leave DEM_REAL at double";
+#endif
+    if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
+        "choose, below 0 means no skin";
+    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64, "
+        "where 0 means as many as OpenMP offers";
+    if (d->law_memory < 0 || d->law_memory > DEM_LAW_MEMORY) return "dem_world_create: law_memory "
+        "must be 0 to 16 reals";
+    if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
+        return "dem_world_create: law_vectors must be 0 to law_memory/3; increase law_memory, "
+            "which counts reals";
+    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
+        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
+        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
+        return "dem_world_create: a contact law is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
+    if ((int)d->tension < 0 || d->tension > DEM_TENSION_COMPENSATED || (int)d->convention < 0 ||
+        d->convention > DEM_CONVENTION_MILL)
+        return "dem_world_create: tension or convention is not one of the enum values; start from "
+               "DEM_WORLD_DESC";
+    if ((int)d->friction_load < 0 || d->friction_load > DEM_LOAD_MAGNITUDE || (int)d->slider < 0 ||
+        d->slider > DEM_SLIDER_REMAINDER)
+        return "dem_world_create: friction_load or slider is not one of the enum values; start "
+               "from DEM_WORLD_DESC";
+    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
+        (int)d->search >= DEMI_SEARCHES)
+        return "dem_world_create: integrator or search is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
+    if ((int)d->rotation < 0 || d->rotation > DEM_ROTATION_NO_SQUISH ||
+        (int)d->ellipsoid_overlap < 0 || d->ellipsoid_overlap > DEM_OVERLAP_NORMAL ||
+        (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_CLUSTER_CONTACTS_SEPARATE)
+        return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is not one of "
+            "the enum values; start from DEM_WORLD_DESC";
+    if (!d->allocator.alloc_fn != !d->allocator.free_fn)
+        return "dem_world_create: the allocator has only one of alloc_fn and free_fn; give both "
+            "or neither";
+    return "";
+}
+
+DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
+                                            size_t real_size) {
+    dem_world *w;
+    if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
+        *dem_world_create_error_get(desc)) return 0;
+    w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
+    if (!w) return 0;
+    memset(w, 0, sizeof *w);
+    w->desc = w->asked = *desc;
+    demi_names_own(w, desc);
+    w->bytes = sizeof *w;
+    if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
+    if (w->desc.planar) w->desc.gravity.z = 0;
+    if (demi_impulsive(w)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
+    /* until bodies are there to decide */
+    if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
+    if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
+    w->bodies.slot_free = w->bodies.slot_pending = -1;
+    w->stage.synced = 1;
+    w->bodies.orienting = desc->orientations != 0;
+    w->bodies.backward = demi_integrator_of(w)->backward;
+    w->bodies.booked = desc->ledger && demi_integrator_of(w)->predicts;
+    w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                      sizeof(demi_pair));
+    w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
+    w->cross_incoming_start = (int *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
+    if (!w->pairs || !w->domains || !w->cross_incoming_start) {
+        dem_world_destroy(w);
+        return 0;
+    }
+    return w;
+}
+
+DEM_API void dem_world_destroy(dem_world *w) {
+    dem_allocator allocator;
+    int chain;
+    if (demi_null(w, "dem_world_destroy", w, "world")) return;
+    if (w->look.under_way) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_destroy: called from the function of an "
+                  "output (dem_output_add) while the world runs; return 1 from that function to "
+                  "stop the run, then destroy the world");
+        return;
+    }
+    for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
+    allocator = w->desc.allocator;
+    demi_raw_free(&allocator, w, sizeof *w);
+}
+
+DEM_API const char *dem_world_error_get(const dem_world *w) {
+    if (!w) return "dem_world_create: the world is null, because dem_world_create failed; "
+        "dem_world_create_error_get(desc) says why";
+    ((dem_world *)w)->refused = 0;              /* somebody looks */
+    return w->error;
+}
+DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
+    if (!w) return DEM_WORLD_DESC;
+    dem_world_desc d = w->desc;
+    if (w->clock.dt > 0) d.dt = w->clock.dt;
+    d.skin = (dem_real)w->margin.skin;
+    return d;
+}
+
+/* How many levels there are, of which radii, and why. */
+static void demi_levels_report(const dem_world *w, FILE *out) {
+    const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
+    int i;
+    if (w->desc.search == DEM_SEARCH_HIERARCHICAL && w->levels.count) {
+        fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
+                w->levels.count == 1 ? "" : "s",
+                (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
+        for (i = 0; i < w->levels.count; i++)
+            fprintf(out, "%s %.3g m (%d)", i ? "," : "", w->levels.level[i].radius,
+                    w->levels.level[i].count);
+        fprintf(out, "\n");
+    }
+    if (w->levels.tests[0] > 0)
+        fprintf(out, "           %s: about %.3g tests per body and search with levels, %.3g with "
+                "one grid\n", auto_ ? "chosen" : "levels or one grid", w->levels.tests[1],
+                w->levels.tests[0]);
+}
+
+static int demi_kept_total(const dem_world *w) {
+    int d, n = 0;
+    for (d = 0; d < w->domain_count; d++) n += w->domains[d].kept;
+    return n;
+}
+/* What a law remembers, in words. */
+static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) {
+    text[0] = 0;
+    if (row->memory)
+        snprintf(text, 64, " (%d bytes of memory per neighbour pair)",
+                 row->memory*(int)sizeof(dem_real));
+    return text;
+}
+/* The laws in force. Of a law of the user's own only what it was given is known. */
+static void demi_laws_report(const dem_world *w, FILE *out) {
+    static const char *loads[] = {"the normal force", "the elastic part of the normal force",
+                                  "the magnitude of the normal force"};
+    static const char *sliders[] = {"spring and dashpot share this limit",
+                                    "the spring alone takes this limit",
+                                    "the spring takes what the dashpot leaves"};
+    const int load = w->desc.tension != DEM_TENSION_ALLOWED ? DEM_LOAD_REPULSIVE
+        : (int)w->desc.friction_load;           /* nothing pulls there */
+    const demi_laws *laws = &w->laws;
+    char text[64];
+    const char *unused = "";
+#ifdef DEM_LAW
+    unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
+#endif
+    if (demi_impulsive(w)) {
+        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
+                "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
+                "tolerance",
+                w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
+                w->margin.reach, w->booked.sweeps, w->booked.residual,
+                (unsigned long long)w->booked.unsolved);
+        if (w->solver.limited)
+            fprintf(out, "; in the last of them %d contacts were at their friction limit",
+                    w->solver.limited);
+        fputc('\n', out);
+        return;
+    }
+    if (w->desc.law) {
+        fprintf(out, "effects    normal, tangential, rolling: user-defined law; spins and torques "
+                "are followed; %d reals of memory per contact\n", w->desc.law_memory);
+        if (w->margin.reach > 0)
+            fprintf(out, "           called for gaps below %.3g m, in contact or not\n",
+                    w->margin.reach);
+#ifdef DEM_LAW
+        if (w->desc.law != DEM_LAW)
+            fprintf(out, "           DEM_LAW names another law than desc.law, which is called by "
+                    "pointer: slower\n");
+        else if (w->desc.law_who)
+            fprintf(out, "           named by DEM_LAW, but law_who is set: called contact by "
+                    "contact, slower\n");
+#endif
+        return;
+    }
+    fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
+            w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
+            : w->desc.tension == DEM_TENSION_COMPENSATED ? ", no tension" : "",
+            demi_law_memory_text(laws->normal, text), unused);
+    fprintf(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
+            ? demi_law_memory_text(laws->tangent, text)
+            : " (no friction in any pair: no spin, no torque, no memory)");
+    if (laws->tangent->law)
+        fprintf(out, "           friction is limited to mu times %s; %s\n", loads[load],
+                laws->tangent->memory ? sliders[w->desc.slider] : "there is only a dashpot");
+    fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
+            demi_law_memory_text(laws->rolling, text));
+}
+/* A line about bodies that turn, where there are any. */
+static void demi_shapes_report(const dem_world *w, FILE *out) {
+    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
+    static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
+    if (w->bodies.shaped)
+        fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
+                "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
+                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
+                w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
+                    : "are separate",
+                w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
+    else if (w->bodies.orienting)
+        fprintf(out, "           orientations of spheres are followed, because desc.orientations "
+                "is 1\n");
+}
+/* What each wall bears, and what came in and went out. */
+static void demi_flows_report(const dem_world *w, FILE *out) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const dem_wall_loads *ch = &w->walls[i].loads;
+        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
+        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
+                "power %.4g W\n", (int)w->walls[i].id,
+                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
+                (double)ch->torque_axial,
+                (double)ch->power);
+    }
+    for (i = 0; i < w->joint_count; i++) {
+        const dem_joint_state *j = &w->joints[i].state;
+        if (!demi_joint_alive(w, w->joints + i)) continue;
+        fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; gap %.3g "
+                "m\n", (int)w->joints[i].id, (double)demi_length(j->force),
+                (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
+                (double)j->gap);
+    }
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_state *f = &demi_feed_at(w, i)->state;
+        fprintf(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
+                (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
+                f->done ? "; done" : "");
+    }
+    for (i = 0; i < w->outlet_count; i++) {
+        const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
+        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s, of them wanted %llu, %.6g kg\n", i + 1,
+                (unsigned long long)o->total, o->total_mass,
+                demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed",
+                (unsigned long long)o->sorted, o->sorted_mass);
+    }
+}
+/* The account of energy; a residual that is not small says that the step is too large. */
+static void demi_ledger_report(const dem_world *w, FILE *out) {
+    const dem_ledger l = dem_ledger_get(w);
+    fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
+            "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
+            "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n",
+            l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
+            l.normal, l.slide, l.tangent, l.rolling);
+    if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
+        fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
+                "force->energy\n", l.unknown);
+    else
+        fprintf(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
+                l.throughput > 0 ? l.residual/l.throughput : 0);
+}
+/* What was asked for and has not happened. */
+static void demi_idle_report(dem_world *look, FILE *out) {
+    dem_effect e[DEM_EFFECTS];
+    int k;
+    demi_effects_look(look, e);
+    for (k = 0; k < DEM_EFFECTS; k++)
+        if (e[k].missing)
+            fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
+}
+static void demi_report(const dem_world *world, FILE *out) {
+    dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
+    const dem_counters c = dem_counters_get(w);
+    const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
+    dem_advice a;
+    if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
+    demi_advise(w, &a);
+    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
+            DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
+            DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? ""
+            : "s", c.domains,
+            c.domains == 1 ? "" : "s", (double)c.memory/1e6);
+    fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
+            "+ %llu left\n", w->bodies.count,
+            (double)w->effects.radius_min, (double)w->effects.radius_max,
+                (unsigned long long)w->bodies.balance.inserted,
+            (unsigned long long)w->bodies.balance.present,
+                (unsigned long long)w->bodies.balance.removed,
+            (unsigned long long)w->bodies.balance.left);
+    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
+            (unsigned long long)w->clock.steps, (double)w->clock.dt,
+            demi_integrator_of(w)->name,
+            demi_integrator_of(w)->order);
+    if (!demi_impulsive(w))
+        fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
+                "bound by %s\n", (double)a.contact_time,
+                w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
+                demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
+    demi_held_report(w, out);
+    fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
+            "candidates, %.2f contacts\n",
+            demi_searches[w->desc.search].name, w->margin.skin,
+                (unsigned long long)w->clock.rebuilds,
+                w->clock.rebuilds
+            ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
+            per*c.candidates, per*c.contacts);
+    demi_levels_report(w, out);
+    demi_laws_report(w, out);
+    demi_shapes_report(w, out);
+    fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
+            w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
+                ? "differ (coefficients per neighbour pair)"
+                : "of few species (coefficients per pair of species)", w->wall_count,
+            w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
+            demi_kernel_choose(w));
+    demi_idle_report(w, out);
+    fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
+            w->booked.overlap_max > 0.05 ? "  (above 0.05: use a stiffer material or lower speeds)"
+                : "");
+    dem_pairs_print(w, out);
+    demi_flows_report(w, out);
+    if (w->desc.ledger) demi_ledger_report(w, out);
+}
+DEM_API void dem_world_report(const dem_world *w, FILE *out) {
+    demi_calling was;
+    if (demi_null_look(w, "dem_world_report", out, "out")) return;
+    was = demi_look_calls(w, "dem_world_report");
+    demi_report(w, out);
+    demi_look_called(w, was);
+}

@@ -1,0 +1,735 @@
+/* ---------------------------------------------------------------------------------------------
+   >>advice
+   Which time step a scene bears: contact times and stable steps of the pairs that may meet, of the
+   contacts that are there, of spins and speeds; what dt = 0 chooses and what is refused by name.
+   Reads everything, writes only dt and room of its own.
+   --------------------------------------------------------------------------------------------- */
+
+/* m/s, how fast a wall's surface will move, whether it has begun to or not; of a motion that is the
+   user's own, how fast it does now. */
+static double demi_motion_speed(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    const double far = (double)DEMI_MAX(wall->extent, wall->radius);
+    dem_vec3 spin;
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: return 0;
+    case DEM_MOTION_TRANSLATING: return (double)demi_length(m->velocity);
+    case DEM_MOTION_ROTATING:
+        spin = demi_scale(demi_unit(m->axis), m->speed);
+        return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
+               (double)demi_length(spin)*far;
+    case DEM_MOTION_OSCILLATING:
+        return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
+               fabs((double)m->amplitude);
+    case DEM_MOTION_TABLE: {
+        const double end = m->table[m->table_count - 1].time;
+        const int looks = 8*m->table_count;
+        double most = 0;
+        dem_pose p;
+        int k;
+        for (k = 0; k <= looks; k++) {
+            demi_wall_pose_at(wall, m->start + end*k/looks, &p);
+            most = DEMI_MAX(most, (double)demi_length(p.velocity) +
+                            (double)demi_length(p.spin)*far);
+        }
+        return most;
+    }
+    default: break;
+    }
+    return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
+}
+/* Impact speed to reckon with: given, or the largest of what grains do now, what walls will do and
+   what gravity can make of the height there is. */
+static double demi_speed_estimate(const dem_world *w) {
+    double g = (double)demi_length(w->desc.gravity), speed = 0, lo = 1e300, hi = -1e300;
+    dem_vec3 down = g > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
+    int i, k;
+    if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
+        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+        const double r = (double)w->bodies.pos[4*i + 3];
+        speed = DEMI_MAX(speed, (double)demi_length(v));
+        lo = DEMI_MIN(lo, h - r);
+        hi = DEMI_MAX(hi, h + r);
+    }
+    for (i = 0; i < w->feed_count; i++) {       /* grains that are to come */
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < 2; k++) {
+            const double h = (double)demi_dot(k ? d->box.hi : d->box.lo, down);
+            lo = DEMI_MIN(lo, h);
+            hi = DEMI_MAX(hi, h);
+        }
+        speed = DEMI_MAX(speed, (double)demi_length(d->velocity) + 1.7320508*(double)d->spread);
+    }
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        speed = DEMI_MAX(speed, demi_motion_speed(wall));
+        if (demi_wall_is(wall, DEMI_FLAT) || (wall->vertex_count &&
+                                              !demi_wall_is(wall, DEMI_DRAWN))) {
+            const int n = DEMI_MAX(wall->vertex_count, 1);
+            for (k = 0; k < n; k++) {
+                const dem_vec3 p = !wall->vertex_count ? wall->pose.position :
+                    demi_add(wall->pose.position, demi_rotate(wall->pose.rotation,
+                                                            demi_at(wall->vertices + 3*k)));
+                hi = DEMI_MAX(hi, (double)demi_dot(p, down));
+            }
+        } else hi = DEMI_MAX(hi, (double)demi_dot(wall->pose.position, down) +
+                             (double)DEMI_MAX(wall->radius, wall->extent));
+    }
+    if (g > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*g*(hi - lo)));
+    return DEMI_MAX(speed, 1e-3);
+}
+
+/* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
+   one as light as a contact may find the body at worst; for Hertz, whose time goes with
+   (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
+static double demi_advise_shape(const dem_world *w, const demi_shape *shape, double equal) {
+    const double scale = equal/(double)shape->equal, r = equal*demi_pow(shape->light, 1.0/3);
+    const double sharp = r/((double)shape->blunt*scale);
+    return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*demi_pow(sharp, 1.0/6) : r;
+}
+static double demi_advise_radius(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    const double r = (double)w->bodies.pos[4*body + 3];
+    return shape ? demi_advise_shape(w, shape, (double)shape->equal*(r/(double)shape->radius)) : r;
+}
+/* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
+   velocities: omega2 dt^2/4 + rate dt = 1, s. (For the other integrators about the same.) */
+static double demi_dt_stable(double omega2, double rate) {
+    return 2/(rate + sqrt(rate*rate + omega2) + 1e-300);
+}
+/* How stiff and how damped one contact is at an overlap, for small motions: N/m and N s/m, rolling
+   N m and N m s. */
+typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
+/* Slopes of force against way, and of damping against speed, at an overlap: what the stability of a
+   step hangs on. Of a law of the user's own, what desc.law_stiffness says. */
+static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef, double m_eff,
+                                        double overlap) {
+    const double root = sqrt(overlap), r = (double)coef[DEMI_R_EFF];
+    const double arm = (double)coef[DEMI_MU_ROLL]*r;
+    demi_stiffness s;
+    s.k = (double)coef[DEMI_KN];
+    s.kt = (double)coef[DEMI_KT]; s.c = (double)coef[DEMI_CN]; s.ct = (double)coef[DEMI_CT];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) {
+        s.k *= 1.5*root; s.kt *= root;
+        s.c *= sqrt(root); s.ct *= sqrt(root);
+    }
+    s.kr = s.cr = 0;
+    if (demi_rolling_laws[demi_rolling_meant(w)].traits & DEMI_SPRUNG) {
+        s.kr = 2.25*s.k*arm*arm;
+        s.cr = 0.6*sqrt(s.kr*1.4*m_eff*r*r);
+    }
+    if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
+    if (w->desc.tangent_law == DEM_TANGENT_NONE || !(coef[DEMI_MU_STATIC] > 0)) s.kt = s.ct = 0;
+    if (w->desc.law) {
+        memset(&s, 0, sizeof s);
+        s.k = (double)w->desc.law_stiffness;
+    }
+    return s;
+}
+/* Of one contact to come, of spheres that meet at a speed: at its deepest. */
+static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, double m_eff,
+                                 double speed) {
+    const double deep = demi_pow(5*m_eff*speed*speed/(4*(double)coef[DEMI_KN]), 0.4);
+    const demi_stiffness s = demi_stiffness_of(w, coef, m_eff, deep);
+    const double I = 0.4*m_eff*(double)coef[DEMI_R_EFF]*(double)coef[DEMI_R_EFF];
+    const double slide = 3.5*s.kt/m_eff + s.kr/I;
+    return demi_dt_stable(DEMI_MAX(s.k/m_eff, slide), DEMI_MAX(s.c/m_eff, 3.5*s.ct/m_eff + s.cr/I));
+}
+/* What each material's grains are: those there are, and those that feeds will bring. */
+typedef struct demi_grades {
+    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m: moving; largest that is fixed */
+    int many[DEMI_MATERIALS];                              /* that move, or more of their like */
+} demi_grades;
+/* Feeds count as if two grains of each class were there already. */
+static void demi_grades_of(const dem_world *w, demi_grades *g) {
+    int i, j;
+    memset(g, 0, sizeof *g);
+    for (i = 0; i < w->bodies.count; i++) {
+        const int m = w->bodies.material[i] - 1;
+        const double r = demi_advise_radius(w, i);
+        if (w->bodies.inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], r); continue; }
+        if (!g->many[m]++ || r < g->smallest[m]) g->smallest[m] = r;
+    }
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (j = 0; j < d->class_count; j++) {
+            const int m = demi_feed_material(d, j);
+            const double r = d->shapes[j].id
+                ? demi_advise_shape(w, &w->shapes[d->shapes[j].id - 1], (double)d->radius[j])
+                : (double)d->radius[j];
+            if (!g->many[m] || r < g->smallest[m]) g->smallest[m] = r;
+            g->many[m] += 2;
+        }
+    }
+}
+/* The contact that lasts shortest, of those looked at so far, and the least stable step. */
+typedef struct demi_shortest {
+    double time, limit, radius, partner;       /* s, s, m, m */
+    int material, other, wall;                 /* indices; wall: 1 + index, 0: none */
+} demi_shortest;
+/* Smallest grains of material i with one kind of partner: material `other` (fixed or not), wall. */
+static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, int other, int fixed,
+                             int wall, double speed, demi_shortest *s) {
+    const double r = g->smallest[i], m = demi_sphere_mass(w, i, r);
+    double m_eff = m, r_eff = r, partner = 0, t;
+    dem_real coef[DEMI_COEFS];
+    if (wall < 0) {
+        partner = fixed ? g->peg[other] : g->smallest[other];
+        if (!(partner > 0)) return;
+        if (!fixed) m_eff = 1/(1/m + 1/demi_sphere_mass(w, other, partner));
+        r_eff = r*partner/(r + partner);
+    }
+    demi_coefficients(w, i, other, r_eff, m_eff, m_eff, wall >= 0, coef);
+    if (w->desc.law && w->desc.law_stiffness > 0)
+        t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
+    else {
+        t = demi_contact_time(w, coef, m_eff, speed);
+        s->limit = DEMI_MIN(s->limit, demi_dt_of_contact(w, coef, m_eff, speed));
+    }
+    if (t >= s->time) return;
+    s->time = t > 1e-37 ? t : 1e-37;            /* 0 would mean that there is none */
+    s->radius = r;
+    s->partner = partner;
+    s->material = i;
+    s->other = other;
+    s->wall = wall < 0 ? 0 : w->walls[wall].id;
+}
+/* pi r sqrt(rho/G)/(.1631 nu + .8766), the time a surface wave takes over the smallest grain. */
+static double demi_rayleigh(const dem_material_desc *d, double r) {
+    const double nu = (double)d->poisson, G = (double)d->young/(2*(1 + nu));
+    return G > 0 ? DEMI_PI*r*sqrt((double)d->density/G)/(0.1631*nu + 0.8766) : 1e300;
+}
+/* What sets dt_max: a share of the contact time, or stability where that is smaller. */
+static const char *demi_dt_limit(const dem_advice *a) {
+    return (double)a->dt_max < 0.0499*(double)a->contact_time
+        ? "the stability limit of dashpots and rolling" : "t_c/20";
+}
+/* Shortest contact among all material pairs and walls there are, for their smallest grains. */
+static void demi_advise(const dem_world *w, dem_advice *out) {
+    const double speed = demi_speed_estimate(w);
+    double rayleigh = 1e300;
+    demi_shortest s = {1e300, 1e300, 0, 0, -1, -1, 0};
+    demi_grades g;
+    int i, j;
+    demi_grades_of(w, &g);
+    for (i = 0; i < w->material_count; i++) {
+        if (!(g.smallest[i] > 0)) continue;
+        rayleigh = DEMI_MIN(rayleigh, demi_rayleigh(&w->materials[i], g.smallest[i]));
+        for (j = 0; j < w->material_count; j++)
+            if (j != i || g.many[i] > 1) demi_advise_pair(w, &g, i, j, 0, -1, speed, &s);
+        for (j = 0; j < w->material_count; j++) demi_advise_pair(w, &g, i, j, 1, -1, speed, &s);
+        for (j = 0; j < w->wall_count; j++)
+            if (w->walls[j].kind != DEMI_WALL_NONE)
+                demi_advise_pair(w, &g, i, w->walls[j].material, 0, j, speed, &s);
+    }
+    for (i = 0; i < w->material_count && s.material < 0; i++)     /* one grain alone: its like */
+        if (g.smallest[i] > 0) {
+            const double limit = s.limit;
+            demi_advise_pair(w, &g, i, i, 0, -1, speed, &s);
+            s.limit = limit;                    /* which is not there to be unstable with */
+        }
+    memset(out, 0, sizeof *out);
+    out->speed = (dem_real)speed;
+    out->rayleigh = (dem_real)(rayleigh < 1e300 ? rayleigh : 0);
+    if (s.material < 0) {
+        snprintf(out->binds, sizeof out->binds, "no grain that moves");
+        s.time = 0;
+    } else if (s.wall)
+        snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of "
+                 "material %d, at %.3g m/s", s.material + 1, s.radius, s.wall, s.other + 1, speed);
+    else
+        snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, "
+                 "at %.3g m/s", s.material + 1, s.other + 1, s.radius, s.partner, speed);
+    out->contact_time = (dem_real)s.time;
+    out->dt = (dem_real)DEMI_MIN(s.time/50, s.limit/5);
+    out->dt_max = (dem_real)DEMI_MIN(s.time/20, s.limit);
+    if (s.time > 0 && s.limit < s.time/20) {
+        const size_t n = strlen(out->binds);
+        snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
+                 "dashpot, friction or rolling", s.limit);
+    }
+}
+
+/* --- contacts that are there: pressed, and many to a grain. Small motions x about a state, with
+       stiffness K, damping C and mass M, first grow by changing sign from step to step. Velocity
+       Verlet with predicted velocities keeps them from it while
+           dt^2/4 K + dt C < M    (no eigenvector of M^-1 times the left side reaches 1)
+       A contact stores k (n.(xa - xb))^2/2 <= k [(1 + Ra/Rb) (n.xa)^2 + (1 + Rb/Ra) (n.xb)^2]/2.
+       So it holds for the whole scene where it holds for each body, held by its own contacts alone,
+       each counted f = 1 + Ra/Rb times (once where the partner does not move): six rows,
+           A = sum f [k n n + kt (1 - n n)]/m,  B = sum f [kt l^2 + kr] (1 - n n)/I,
+           Q = sum f kt l [n x]/sqrt(m I),  n outwards; l from the centre; damping likewise
+       Contacts with walls count by their weights, as their forces do (>>facets: those of one place
+       on a curved surface add up to one, some are negative). The bound is exact for close packings
+       that shear and spin, and for one body between walls. A cheap bound per body comes first (the
+       largest of each contact, summed); few bodies need the matrices. Spheres only. Checked by "a
+       step just inside the limit of pressed contacts is stable; one 5 % outside oscillates". --- */
+typedef struct demi_press {
+    double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
+    double contacts;               /* how many, by their weights */
+    double relax;                  /* 1/s: how fast its own numbers follow its partners' */
+    int32_t whole;                 /* 1 + index of its matrices, 0: none needed */
+    dem_real deepest;              /* of its radius */
+} demi_press;
+typedef struct demi_press_whole {  /* per mass, inertia, root of both */
+    double A[2][6], B[2][6], q[2][3];          /* 0: stiffness, 1: damping */
+} demi_press_whole;
+typedef struct demi_pressed {
+    demi_stiffness s;
+    dem_vec3 n;
+    dem_real overlap, weight;
+} demi_pressed;
+/* The cheap bound: stiffnesses of all contacts of a body added as if they were along one line;
+   those that take away are left out. */
+static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, double f,
+                           double arm, demi_press *p) {
+    const double m = (double)w->bodies.mass[body];
+    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    if (w->bodies.inv_mass[body] <= 0) return;
+    p->contacts += (double)c->weight;
+    if (!(c->weight > 0)) return;
+    p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
+    p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
+    p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
+}
+/* The close one, where the cheap bound is not enough: the matrices of stiffness and damping of the
+   body, for its way (A), its turning (B), and how one asks for the other (Q, by q: [n x]). */
+static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, double f,
+                                 double arm, demi_press_whole *p) {
+    const double m = (double)w->bodies.mass[body];
+    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    const double n[3] = {(double)c->n.x, (double)c->n.y, (double)c->n.z};
+    int i, j, e = 0, d;
+    if (w->bodies.inv_mass[body] <= 0) return;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++, e++)
+            for (d = 0; d < 2; d++) {
+                const double nn = n[i]*n[j], across = (i == j ? 1 : 0) - nn;
+                const double k = d ? c->s.c : c->s.k, kt = d ? c->s.ct : c->s.kt;
+                p->A[d][e] += f*(k*nn + kt*across)/m;
+                p->B[d][e] += f*(kt*arm*arm + (d ? c->s.cr : c->s.kr))*across/I;
+            }
+    for (d = 0; d < 2; d++)
+        for (i = 0; i < 3; i++) p->q[d][i] += f*(d ? c->s.ct : c->s.kt)*arm*n[i]/sqrt(m*I);
+}
+/* Is a step stable for one body? 1 less the matrix above must have a Cholesky factor L. */
+static int demi_press_stable(const demi_press_whole *p, double dt) {
+    static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const double by[2] = {dt*dt/4, dt};
+    double L[6][6];
+    int i, j, k, d;
+    for (i = 0; i < 6; i++)
+        for (j = 0; j <= i; j++) {
+            double s = i == j ? 1 : 0;
+            const int e = at[i%3][j%3];
+            for (d = 0; d < 2; d++) {
+                if (i/3 == j/3) s -= by[d]*(i < 3 ? p->A[d][e] : p->B[d][e]);
+                else if (i%3 != j) s -= by[d]*p->q[d][3 - i%3 - j]*((i - j)%3 == 1 ? 1 : -1);
+            }
+            for (k = 0; k < j; k++) s -= L[i][k]*L[j][k];
+            if (i == j && !(s > 0)) return 0;
+            L[i][j] = i == j ? sqrt(s) : s/L[j][j];
+        }
+    return 1;
+}
+/* The largest stable step of one body, dt at most. */
+static double demi_press_step(const demi_press_whole *p, double dt) {
+    double lo = 0, hi = dt;
+    int k;
+    if (demi_press_stable(p, dt)) return dt;
+    for (k = 0; k < 40; k++) {
+        const double middle = (lo + hi)/2;
+        if (demi_press_stable(p, middle)) lo = middle; else hi = middle;
+    }
+    return lo;
+}
+/* Asks the user's law how fast one contact changes the numbers of body a and of body b (-1: wall),
+   each counted `weight` times. */
+static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_contact *c,
+                             double weight, demi_press *press) {
+    dem_real rates[2] = {0, 0};
+    c->user = w->desc.law_user;
+    c->dt = w->clock.dt;
+    c->material_a = w->bodies.material[a];
+    c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[wall].material + 1;
+    c->wall = b >= 0 ? 0 : w->walls[wall].id;
+    c->who.a = dem_body_id_get(w, a);
+    if (b >= 0) c->who.b = dem_body_id_get(w, b);
+    c->who.radius_a = w->bodies.pos[4*a + 3];
+    c->who.radius_b = b >= 0 ? w->bodies.pos[4*b + 3] : 0;
+    c->who.mass_a = w->bodies.mass[a];
+    c->who.mass_b = b >= 0 ? w->bodies.mass[b] : 0;
+    c->who.time = w->clock.time;
+    c->who.reals_a = w->bodies.reals + w->bodies.real_count*a;
+    c->who.reals_b = b >= 0 ? w->bodies.reals + w->bodies.real_count*b : w->walls[wall].reals;
+    c->m_eff = b < 0 ? c->who.mass_a : 1/(1/c->who.mass_a + 1/c->who.mass_b);
+    w->desc.law_rate(c, rates);
+    press[a].relax += weight*(double)rates[0];
+    if (b >= 0) press[b].relax += weight*(double)rates[1];
+}
+/* All contacts there are, of every shape, asked so. */
+static void demi_press_rates(const dem_world *w, demi_press *press) {
+    dem_contact c;
+    int d, p;
+    for (d = 0; d < w->domain_count && w->desc.law_rate; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+            const demi_span span = demi_span_of(w, d, p, 1);
+            const dem_real *x = w->bodies.pos + 4*span.a[0], *y = w->bodies.pos + 4*span.b[0];
+            const dem_vec3 gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
+                                          demi_at(w->image_shift + span.image[0]));
+            const dem_real l = demi_length(gap), sum = x[3] + y[3];
+            memset(&c, 0, sizeof c);
+            c.range = demi_range(w, sum);
+            c.overlap = sum - l;
+            c.normal = demi_scale(gap, 1/DEMI_MAX(l, DEMI_TINY));
+            c.r_eff = x[3]*y[3]/sum;
+            if (c.overlap > -c.range) demi_press_relax(w, span.a[0], span.b[0], -1, &c, 1, press);
+        }
+        for (p = 0; p < domain->kept; p++) {
+            const demi_kept *k = demi_kept_of(w, d) + p;
+            memset(&c, 0, sizeof c);
+            c.range = w->margin.reach > 0 ? demi_range(w, demi_kept_radii(w, k)) : 0;
+            c.overlap = k->overlap;
+            c.normal = k->normal;
+            c.r_eff = k->r_eff;
+            if (c.overlap > -c.range)
+                demi_press_relax(w, k->a, k->b, k->wall, &c, (double)k->share, press);
+        }
+    }
+}
+/* The largest step at which a body's own numbers are stable, dt at most. */
+static double demi_press_rate_step(const demi_press *p, double dt) {
+    return p->relax*dt > 1 ? 1/p->relax : dt;
+}
+/* All contacts of spheres with each other and with walls. */
+static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_whole *whole) {
+    int d, p, side;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+            const demi_span span = demi_span_of(w, d, p, 1);
+            const int a = span.a[0], b = span.b[0];
+            const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+            const dem_vec3 gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
+                                          demi_at(w->image_shift + span.image[0]));
+            const dem_real l = demi_length(gap), sum = x[3] + y[3];
+            const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
+            dem_real coef[DEMI_PAIR_COLUMNS];
+            demi_pressed c;
+            if (!(l < sum) || !(l > 0)) continue;
+            if (whole && !press[a].whole && !press[b].whole) continue;
+            demi_span_coefs(w, &span, 0, coef);
+            c.s = demi_stiffness_of(w, coef, (double)coef[DEMI_M_EFF], (double)(sum - l));
+            c.overlap = sum - l;
+            c.weight = 1;
+            for (side = 0; side < 2; side++) {
+                const int i = side ? b : a;
+                const double arm = (double)(l*(side ? y[3] : x[3])/sum);
+                const double f = both ? (double)(sum/(side ? x[3] : y[3])) : 1;
+                c.n = demi_scale(gap, (side ? -1 : 1)/l);
+                if (!whole) demi_press_add(w, i, &c, f, arm, press + i);
+                else if (press[i].whole)
+                    demi_press_add_whole(w, i, &c, f, arm, whole + press[i].whole - 1);
+            }
+        }
+        for (p = 0; p < domain->kept; p++) {
+            const demi_kept *k = demi_kept_of(w, d) + p;
+            const int i = k->a;
+            const double arm = (double)w->bodies.pos[4*i + 3];
+            dem_real coef[DEMI_COEFS], root[2];
+            demi_pressed c;
+            if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||
+                (whole && !press[i].whole)) continue;
+            demi_kept_coefs(w, k, coef, root);
+            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[i]);
+            coef[DEMI_CT] += root[1]*DEMI_SQRT(w->bodies.mass[i]);
+            c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);
+            c.s.k *= (double)k->lift;
+            c.s.c *= (double)k->share;
+            c.s.kt *= (double)k->grip; c.s.ct *= (double)k->grip;
+            c.s.kr *= (double)k->grip; c.s.cr *= (double)k->grip;
+            c.n = k->normal;
+            c.overlap = k->overlap;
+            c.weight = k->share;
+            if (!whole) demi_press_add(w, i, &c, 1, arm, press + i);
+            else demi_press_add_whole(w, i, &c, 1, arm, whole + press[i].whole - 1);
+        }
+    }
+}
+/* The largest stable step for the contacts there are, if it is below dt; else 0; -1: memory ran
+   out. worst: the body. Its room is kept. */
+static double demi_press_limit(dem_world *w, double dt, int *worst) {
+    demi_press *press;
+    double least = dt;
+    int i, found = 0;
+    if (!w->bodies.count) return 0;
+    if (!DEMI_GROW(w, w->press, (size_t)w->bodies.count)) return -1;
+    press = w->press;
+    memset(press, 0, (size_t)w->bodies.count*sizeof *press);
+    demi_press_visit(w, press, 0);
+    demi_press_rates(w, press);
+    for (i = 0; i < w->bodies.count; i++)
+        if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
+    if (found && !DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
+    if (found) memset(w->press_whole, 0, (size_t)found*sizeof *w->press_whole);
+    if (found) demi_press_visit(w, press, w->press_whole);
+    for (i = 0; i < w->bodies.count; i++) {
+        const double rates = demi_press_rate_step(press + i, dt), limit = press[i].whole
+            ? demi_press_step(w->press_whole + press[i].whole - 1, rates) : rates;
+        if (limit < least) { least = limit; *worst = i; }
+    }
+    return least < dt ? least : 0;
+}
+
+/* Says that a body that is not a sphere turns too far in a step. */
+static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call) {
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere rotates "
+                     "by %.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: "
+                     "use dt = 0 or at most %.2g s, or find what spun it up", call,
+                     (unsigned long long)w->clock.steps, rate*(double)w->clock.dt,
+                     (double)w->clock.dt, rate, 0.1/rate);
+}
+/* The fastest spin among those bodies, rad/s. */
+static double demi_spin_fastest(const dem_world *w) {
+    double most = w->clock.spin_elsewhere;
+    int i;
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++)
+        if (w->bodies.shape[i])
+            most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
+    return most;
+}
+/* Settles dt before stepping: chosen or checked. */
+DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
+    if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
+    if (demi_impulsive(w))
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts of "
+                         "this world are impulses, which have no contact time; choose a step in "
+                         "which grains move by less than a tenth of their radius");
+    demi_advise(w, advice);
+    if (advice->contact_time > 0) return DEM_OK;
+    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
+                     "grain that can move; add grains before this call");
+}
+/* Refuses a step that is chosen so short that time would stand still. */
+static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene need a "
+                     "step of %g s, must be at least %g s, or time does not advance (shortest: "
+                     "%s); a stiffness, damping, rolling friction or speed is far too large, or a "
+                     "grain far too light: find it with dem_world_check_print", dt, DEMI_DT_LEAST,
+                     by);
+}
+/* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
+   A change of the step ends half steps of the old one first. */
+static dem_result demi_dt_settle(dem_world *w) {
+    dem_advice a;
+    double spin;
+    if (w->stage.dt_valid) return DEM_OK;
+    if (demi_impulsive(w)) {                    /* as given: no contact is too short for it */
+        if (demi_impulses_twist(w) && !demi_solvers[w->desc.solver].moments)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
+                             "spinning friction, which the solver %s does not support; leave "
+                             "desc.solver at DEM_SOLVER_GAUSS_SEIDEL",
+                             demi_solvers[w->desc.solver].name);
+        if (demi_joints_in_force(w) && !demi_solvers[w->desc.solver].joints)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
+                             "solver %s does not support; leave desc.solver at "
+                             "DEM_SOLVER_GAUSS_SEIDEL", demi_solvers[w->desc.solver].name);
+        w->clock.dt = w->desc.dt;
+        w->clock.press_since = w->clock.steps;
+        w->stage.dt_valid = 1;
+        return DEM_OK;
+    }
+    if (!w->bodies.count && !w->feed_count) {          /* nothing to limit it: walls still move */
+        if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
+        return DEM_OK;
+    }
+    demi_finish(w);                             /* speeds are those of now, whoever asks */
+    demi_advise(w, &a);
+    spin = demi_spin_fastest(w);
+    if (w->desc.dt > 0) {
+        if (!w->desc.allow_large_dt && a.contact_time > 0 && !(w->desc.dt <= a.dt_max))
+            return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
+                             "%s = %g s (t_c of %s); use dt = 0, a softer material or a smaller dt",
+                             (double)w->desc.dt, demi_dt_limit(&a), (double)a.dt_max, a.binds);
+        w->clock.dt = w->desc.dt;
+        if (!w->desc.allow_large_dt && spin*(double)w->clock.dt > 1)
+            return demi_spins_refuse(w, spin, "dem_world_step");
+    } else {
+        const dem_real easy = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
+        const dem_real share = w->dt_share > 0 ? (dem_real)w->dt_share : 1;
+        const dem_real dt = share*(spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy);
+        if (!((double)dt >= DEMI_DT_LEAST)) return demi_dt_refuse(w, (double)dt, a.binds);
+        /* half steps were of the old dt */
+        if (dt < w->clock.dt || dt > w->clock.dt) { demi_finish(w); w->stage.primed = 0; }
+        w->clock.dt = dt;
+        w->clock.held.from = (double)a.contact_time/50;
+        w->clock.held.limit = dt < share*easy ? spin : 5*(double)a.dt;
+        w->clock.held.by = dt < share*easy ? DEMI_HELD_SPIN
+            : (double)easy < 0.99*w->clock.held.from ? DEMI_HELD_DASHPOT : DEMI_HELD_NOT;
+    }
+    w->clock.assumed_speed = (double)a.speed;
+    w->stage.dt_valid = 1;
+    w->clock.press_due = w->clock.press_since = w->clock.steps;
+    return DEM_OK;
+}
+/* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
+   given stays. */
+static int demi_outgrown(const dem_world *w) {
+    return !demi_impulsive(w) && !(w->desc.impact_speed > 0) &&
+        w->booked.speed_max > 1.5*w->clock.assumed_speed;
+}
+/* The fastest body that moves, m/s. */
+static double demi_fastest(const dem_world *w) {
+    double most = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++)
+        if (w->bodies.inv_mass[i] > 0)
+            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
+                                                   demi_at(w->bodies.vel + 4*i)));
+    return sqrt(most);
+}
+/* m/s, how fast a body may be in the next step by the forces that act now. */
+static double demi_fastest_next(const dem_world *w) {
+    double most = 0;
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double inv = (double)w->bodies.inv_mass[i];
+        const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                             (double)w->desc.gravity.z};
+        double a2 = 0, v2 = 0;
+        for (k = 0; k < 3; k++) {
+            const double a = (double)w->bodies.force[4*i + k]*inv + g[k];
+            const double v = (double)w->bodies.vel[4*i + k] + a*(double)w->clock.dt;
+            a2 += a*a;
+            v2 += v*v;
+        }
+        if (inv > 0 && demi_impulsive(w)) most = DEMI_MAX(most, sqrt(v2));     /* exactly */
+        else if (inv > 0)
+            most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.vel + 4*i)) +
+                            sqrt(a2)*(double)w->clock.dt);
+    }
+    return most;
+}
+/* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
+   and walls unseen; but for impulses that see both come from as far off as they may go together.
+   speed: a bound, m/s; named: 1 where w has bodies to look for it. */
+static dem_result demi_speed_check(dem_world *w, double speed, int named) {
+    const double seen = demi_impulsive(w) ? w->margin.reach/2 : 0;
+    const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
+    double most = 0;
+    char who[80] = "a body";
+    int i;
+    if (!(speed*dt > DEMI_MAX(radius, seen) && radius > 0)) return DEM_OK;
+    for (i = 0; i < w->bodies.count && named; i++) {
+        const double v = (double)demi_length(demi_at(w->bodies.vel + 4*i));
+        if (v <= most) continue;
+        most = v;
+        snprintf(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
+                 (unsigned)w->bodies.slot[i] + 1, v);
+    }
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
+                     "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
+                     "s, must be at most 1: it would pass through others and walls undetected; "
+                     "use at most %.2g s%s, or find what made it so fast",
+                     (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
+                     0.1*radius/speed,
+                     demi_impulsive(w) ? ", or a law_range of twice that distance" : "");
+}
+/* The same of walls that are thin: planes and cylinders cannot be passed. */
+static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const int kind = wall->kind;
+        double speed;
+        if (kind == DEMI_WALL_NONE || kind == DEMI_WALL_PLANE || kind == DEMI_WALL_CYLINDER ||
+            wall->motion.kind == DEM_MOTION_FIXED || !(radius > 0)) continue;
+        speed = demi_wall_speed(wall);
+        if (!(speed*dt > radius)) continue;
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
+                         "to %.3g m/s, %.3g radii of the smallest grain (%g m) in a step of %g s, "
+                         "must be at most 1: it would pass through grains undetected; use at most "
+                         "%.2g s, or a slower wall", (unsigned long long)w->clock.steps,
+                         (int)wall->id, speed, speed*dt/radius, radius, dt, 0.1*radius/speed);
+    }
+    return DEM_OK;
+}
+/* Why dt is shorter than t_c/50, and by how much. */
+static void demi_held_report(const dem_world *w, FILE *out) {
+    const demi_held *h = &w->clock.held;
+    char who[64] = "a body";
+    if (demi_impulsive(w) || w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
+    fprintf(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
+            h->from/(double)w->clock.dt, h->from);
+    if (h->body > 0)
+        snprintf(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body, h->contacts);
+    if (h->by == DEMI_HELD_PRESSED)
+        fprintf(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
+    else if (h->by == DEMI_HELD_RATE)
+        fprintf(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
+                "that is used\n", (int)h->body, h->limit);
+    else if (h->by == DEMI_HELD_SPIN)
+        fprintf(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
+    else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
+                 "used\n", h->limit);
+}
+/* What presses has been looked at: again more and more rarely while the scene stays, at least every
+   thousand steps; where a law has rates, which run away sooner, at least every eight. */
+static void demi_press_looked(demi_timing *clock, const dem_world *w) {
+    clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
+                                               w->desc.law_rate ? 8 : 1000);
+}
+/* Refuses a step that was given, for this body is pressed so that `limit` is the largest. */
+static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
+    if (w->press[worst].relax*limit > 0.999)
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be "
+                         "at most %g s: by desc.law_rate the numbers of body %u follow those of "
+                         "its partners at %.3g 1/s; use dt = 0, a smaller dt, or slower rates",
+                         (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
+                         (unsigned)w->bodies.slot[worst] + 1, w->press[worst].relax);
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
+                     "most %g s: body %u is pressed by %.3g contacts with overlaps up to %.3g of "
+                     "its radius; use dt = 0, a smaller dt, or less overlap",
+                     (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
+                     (unsigned)w->bodies.slot[worst] + 1, w->press[worst].contacts,
+                     (double)w->press[worst].deepest);
+}
+/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
+   bodies move. A step that was chosen is made smaller; one that was given is refused, before
+   anything moves. */
+static dem_result demi_dt_check(dem_world *w) {
+    const int chosen = !(w->desc.dt > 0);
+    const double share = w->dt_share > 0 ? w->dt_share : 1;
+    dem_result result;
+    double limit;
+    int worst = 0;
+    if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
+    /* after a change of the scene the last kick may be that of a body which is gone */
+    result = demi_speed_check(w, demi_impulsive(w) ? demi_fastest_next(w)
+                              : w->clock.steps == w->clock.press_since
+                              ? DEMI_MIN(demi_fastest(w) + w->margin.last_change,
+                                         demi_fastest_next(w))
+                              : w->margin.last_change + w->booked.speed_max, 1);
+    if (result == DEM_OK)
+        result = demi_wall_speed_check(w, (double)w->effects.radius_min, (double)w->clock.dt);
+    if (result != DEM_OK || w->clock.steps < w->clock.press_due || demi_impulsive(w)) return result;
+    limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
+    if (limit < 0) return demi_no_memory(w, "dem_world_step");
+    demi_press_looked(&w->clock, w);
+    if (!(limit > 0)) return DEM_OK;
+    if (!chosen) return demi_press_refuse(w, limit, worst);
+    if (!(limit*DEMI_MIN(share/2, 0.95) >= DEMI_DT_LEAST))
+        return demi_dt_refuse(w, limit*DEMI_MIN(share/2, 0.95), "contacts that press a body");
+    demi_finish(w);
+    w->stage.primed = 0;
+    w->clock.dt = (dem_real)(limit*DEMI_MIN(share/2, 0.95));
+    w->clock.held.by = w->press[worst].relax*limit > 0.999 ? DEMI_HELD_RATE : DEMI_HELD_PRESSED;
+    w->clock.held.limit = limit;
+    w->clock.held.body = (int32_t)w->bodies.slot[worst] + 1;
+    w->clock.held.contacts = w->press[worst].contacts;
+    return DEM_OK;
+}

@@ -1,0 +1,376 @@
+/* ---------------------------------------------------------------------------------------------
+   >>fields
+   Means on a grid. What is there at a place (a grain at its centre, a piece of the line between two
+   centres) is put into the cell it is in, or spread over the cells about it; in a periodic world
+   wherever one of its images is. A field is one array of sums, block after block, so that whoever
+   saves, copies or adds up fields need not know which there are. First how a contact looks to a
+   user: stress is made of that.
+   --------------------------------------------------------------------------------------------- */
+/* One kept contact, as users see it. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+    const demi_periods p = demi_periods_of(w);
+    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
+    out->a = dem_body_id_get(w, c->a);
+    out->b = dem_body_id_get(w, c->b);
+    out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
+    out->normal = c->normal;
+    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
+    out->point = demi_place_of(&p, x);
+    out->overlap = c->overlap;
+    out->force = c->force;
+}
+/* One near pair, if it touches: its force by the law of the run on a copy of its memory, and,
+   unless null, the way from a's centre to b's. */
+static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
+                              dem_vec3 *branch) {
+    demi_run r = demi_run_of(w, 0, w->effects.uniform);
+    const demi_span span = demi_span_of(w, d, p, 1);
+    const int a = span.a[0], b = span.b[0];
+    const demi_periods periods = demi_periods_of(w);
+    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
+    demi_tile tile;
+    dem_contact c;
+    dem_contact_force f;
+    demi_calling was;
+    dem_vec3 gap;
+    int e;
+    tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
+    if (demi_impulsive(w)) return demi_impulse_info(w, d, p, out, branch);
+    r.span = &span;
+    demi_tile_fetch(&r, 1, &tile);
+    gap = demi_rows_at(&tile.gap, 0);
+    demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
+    if (!(tile.touch[0] > 0)) return 0;
+    if (!out) return 1;
+    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
+    demi_span_coefs(w, &span, 0, coef);
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
+    demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
+    demi_who_clear(&c.who);
+    demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
+    was = demi_look_calls(w, "a read of the contacts");
+    demi_law(w, &c, memory, &f);
+    demi_look_called(w, was);
+    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
+    out->a = dem_body_id_get(w, a);
+    out->b = dem_body_id_get(w, b);
+    out->wall = 0;
+    out->normal = demi_row(tile.normal, 0);
+    out->overlap = tile.overlap[0];
+    if (branch) *branch = gap;
+    gap = demi_scale(gap, w->bodies.pos[4*a + 3]/(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]));
+    out->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), gap));
+    out->force = demi_row(tile.force, 0);
+    return 1;
+}
+/* Blocks of a field's sums: where each begins, and how many numbers of a cell stand together in
+   it. */
+enum { DEMI_SOLID = 0, DEMI_MASS = 1, DEMI_MOMENTUM = 2, DEMI_GRAINS = 5, DEMI_FLUX = 6,
+       DEMI_STRESS = 12, DEMI_CONTACTS = 18, DEMI_FIELD_REALS = 19 };
+static size_t demi_field_cells(const demi_field *f) {
+    return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
+}
+/* Numbers in all. */
+static size_t demi_field_reals(const demi_field *f) {
+    return demi_field_cells(f)*(f->desc.stress ? DEMI_FIELD_REALS : DEMI_FLUX);
+}
+/* The same numbers for all that a sample puts into a field. */
+typedef struct demi_grid {
+    demi_field *field;
+    double lo[3], size[3], period[3];   /* m */
+    double volume, reach, norm;         /* m3, of a cell; m; 1/m3 (planar: 1/m2 over the depth) */
+    int axes;                           /* 2: planar */
+} demi_grid;
+static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_field_desc *d = &f->desc;
+    demi_grid g;
+    double c;
+    int k;
+    g.field = f;
+    g.lo[0] = (double)d->box.lo.x; g.lo[1] = (double)d->box.lo.y; g.lo[2] = (double)d->box.lo.z;
+    g.size[0] = ((double)d->box.hi.x - g.lo[0])/d->cells[0];
+    g.size[1] = ((double)d->box.hi.y - g.lo[1])/d->cells[1];
+    g.size[2] = ((double)d->box.hi.z - g.lo[2])/d->cells[2];
+    g.volume = g.size[0]*g.size[1]*g.size[2];
+    for (k = 0; k < 3; k++)                     /* in a ring of slabs no world is periodic there */
+        g.period[k] = (double)DEMI_MAX(p.period[k], w->ring_period[k]);
+    g.axes = w->desc.planar ? 2 : 3;
+    g.reach = c = 2*(double)d->width;
+    g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*g.size[2]) : 105/(16*DEMI_PI*c*c*c);
+    return g;
+}
+/* n numbers into the cell of index `at`, of a block that begins there. */
+static void demi_cell_add(demi_grid *g, const int *at, int block, int n, const double *value,
+                          double weight) {
+    const int *cells = g->field->desc.cells;
+    const size_t cell = (size_t)at[0] + (size_t)cells[0]*((size_t)at[1] +
+                                                          (size_t)cells[1]*(size_t)at[2]);
+    double *sum = g->field->sums + (size_t)block*demi_field_cells(g->field) + (size_t)n*cell;
+    int k;
+    for (k = 0; k < n; k++) sum[k] += weight*value[k];
+}
+/* Puts n numbers to one image at x: into its cell, or spread over those within reach. */
+static void demi_image_put(demi_grid *g, const double *x, int block, int n, const double *value) {
+    const int *cells = g->field->desc.cells;
+    int from[3], to[3], at[3], k;
+    for (k = 0; k < 3; k++) {
+        const double reach = k < g->axes ? g->reach : 0;
+        const double a = floor((x[k] - reach - g->lo[k])/g->size[k]);
+        const double b = floor((x[k] + reach - g->lo[k])/g->size[k]);
+        if (!(b >= 0 && a < cells[k])) return;
+        from[k] = (int)DEMI_MAX(a, 0);
+        to[k] = (int)DEMI_MIN(b, cells[k] - 1);
+    }
+    if (!(g->reach > 0)) { demi_cell_add(g, from, block, n, value, 1); return; }
+    for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
+        for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
+            for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
+                double rr = 0, u;
+                for (k = 0; k < g->axes; k++) {
+                    const double d = g->lo[k] + (at[k] + 0.5)*g->size[k] - x[k];
+                    rr += d*d;
+                }
+                u = sqrt(rr)/g->reach;
+                if (u < 1)
+                    demi_cell_add(g, at, block, n, value,
+                                  g->norm*g->volume*(1 + 3*u)*(1 - u)*(1 - u)*(1 - u));
+            }
+}
+/* The same to all images of a place: of an axis without a period there is one. */
+static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const double *value) {
+    const int *cells = g->field->desc.cells;
+    double x[3], first[3], last[3], at[3];
+    int k;
+    x[0] = (double)place.x; x[1] = (double)place.y; x[2] = (double)place.z;
+    for (k = 0; k < 3; k++) {
+        const double hi = g->lo[k] + g->size[k]*cells[k], P = g->period[k];
+        first[k] = last[k] = 0;
+        if (!(P > 0)) continue;
+        first[k] = ceil((g->lo[k] - g->reach - x[k])/P);
+        last[k] = DEMI_MIN(floor((hi + g->reach - x[k])/P), first[k] + 100);
+        /* a field as long as the period: its end is its begin */
+        if (!(g->reach > 0) && x[k] + last[k]*P >= hi) last[k]--;
+    }
+    for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+            for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                double image[3];
+                for (k = 0; k < 3; k++) image[k] = x[k] + at[k]*g->period[k];
+                demi_image_put(g, image, block, n, value);
+            }
+}
+/* Is body i one that the field counts? */
+static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
+    const dem_real r = w->bodies.pos[4*i + 3];
+    return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
+           (!(d->radius_max > 0) || r <= d->radius_max);
+}
+static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
+    const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
+    const double v[3] = {(double)w->bodies.vel[4*i], (double)w->bodies.vel[4*i + 1],
+                         (double)w->bodies.vel[4*i + 2]};
+    double sum[DEMI_FLUX], flux[6];
+    sum[DEMI_SOLID] = (w->desc.planar ? DEMI_PI*r*r*g->size[2]
+        : m/(double)w->materials[w->bodies.material[i] - 1].density)/g->volume;
+    sum[DEMI_MASS] = m;
+    sum[2] = m*v[0];
+    sum[3] = m*v[1];
+    sum[4] = m*v[2];
+    sum[DEMI_GRAINS] = 1;
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_SOLID, 1, sum + DEMI_SOLID);
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_MASS, 1, sum + DEMI_MASS);
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_MOMENTUM, 3, sum + DEMI_MOMENTUM);
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_GRAINS, 1, sum + DEMI_GRAINS);
+    if (!g->field->desc.stress) return;
+    flux[0] = m*v[0]*v[0]/g->volume; flux[1] = m*v[1]*v[1]/g->volume;
+    flux[2] = m*v[2]*v[2]/g->volume; flux[3] = m*v[0]*v[1]/g->volume;
+    flux[4] = m*v[0]*v[2]/g->volume; flux[5] = m*v[1]*v[2]/g->volume;
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_FLUX, 6, flux);
+}
+/* A contact of bodies a and b (-1: a wall), force on a, branch from a's centre to b's or to the
+   wall: force x -branch along that line, in pieces; and one contact more for each. */
+static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, dem_vec3 force,
+                            dem_vec3 branch) {
+    const int pieces = 8;
+    const dem_field_desc *d = &g->field->desc;
+    const double f[3] = {(double)force.x, (double)force.y, (double)force.z};
+    const double l[3] = {-(double)branch.x, -(double)branch.y, -(double)branch.z};
+    const int is_a = demi_field_counts(w, d, a), is_b = b >= 0 && demi_field_counts(w, d, b);
+    const dem_vec3 from = demi_at(w->bodies.pos + 4*a);
+    const double one = 1;
+    double part[6];
+    int k;
+    part[0] = f[0]*l[0]; part[1] = f[1]*l[1]; part[2] = f[2]*l[2];
+    part[3] = (f[0]*l[1] + f[1]*l[0])/2;
+    part[4] = (f[0]*l[2] + f[2]*l[0])/2;
+    part[5] = (f[1]*l[2] + f[2]*l[1])/2;
+    for (k = 0; k < 6; k++) part[k] /= pieces*g->volume;
+    for (k = 0; k < pieces; k++) {
+        /* of two grains, each answers for the half that begins at its centre */
+        if (b >= 0 && k < pieces/2 ? !is_a : b >= 0 ? !is_b : !is_a) continue;
+        demi_grid_put(g, demi_add(from, demi_scale(branch, (dem_real)((k + 0.5)/pieces))),
+                      DEMI_STRESS, 6, part);
+    }
+    if (is_a) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
+    if (is_b) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
+}
+static void demi_field_contacts(const dem_world *w, demi_grid *g) {
+    dem_contact_info info;
+    dem_vec3 branch;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            const demi_span span = demi_span_of(w, d, k, 1);
+            if (demi_contact_force(w, d, k, &info, &branch))
+                demi_field_branch(w, g, span.a[0], span.b[0], info.force, branch);
+        }
+        for (k = 0; k < domain->kept; k++) {
+            const demi_kept *c = demi_kept_of(w, d) + k;
+            if (!demi_kept_asked(w, c)) continue;
+            demi_field_branch(w, g, c->a, c->b, c->force,
+                            c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
+        }
+    }
+}
+/* Does it want a sample now? */
+static int demi_field_due(const dem_world *w, const demi_field *f) {
+    return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
+}
+/* All fields that want a sample now: contacts by the velocities of the forces just worked out,
+   which are predicted, and which slabs have told each other; grains by those of the full step. */
+static void demi_fields_sample(dem_world *w) {
+    int f, i, any = 0;
+    for (f = 0; f < w->field_count; f++) {
+        demi_field *field = &w->fields[f];
+        demi_grid g = demi_grid_of(w, field);
+        if (demi_field_due(w, field)) any = 1;
+        if (demi_field_due(w, field) && field->desc.stress) demi_field_contacts(w, &g);
+    }
+    if (any) demi_finish(w);
+    for (f = 0; f < w->field_count; f++) {
+        demi_field *field = &w->fields[f];
+        const dem_field_desc *d = &field->desc;
+        demi_grid g = demi_grid_of(w, field);
+        if (!demi_field_due(w, field)) continue;
+        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
+            : w->clock.time + 100*(double)w->clock.dt;
+        if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
+        for (i = 0; i < w->bodies.count; i++)
+            if (!demi_is_ghost(w, i) && demi_field_counts(w, d, i)) demi_field_grain(w, &g, i);
+        field->samples++;
+    }
+}
+
+DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
+    if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
+    dem_field id;
+    demi_field field;
+    int k;
+    id.id = 0;
+    if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
+        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->interval >= 0) ||
+        !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval is %g "
+                  "s; there must be >= 1 cells on each axis and at most 2^28 in all, and times "
+                  "must be finite and >= 0", d->cells[0], d->cells[1], d->cells[2], d->interval);
+        return id;
+    }
+    if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
+    if (!(d->width >= 0) || !demi_finite(d->width) || !(d->radius_min >= 0) ||
+        !demi_finite(d->radius_max) || !(d->radius_max >= 0) ||
+        (d->radius_max > 0 && d->radius_max < d->radius_min)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: width is %g m, radii are %g to %g m; all "
+                  "must be finite and >= 0, radius_min below radius_max, and radius_max 0 for no "
+                  "limit", (double)d->width, (double)d->radius_min, (double)d->radius_max);
+        return id;
+    }
+    if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
+        return id;
+    memset(&field, 0, sizeof field);
+    field.used = 1;
+    field.desc = *d;
+    field.next = d->start;
+    field.sums = (double *)demi_hold(w, DEMI_RUN, demi_field_reals(&field), sizeof(double));
+    if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1)) {
+        demi_free(w, field.sums);
+        demi_no_memory(w, "dem_field_add");
+        return id;
+    }
+    w->fields[w->field_count++] = field;
+    demi_built(w, "dem_field_add");
+    id.id = w->field_count;
+    return id;
+}
+/* From an id to a field, or a sentence in the name of `call`. */
+static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
+    if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d; check the id "
+              "that dem_field_add returned", call, (int)id.id, w->field_count);
+    return 0;
+}
+DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
+    if (demi_null_look(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
+    size_t n;
+    const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
+    if (!f) return DEM_ERROR_ARGUMENT;
+    memcpy(data->cells, f->desc.cells, sizeof data->cells);
+    data->box = f->desc.box;
+    data->samples = f->samples;
+    n = demi_field_cells(f);
+    data->solid = f->sums + DEMI_SOLID*n;
+    data->mass = f->sums + DEMI_MASS*n;
+    data->momentum = f->sums + DEMI_MOMENTUM*n;
+    data->grains = f->sums + DEMI_GRAINS*n;
+    data->flux = f->desc.stress ? f->sums + DEMI_FLUX*n : 0;
+    data->stress = f->desc.stress ? f->sums + DEMI_STRESS*n : 0;
+    data->contacts = f->desc.stress ? f->sums + DEMI_CONTACTS*n : 0;
+    return DEM_OK;
+}
+DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
+    if (demi_null(w, "dem_field_reset", w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_field *f = demi_field_find(w, "dem_field_reset", id);
+    if (!f) return DEM_ERROR_ARGUMENT;
+    memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
+    f->samples = 0;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, int j, int k,
+                                      dem_field_cell *out) {
+    dem_field_data d;
+    size_t c;
+    double n, volume, v[3];
+    int e;
+    if (demi_null_look(w, "dem_field_cell_get", out, "cell")) return DEM_ERROR_ARGUMENT;
+    if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
+    dem_field_get(w, id, &d);
+    if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_field_cell_get: cell (%d, %d, "
+                         "%d) does not exist, the field has %d x %d x %d cells; indices start at 0",
+                         i, j, k, d.cells[0], d.cells[1], d.cells[2]);
+    memset(out, 0, sizeof *out);
+    if (!d.samples) return DEM_OK;
+    c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);
+    n = (double)d.samples;
+    volume = (double)(d.box.hi.x - d.box.lo.x)*(double)(d.box.hi.y - d.box.lo.y)*
+             (double)(d.box.hi.z - d.box.lo.z)/
+             ((double)d.cells[0]*(double)d.cells[1]*(double)d.cells[2]);
+    out->grains = d.grains[c]/n;
+    out->solid = d.solid[c]/n;
+    out->density = d.mass[c]/n/volume;
+    for (e = 0; e < 3; e++)
+        out->velocity[e] = v[e] = d.mass[c] > 0 ? d.momentum[3*c + (size_t)e]/d.mass[c] : 0;
+    if (!d.stress) return DEM_OK;
+    for (e = 0; e < 6; e++) {
+        const double vv = e < 3 ? v[e]*v[e] : e == 3 ? v[0]*v[1] : e == 4 ? v[0]*v[2] : v[1]*v[2];
+        const double moves = d.flux[6*c + (size_t)e]/n - out->density*vv;
+        out->stress[e] = d.stress[6*c + (size_t)e]/n + moves;
+        if (e < 3 && out->density > 0) out->temperature += moves/out->density/
+            (w->desc.planar ? 2 : 3);
+    }
+    out->coordination = d.grains[c] > 0 ? d.contacts[c]/d.grains[c] : 0;
+    return DEM_OK;
+}

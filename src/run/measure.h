@@ -1,0 +1,568 @@
+/* ---------------------------------------------------------------------------------------------
+   >>measure
+   Looking at a world without changing it: counters, contacts, the digest.
+   --------------------------------------------------------------------------------------------- */
+DEM_API dem_counters dem_counters_get(const dem_world *w) {
+    dem_counters c;
+    int d, k;
+    memset(&c, 0, sizeof c);
+    if (!w) return c;
+    c.steps = w->clock.steps;
+    c.rebuilds = w->clock.rebuilds;
+    for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
+        c.candidates += w->domains[d].own + w->domains[d].cross;
+        c.contacts += w->domains[d].contacts;
+        c.wall_contacts += w->domains[d].kept_walls;
+        for (k = 0; k < w->domains[d].kept && w->bodies.shaped && !demi_impulsive(w); k++) {
+            const demi_kept *kept = demi_kept_of(w, d) + k;     /* corners: one contact of four */
+            c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
+        }
+    }
+    c.overlap_max = (dem_real)w->booked.overlap_max;
+    c.speed_max = (dem_real)w->booked.speed_max;
+    c.skin = (dem_real)w->margin.skin;
+    c.dt = w->clock.dt;
+    c.search = w->desc.search;
+    c.threads = w->desc.threads;
+    c.domains = w->domain_count;
+    c.sweeps = w->booked.sweeps;
+    c.residual = (dem_real)w->booked.residual;
+    c.residual_rms = (dem_real)w->booked.residual_rms;
+    c.unsolved = w->booked.unsolved;
+    c.memory = w->bytes;
+    return c;
+}
+DEM_API void dem_overlap_max_reset(dem_world *w) {
+    if (demi_null(w, "dem_overlap_max_reset", w, "world")) return;
+    w->booked.overlap_max = 0;
+}
+
+DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
+    if (demi_null_look(w, "dem_contacts_get", w, "world")) return -1;
+    int d, k, n = 0;
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
+            n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0, 0);
+        for (k = 0; k < w->domains[d].kept; k++) {
+            const demi_kept *c = demi_kept_of(w, d) + k;
+            if (demi_kept_asked(w, c) && ++n <= capacity && out) demi_kept_info(w, c, &out[n - 1]);
+        }
+    }
+    return n;
+}
+/* Contacts of now: of a list and of forces that fit the scene. */
+static dem_result demi_contacts_settle(dem_world *w) {
+    const demi_stages *s = &w->stage;
+    dem_result result;
+    demi_calling was;
+    if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
+    was = demi_calls(w, "a read of the contacts", 1);
+    result = demi_dt_settle(w);
+    if (result == DEM_OK) result = demi_refresh(w);
+    w->look.calling = was;
+    return result;
+}
+DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
+    if (demi_null(w, "dem_contacts_each", fn ? w : 0, "fn")) return -1;
+    size_t stride;
+    dem_contact_info info;
+    dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
+    int d, k, e, n = 0, changed = 0;
+    demi_calling was_calling;
+    if (demi_contacts_settle(w) != DEM_OK) return -1;
+    was_calling = demi_calls(w, "dem_contacts_each", 0);
+    stride = (size_t)w->near.stride;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            if (!demi_contact_force(w, d, k, &info, 0)) continue;
+            row = w->memory_stride ? w->near.memory + (size_t)d*(size_t)w->memory_stride*stride + k
+                : memory;
+            for (e = 0; e < w->memory_stride; e++) was[e] = memory[e] = row[(size_t)e*stride];
+            fn(&info, memory, user);
+            for (e = 0; e < w->memory_stride; e++) {
+                changed |= memory[e] < was[e] || memory[e] > was[e];
+                row[(size_t)e*stride] = memory[e];
+            }
+            n++;
+        }
+        for (k = 0; k < domain->kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (!demi_kept_asked(w, c)) continue;
+            demi_kept_info(w, c, &info);
+            memcpy(was, c->memory, sizeof was);
+            fn(&info, c->memory, user);
+            for (e = 0; e < DEMI_MEMORY; e++)
+                changed |= c->memory[e] < was[e] || c->memory[e] > was[e];
+            n++;
+        }
+    }
+    w->look.calling = was_calling;
+    if (changed) demi_scene_changed(w);
+    return n;
+}
+/* What dem_bonds_make hands on. */
+typedef struct demi_bonds { dem_contact_fn make; void *user; dem_real gap; int count; } demi_bonds;
+static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
+    demi_bonds *b = (demi_bonds *)user;
+    if (c->wall || !(c->overlap > -b->gap)) return;
+    b->make(c, memory, b->user);
+    b->count++;
+}
+DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
+    if (demi_null(w, "dem_bonds_make", make ? w : 0, "make")) return -1;
+    demi_bonds b;
+    double least = -1, most;
+    int i;
+    for (i = 0; i < w->bodies.count; i++)
+        if (least < 0 || (double)w->bodies.pos[4*i + 3] < least)
+            least = (double)w->bodies.pos[4*i + 3];
+    most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
+    if (!(gap >= 0) || (double)gap > most)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bonds_make: gap is %g m, must be >= 0 and at "
+                         "most %g m, the range of your law for the smallest grains; set a larger "
+                         "law_range or law_range_radii when the world is created", (double)gap,
+                         DEMI_MAX(most, 0)), -1;
+    b.make = make;
+    b.user = user;
+    b.gap = gap;
+    b.count = 0;
+    return dem_contacts_each(w, demi_bond_make, &b) < 0 ? -1 : b.count;
+}
+
+/* Digest of contact memory, reals a `stride` apart, turned round or not. Told is what is not 0 and
+   belongs to an effect of the scene, with a number that does not depend on which other laws are in
+   force: so it does not matter whether a list has been made since friction came or went. *any: is
+   there something to tell? */
+static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory,
+                                 size_t stride, int flip, int *any) {
+    const demi_laws *laws = &w->laws;
+    int i, friction = 1, rolling = 1, sticks = 1;
+    *any = 0;
+    if (w->memory_stride) demi_pairs_rub(w, &friction, &rolling, &sticks);
+    for (i = 0; i < w->memory_stride; i++) {
+        dem_real m = memory[(size_t)i*stride];
+        int number = i;
+        if (!demi_impulsive(w) && i == laws->at_sliding) {
+            if (!sticks) continue;
+            number = 24;
+        } else if (demi_laws_keep(w)) {
+            if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
+            if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
+            else if (i >= laws->at_rolling) number = 8 + i - laws->at_rolling;
+        }
+        if (!(m < 0) && !(m > 0)) continue;
+        if (flip && (w->vector_mask >> i & 1)) m = -m;
+        h = demi_hash(demi_hash(h, &number, sizeof number), &m, sizeof m);
+        *any = 1;
+    }
+    return h;
+}
+/* Memory of two spheres, the same whichever of them is a; 0 when there is nothing to remember. */
+static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
+                                 const dem_real *memory, size_t stride) {
+    const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
+    uint64_t one = demi_hash(DEMI_HASH_START, &lo, sizeof lo);
+    int any;
+    one = demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, stride, sa > sb, &any);
+    return any ? one : 0;
+}
+/* Digest of one contact, whichever of its bodies is a. */
+static uint64_t demi_kept_hash(const dem_world *w, const demi_kept *c) {
+    const int pushes = c->share > 0, slots = !w->stage.list_valid;   /* while there is no list */
+    uint32_t who[4];
+    uint64_t h = DEMI_HASH_START;
+    int i, flip;
+    who[0] = slots ? (uint32_t)c->a : w->bodies.slot[c->a];
+    who[1] = c->b < 0 ? (uint32_t)c->element : slots ? (uint32_t)c->b : w->bodies.slot[c->b];
+    who[2] = (uint32_t)c->part_a;
+    who[3] = c->b >= 0 ? (uint32_t)c->part_b : (uint32_t)c->wall;
+    flip = c->b >= 0 && who[0] > who[1];
+    for (i = 0; i < 4; i++) h = demi_hash(h, &who[flip ? i ^ 1 : i], sizeof *who);
+    h = demi_hash(h, &pushes, sizeof pushes);
+    return demi_memory_hash(w, h, c->memory, 1, flip, &i);
+}
+/* Contacts as a sum of their own digests, in which neither their order tells nor whether there is a
+   list or they are on their way to the next one. */
+static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
+    uint64_t sum = 0;
+    int d, k, i;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = w->stage.list_valid ? demi_near_first(domain)
+             : domain->near_end; k < domain->near_end;
+             k = demi_near_next(domain, k)) {
+            const demi_span span = demi_span_of(w, d, k, 1);
+            if (demi_near_remembers(w, d, k))
+                sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
+                                        span.memory, span.stride);
+        }
+        for (k = 0; k < domain->kept; k++)
+            sum += demi_kept_hash(w, demi_kept_of(w, d) + k);
+    }
+    for (i = 0; !w->stage.list_valid && w->filed.count && w->filed.stride == w->memory_stride &&
+                i < w->filed.rows; i++)
+        for (k = w->filed.start[i]; k < w->filed.start[i + 1]; k++) {
+            const int32_t p = w->filed.partner[k];
+            const uint32_t row = (uint32_t)i, other = (uint32_t)(p < 0 ? ~p : p);
+            sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other,
+                                    w->filed.memory + (size_t)k*(size_t)w->filed.stride, 1);
+        }
+    return demi_hash(h, &sum, sizeof sum);
+}
+
+/* Contact k of domain d: whose it is; and when it is one with this wall, 1, its normal and its
+   friction. */
+static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
+                           dem_real *mu) {
+    const demi_kept *c = demi_kept_of(w, d) + k;
+    *body = c->a;
+    *normal = c->normal;
+    *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
+    return c->b < 0 && c->wall == wall && c->overlap > 0;
+}
+/* Contacts of one grain follow each other. Stuck: two of them push against each other in the
+   sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
+   |n_z| <= mu |n_xy|. */
+DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real speed) {
+    if (demi_null_look(w, "dem_sieve_blinded_get", w, "world")) return -1;
+    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded_get", sieve);
+    const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
+    dem_vec3 across, n, m;
+    dem_real mu, mu_m;
+    int d, k, j, body, same, count = 0;
+    if (!wall) return -1;
+    if (!wall->sieve.kind) {
+        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded_get: wall %d is not a "
+                  "sieve; pass the id that dem_wall_sieve_add returned", (int)sieve.id);
+        return -1;
+    }
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
+    across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
+    for (d = 0; d < w->domain_count; d++) {
+        const int all = w->domains[d].kept;
+        int last = -1;                          /* the grain counted last: once is enough */
+        for (k = 0; k < all; k++) {
+            dem_vec3 v, flat;
+            dem_real z;
+            if (!demi_wall_press(w, d, k, id, &body, &n, &mu) || body == last) continue;
+            v = demi_sub(demi_at(w->bodies.vel + 4*body), demi_add(wall->pose.velocity,
+                demi_cross(wall->pose.spin, demi_sub(demi_at(w->bodies.pos + 4*body),
+                                                     wall->pose.position))));
+            z = demi_dot(n, across);
+            flat = demi_sub(n, demi_scale(across, z));
+            if ((speed > 0 && demi_length(v) > speed) || z*z > mu*mu*(1 - z*z)) continue;
+            for (j = k + 1; j < all && last != body; j++) {
+                const int here = demi_wall_press(w, d, j, id, &same, &m, &mu_m);
+                if (same != body) break;
+                z = demi_dot(m, across);
+                if (here && z*z <= mu_m*mu_m*(1 - z*z) && demi_dot(flat, m) < DEM_R(-0.25)) {
+                    count++;
+                    last = body;
+                }
+            }
+        }
+    }
+    return count;
+}
+
+/* A surface seen along two level directions: cells about a mean diameter wide, in each the top of
+   the highest grain there. */
+typedef struct demi_surface {
+    dem_vec3 centre, out, along, up;   /* m; unit */
+    int around;                        /* a heap: rows by distance from the centre */
+    double width, from;                /* m: of a cell; where the first row begins */
+    int rows, columns;
+    double *top;                       /* rows x columns, m above the lowest grain; < 0: nobody */
+    int32_t *root, heap;               /* bodies: of which heap; -1: none. The one that is meant */
+} demi_surface;
+/* The mean height of a row, over the columns where there is somebody; < 0: nobody. */
+static double demi_surface_row(const demi_surface *s, int row) {
+    double sum = 0;
+    int k, n = 0;
+    for (k = 0; k < s->columns; k++) {
+        const double top = s->top[row*s->columns + k];
+        if (top >= 0) { sum += top; n++; }
+    }
+    return n ? sum/n : -1;
+}
+/* The line through rows first .. last - 1. 0: too few. */
+static int demi_surface_line(const demi_surface *s, int first, int last, dem_repose *out) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, slope, rest;
+    int k;
+    for (k = first; k < last; k++) {
+        const double h = demi_surface_row(s, k), at = s->from + (k + 0.5)*s->width;
+        if (h < 0) continue;
+        n++; x += at; y += h; xx += at*at; xy += at*h; yy += h*h;
+    }
+    if (n < 4) return 0;
+    xx -= x*x/n; xy -= x*y/n; yy -= y*y/n;
+    slope = xy/xx;
+    rest = DEMI_MAX(yy - slope*xy, 0)/(n - 2);
+    out->angle = demi_atan2(slope, 1);
+    out->error = sqrt(rest/xx)/(1 + slope*slope);
+    out->places = (int)n;
+    return 1;
+}
+/* Is grain i in the box, if there is one, and can it move? */
+static int demi_repose_sees(const dem_world *w, dem_box b, int i) {
+    const dem_real *x = w->bodies.pos + 4*i;
+    const dem_vec3 size = demi_sub(b.hi, b.lo);
+    if (!(w->bodies.inv_mass[i] > 0)) return 0;
+    if (!(demi_dot(size, size) > 0)) return 1;
+    return x[0] >= b.lo.x && x[0] <= b.hi.x && x[1] >= b.lo.y && x[1] <= b.hi.y &&
+        x[2] >= b.lo.z && x[2] <= b.hi.z;
+}
+static int32_t demi_heap_of(int32_t *root, int32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+}
+/* Puts grain i into one heap with those whose gap to it is below half the mean radius; across
+   periodic faces too. */
+static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, double most,
+                           int32_t *root) {
+    const double r = (double)w->bodies.pos[4*i + 3];
+    const demi_periods p = demi_periods_of(w);
+    demi_search_line line;
+    double x[3];
+    int n, k;
+    for (n = 0; n < 27; n++) {
+        const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+        int32_t other, use = 1;
+        for (k = 0; k < 3; k++) {
+            use = use && (!s[k] || p.period[k] > 0);
+            x[k] = tree->x[3*i + k] + s[k]*(double)p.period[k];
+        }
+        if (!use) continue;
+        demi_tree_line(&line, tree, x, x, 1.25*(r + most));
+        while ((other = demi_tree_next(&line)) >= 0) {
+            const double reach = 1.25*(r + (double)w->bodies.pos[4*other + 3]);
+            if (root[other] < 0 || !(demi_far2(x, tree->x + 3*other) < reach*reach)) continue;
+            other = demi_heap_of(root, other);
+            k = demi_heap_of(root, i);
+            root[DEMI_MAX(k, other)] = DEMI_MIN(k, other);
+        }
+    }
+}
+/* The heaps that the grains in the box form, and which is the heaviest: single grains that ran
+   away, or that fly, are of none. 0 when memory ran out. */
+static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
+    const demi_periods p = demi_periods_of(w);
+    const int n = w->bodies.count;
+    double *x = (double *)demi_alloc(w, 3*(size_t)n + 1, sizeof *x);
+    double *mass = (double *)demi_alloc(w, (size_t)n + 1, sizeof *mass), most = 0;
+    demi_tree tree;
+    int i, ok;
+    memset(&tree, 0, sizeof tree);
+    s->root = (int32_t *)demi_alloc(w, (size_t)n + 1, sizeof *s->root);
+    for (i = 0; i < n && x && s->root; i++) {
+        const dem_vec3 at = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
+        x[3*i] = (double)at.x; x[3*i + 1] = (double)at.y; x[3*i + 2] = (double)at.z;
+        s->root[i] = demi_repose_sees(w, box, i) ? i : -1;
+        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+    }
+    ok = x && mass && s->root && demi_tree_make(w, &tree, x, n);
+    for (i = 0; i < n && ok; i++) if (s->root[i] >= 0) demi_heap_join(w, &tree, i, most, s->root);
+    for (i = 0; i < n && ok; i++) {
+        if (s->root[i] < 0) continue;
+        s->root[i] = demi_heap_of(s->root, i);
+        mass[s->root[i]] += (double)w->bodies.mass[i];
+        s->heap = mass[s->root[i]] > mass[s->heap] ? s->root[i] : s->heap;
+    }
+    demi_tree_free(w, &tree);
+    demi_free(w, x);
+    demi_free(w, mass);
+    return ok;
+}
+/* Row and column of a grain, and how high its top is. */
+static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, double *row,
+                                 int *column) {
+    const dem_vec3 d = demi_sub(demi_at(w->bodies.pos + 4*i), s->centre);
+    const double x = (double)demi_dot(d, s->out), y = (double)demi_dot(d, s->along);
+    const double far = s->around ? sqrt(x*x + y*y) : x;
+    const double n = s->columns, across = floor(y/s->width);     /* rows more than ints hold */
+    const double at = s->around ? (demi_atan2(y, x)/(2*DEMI_PI) + 0.5)*n
+        : across - n*floor(across/n);
+    *row = floor((far - s->from)/s->width);
+    *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
+    return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
+}
+/* Looks at the grains of the heap: a surface with the heights above its lowest grain. 0: no memory;
+   top is null where there are no grains. */
+static int demi_surface_look(dem_world *w, demi_surface *s) {
+    double diameter = 0, lowest = 1e300, least = 1e300, most = -1e300, row;
+    int i, column, count = 0;
+    s->top = 0;
+    s->width = 1;
+    s->from = 0;
+    s->columns = 1;
+    for (i = 0; i < w->bodies.count; i++) {
+        double h;
+        if (s->root[i] != s->heap) continue;
+        h = demi_surface_place(w, s, i, &row, &column);
+        lowest = DEMI_MIN(lowest, h - 2*(double)w->bodies.pos[4*i + 3]);
+        diameter += 2*(double)w->bodies.pos[4*i + 3];
+        count++;
+    }
+    if (!count) return 1;
+    s->width = diameter/count;                  /* rows were metres till now */
+    for (i = 0; i < w->bodies.count; i++) {
+        if (s->root[i] != s->heap) continue;
+        demi_surface_place(w, s, i, &row, &column);
+        least = DEMI_MIN(least, row);
+        most = DEMI_MAX(most, row);
+    }
+    s->from = least*s->width;
+    if (!(most - least < 1e5)) return 1;        /* a grain is far off: no surface */
+    s->rows = (int)(most - least) + 1;
+    s->columns = w->desc.planar ? (s->around ? 2 : 1) : s->around ? 12 : 16;
+    s->top = (double *)demi_alloc(w, (size_t)s->rows*(size_t)s->columns, sizeof(double));
+    if (!s->top) return 0;
+    for (i = 0; i < s->rows*s->columns; i++) s->top[i] = -1;
+    for (i = 0; i < w->bodies.count; i++) {
+        double h, *top;
+        if (s->root[i] != s->heap) continue;
+        h = demi_surface_place(w, s, i, &row, &column) - lowest;
+        if (!(row >= 0 && row < s->rows)) continue;
+        top = &s->top[(int)row*s->columns + column];
+        *top = DEMI_MAX(*top, h);
+    }
+    return 1;
+}
+/* What both have in common: world, gravity, box; level directions by `axis`, or any. */
+static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box, dem_vec3 axis,
+                                    demi_surface *s) {
+    const double g = (double)demi_length(w->desc.gravity);
+    dem_real R[9];
+    memset(s, 0, sizeof *s);
+    if (!(g > 0) || demi_box_bad(box, 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: gravity is %g m/s2, must not be 0, because "
+                         "it defines the slope; the box must be finite with lo below hi, or both 0",
+                         call, g);
+    s->up = demi_scale(w->desc.gravity, (dem_real)(-1/g));
+    demi_frame_of(R, s->up);
+    s->along = demi_v(R[0], R[3], R[6]);
+    if (demi_dot(axis, axis) > 0) {             /* its level part */
+        s->along = demi_sub(axis, demi_scale(s->up, demi_dot(axis, s->up)));
+        if (!(demi_dot(s->along, s->along) > DEM_R(0.01)*demi_dot(axis, axis)))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is vertical, must be "
+                             "horizontal; give the axis of rotation of the drum", call,
+                             (double)axis.x, (double)axis.y, (double)axis.z);
+        s->along = demi_unit(s->along);
+    } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
+    s->out = demi_cross(s->up, s->along);       /* where the shell goes at the bottom */
+    if (demi_heaps(w, box, s)) return DEM_OK;
+    demi_free(w, s->root);
+    return demi_no_memory(w, call);
+}
+/* Frees the surface; good: 1, 0: too few places, -1: no memory. */
+static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *s, int good) {
+    int i, all = 0, heap = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        all += s->root[i] >= 0;
+        heap += s->root[i] == s->heap;
+    }
+    if (!good)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the surface of the heap has %d columns of one mean "
+                  "diameter, too few to fit a line, must be some 10; the largest heap has %d of "
+                  "the %d grains: check the box, or add grains", call,
+                  s->top ? s->rows : 0, heap, all);
+    demi_free(w, s->top);
+    demi_free(w, s->root);
+    return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
+}
+DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_repose *out) {
+    const char *call = "dem_repose_heap_get";
+    dem_world *w = (dem_world *)world;          /* its sentence, and memory for a while */
+    demi_surface s;
+    dem_vec3 sum = demi_v(0, 0, 0);
+    double mass = 0, highest = 0;
+    dem_result result;
+    int i, first, last, good = 0;
+    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    result = demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s);
+    if (result != DEM_OK) return result;
+    for (i = 0; i < w->bodies.count; i++) {
+        if (s.root[i] != s.heap) continue;
+        sum = demi_add(sum, demi_scale(demi_at(w->bodies.pos + 4*i), w->bodies.mass[i]));
+        mass += (double)w->bodies.mass[i];
+    }
+    if (mass > 0) s.centre = demi_scale(sum, (dem_real)(1/mass));
+    s.around = 1;
+    if (!demi_surface_look(w, &s)) good = -1;
+    for (i = 0; s.top && i < s.rows; i++) highest = DEMI_MAX(highest, demi_surface_row(&s, i));
+    /* outward from the last row of 80 % to the first of 20 % */
+    for (first = 0, i = 0; s.top && i < s.rows; i++)
+        if (demi_surface_row(&s, i) > 0.8*highest) first = i;
+    for (last = first; s.top && last < s.rows; last++)
+        if (!(demi_surface_row(&s, last) >= 0.2*highest)) break;
+    if (s.top) good = demi_surface_line(&s, first, last, out);
+    out->angle = -out->angle;                   /* it falls outward */
+    return demi_repose_end(w, call, &s, good);
+}
+DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
+                                   dem_repose *out) {
+    const char *call = "dem_repose_drum_get";
+    dem_world *w = (dem_world *)world;
+    demi_surface s;
+    dem_result result;
+    int good = 0;
+    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not "
+                         "zero", call, (double)axis.x, (double)axis.y, (double)axis.z);
+    result = demi_repose_begin(w, call, box, axis, &s);
+    if (result != DEM_OK) return result;
+    if (!demi_surface_look(w, &s)) good = -1;
+    if (s.top) good = demi_surface_line(&s, s.rows/4, s.rows - s.rows/4, out);
+    return demi_repose_end(w, call, &s, good);
+}
+
+/* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
+   contact memory as a sum over contacts of their own digests, for the same reason. */
+DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
+    if (demi_null_look(w, "dem_world_hash_get", w, "world")) return 0;
+    const demi_periods p = demi_periods_of(w);
+    uint64_t h = DEMI_HASH_START;
+    int i;
+    h = demi_hash(h, &w->clock.time, sizeof w->clock.time);
+    for (i = 0; i < w->bodies.slot_count; i++) {
+        const int b = w->bodies.slot_index[i];
+        dem_real x[4];
+        if (b < 0) continue;
+        /* a new list puts them there */
+        demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*b)));
+        x[3] = w->bodies.pos[4*b + 3];
+        h = demi_hash(h, &i, sizeof i);
+        h = demi_hash(h, x, sizeof x);
+        h = demi_hash(h, w->bodies.vel + 4*b, 3*sizeof(dem_real));
+        h = demi_hash(h, w->bodies.spin + 4*b, 3*sizeof(dem_real));
+        if (!w->bodies.orienting) continue;
+        h = demi_hash(h, w->bodies.orient + 4*b, 4*sizeof(dem_real));
+        h = demi_hash(h, w->bodies.angular + 4*b, 3*sizeof(dem_real));
+    }
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) {
+            h = demi_hash(h, &w->walls[i].pose.position, sizeof(dem_vec3));
+            h = demi_hash(h, w->walls[i].pose.rotation, sizeof w->walls[i].pose.rotation);
+        }
+    for (i = 0; i < w->joint_count; i++)
+        h = demi_hash(h, &w->joints[i].state.force, 2*sizeof(dem_vec3));
+    for (i = 0; i < w->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(w, i);
+        const int64_t next = f->next;
+        h = demi_hash(h, &f->random, sizeof f->random);
+        h = demi_hash(h, &next, sizeof next);
+        h = demi_hash(h, f->state.fed, sizeof f->state.fed);
+    }
+    for (i = 0; i < w->outlet_count; i++) {
+        const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
+        h = demi_hash(h, o->count, sizeof o->count);
+        h = demi_hash(h, &o->total, sizeof o->total);
+    }
+    return demi_contacts_hash(w, h);
+}

@@ -1,0 +1,532 @@
+/* ---------------------------------------------------------------------------------------------
+   >>feed
+   Grains come in between two steps, joining the list of candidates (demi_list_join), and go out in
+   the middle of one, when all have moved and a list is due. What a feed draws comes from its own
+   random state in a fixed order: class, then place and velocity until a place is free. How much is
+   due follows from the time alone. Who asks for room and puts grains in is told by a demi_feeder:
+   here a world, in >>slabs-run all slabs.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
+enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
+/* Outlets look when a list is made anew, and every so many steps: see demi_step_once. */
+enum { DEMI_OUTLET_REST = 64, DEMI_ZONES = 16 };   /* at most so many that only count */
+
+static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i; }
+static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
+    return w->outlets + i;
+}
+/* Says that nothing can be in a box, in the name of `call`; 0: something can. */
+static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar) {
+    if (demi_place(b.lo) && demi_place(b.hi) && b.hi.x > b.lo.x && b.hi.y > b.lo.y &&
+        (b.hi.z > b.lo.z || (planar && b.hi.z >= b.lo.z))) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, must "
+              "be finite with lo below hi on every axis, at most %g m from the origin; as it is "
+              "nothing can be in it: give desc.box two corners that differ", call, (double)b.lo.x,
+              (double)b.lo.y, (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z,
+              DEMI_FARTHEST);
+    return 1;
+}
+static int demi_box_bad(dem_box b, int planar) {
+    return !demi_finite3(b.lo) || !demi_finite3(b.hi) || !(b.hi.x >= b.lo.x) ||
+           !(b.hi.y >= b.lo.y) || (!planar && !(b.hi.z >= b.lo.z));
+}
+/* Index of the material of class k. */
+static int demi_feed_material(const dem_feed_desc *d, int k) {
+    return (d->materials[k].id ? d->materials[k].id : d->material.id) - 1;
+}
+/* The scale at which a shape has the volume of a sphere of this radius; the sphere around it. */
+static dem_real demi_feed_scale(const dem_world *w, const dem_feed_desc *d, int k,
+                                dem_real radius) {
+    return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : 1;
+}
+static dem_real demi_feed_reach(const dem_world *w, const dem_feed_desc *d, int k,
+                                dem_real radius) {
+    if (!d->shapes[k].id) return radius;
+    return w->shapes[d->shapes[k].id - 1].radius*demi_feed_scale(w, d, k, radius);
+}
+/* Sizes of class k, its mean mass; 0 with a sentence. */
+static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) {
+    const dem_sizes *d = f->desc.sizes[k];
+    const int m = demi_feed_material(&f->desc, k);
+    const double one = demi_sphere_mass(w, m, 1);
+    demi_size_table *t;
+    double mean = 0;
+    int i;
+    f->lo[k] = f->hi[k] = (double)f->desc.radius[k];
+    if (d && !demi_size_ends(w, call, d, &f->lo[k], &f->hi[k])) return 0;
+    if (demi_mass_refuse(w, call, m, (dem_real)f->lo[k], k) ||
+        demi_mass_refuse(w, call, m, (dem_real)f->hi[k], k)) return 0;
+    f->mass[k] = demi_sphere_mass(w, m, f->lo[k]);
+    f->desc.radius[k] = (dem_real)f->lo[k];     /* the smallest: for the time step */
+    if (!d) return 1;
+    f->desc.sizes[k] = 0;
+    t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
+    if (!t) { demi_no_memory(w, call); return 0; }
+    demi_size_table_make(w, d, f->lo[k], f->hi[k], t);
+    for (i = 0; i <= DEMI_FEED_SIZES; i++) {
+        const double b = t->at[i*(DEMI_SIZE_STEPS/DEMI_FEED_SIZES)];
+        const double a = i ? t->at[(i - 1)*(DEMI_SIZE_STEPS/DEMI_FEED_SIZES)] : b;
+        f->finer[k][i] = t->number[i*(DEMI_SIZE_STEPS/DEMI_FEED_SIZES)];
+        mean += (f->finer[k][i] - (i ? f->finer[k][i - 1] : 0))*
+            (w->desc.planar ? (a*a + a*b + b*b)/3 : (a + b)*(a*a + b*b)/4);
+    }
+    f->mass[k] = one*mean;
+    demi_free(w, t);
+    return 1;
+}
+/* A share of the number of class k is finer than this, m. */
+static double demi_feed_size(const demi_feed *f, int k, double share) {
+    const double step = demi_log(f->hi[k]/f->lo[k])/(int)DEMI_FEED_SIZES, *finer = f->finer[k];
+    int lo = 0, hi = DEMI_FEED_SIZES;
+    double a, b;
+    if (!(f->hi[k] > f->lo[k]) || share < finer[0]) return f->lo[k];
+    while (hi - lo > 1) {
+        const int mid = (lo + hi)/2;
+        if (finer[mid] <= share) lo = mid;
+        else hi = mid;
+    }
+    a = f->lo[k]*demi_exp(lo*step);
+    b = f->lo[k]*demi_exp(hi*step);
+    return a + (b - a)*(share - finer[lo])/DEMI_MAX(finer[hi] - finer[lo], 1e-300);
+}
+/* 1 with a sentence when class k has a material or a shape that does not exist or that a wall does
+   not know. */
+static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc *d, int k) {
+    int m;
+    if (d->materials[k].id &&
+        demi_material_index(w, call, d->materials[k], &m) != DEM_OK) return 1;
+    if (!d->shapes[k].id) return 0;
+    m = demi_shape_index(w, call, d->shapes[k]);
+    return m < 0 || demi_walls_strange(w, call, m);
+}
+DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
+    if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
+    const char *call = "dem_feed_add";
+    demi_feed feed;
+    dem_feed id;
+    int k, m = 0, shaped = 0;
+    id.id = 0;
+    if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
+    if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required); set "
+                  "it to the number of entries of radius and amount", call, d->class_count,
+                  (int)DEM_CLASSES);
+        return id;
+    }
+    memset(&feed, 0, sizeof feed);
+    feed.desc = *d;
+    for (k = 0; k < d->class_count; k++) {
+        if (demi_feed_strange(w, call, d, k)) return id;
+        if ((!d->sizes[k] && !(d->radius[k] > 0)) || !demi_finite(d->radius[k]) ||
+            !(d->amount[k] > 0) || !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be "
+                      "> 0 and finite; leave out classes that do not occur", call, k,
+                      (double)d->radius[k], d->amount[k]);
+            return id;
+        }
+        if (!demi_feed_sizes(w, call, &feed, k)) return id;
+        shaped |= d->shapes[k].id > 0;
+        if (d->limited) {
+            const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
+            if (!(count >= 1 && count < 1e15)) {
+                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has amount %g, which is %.3g grains "
+                          "of %g kg, must be 1 to 1e15; check amount and by_mass", call, k,
+                          d->amount[k], count - 0.5, feed.mass[k]);
+                return id;
+            }
+            feed.limit[k] = (uint64_t)count;
+        }
+    }
+    if (!demi_finite_double(d->rate) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end) || !(d->rate >= 0) || !(d->rate < 1e15) ||
+        !(d->start >= 0) || !(d->end >= 0) || !(d->spread >= 0) ||
+        !((double)d->spread <= DEMI_FARTHEST) || !demi_place(d->velocity) ||
+        (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s, "
+                  "velocity up to %g m/s; all must be finite and at most %g, all but the velocity "
+                  ">= 0, the end 0 or after the start; a feed of all grains at once (rate 0) "
+                  "needs `limited`, or it never ends", call, d->rate, d->start, d->end,
+                  (double)d->spread, demi_size(d->velocity), DEMI_FARTHEST);
+        return id;
+    }
+    if (demi_box_bad(d->box, w->desc.planar)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; set it to "
+                  "the region of the centres of new grains", call);
+        return id;
+    }
+    if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
+        (shaped && (!demi_list_drop(w) || !demi_orient_begin(w)))) {
+        demi_no_memory(w, call);
+        return id;
+    }
+    feed.random = d->seed;
+    feed.next = -1;
+    *demi_feed_at(w, w->feed_count++) = feed;
+    w->stage.dt_valid = 0;                            /* for grains that are to come */
+    demi_built(w, call);
+    id.id = w->feed_count;
+    return id;
+}
+static int demi_feed_left(const demi_feed *f) {              /* is there anything more to come? */
+    int k, more = !f->desc.limited;
+    for (k = 0; k < f->desc.class_count && !more; k++) more = f->limit[k] > f->state.fed[k];
+    return more;
+}
+/* Draws the next grain. Its class: by what is left of each, where that is limited, else by the
+   share of each in numbers; then its size and orientation, where they are not given. */
+static void demi_feed_draw(const dem_world *w, demi_feed *f) {
+    double weight[DEM_CLASSES], sum = 0, at;
+    const int n = f->desc.class_count;
+    int k;
+    for (k = 0; k < n; k++) {
+        weight[k] = f->desc.limited ? (double)(f->limit[k] - f->state.fed[k])
+            : f->desc.by_mass ? f->desc.amount[k]/f->mass[k] : f->desc.amount[k];
+        sum += weight[k];
+    }
+    at = sum*demi_uniform(&f->random);
+    for (k = 0; k < n - 1 && at >= weight[k]; k++) at -= weight[k];
+    while (k > 0 && !(weight[k] > 0)) k--;      /* round-off at the end */
+    f->next = k;
+    f->drawn.radius = (dem_real)(f->hi[k] > f->lo[k]
+                                 ? demi_feed_size(f, k, demi_uniform(&f->random)) : f->lo[k]);
+    f->drawn.reach = demi_feed_reach(w, &f->desc, k, f->drawn.radius);
+    f->drawn.mass = demi_sphere_mass(w, demi_feed_material(&f->desc, k), (double)f->drawn.radius);
+    f->drawn.orientation = f->desc.shapes[k].id ? demi_quat_random(w, &f->random)
+                                                : dem_quat_make(1, 0, 0, 0);
+}
+/* Who feeds: looks at who is near a feed's region, then puts in grains of the class drawn, as long
+   as it answers 1; 0: no room; less: minus the result, the sentence is told, nothing happened. */
+typedef struct demi_feeder {
+    dem_result (*look)(void *who, const demi_region *g, dem_real radius);
+    int (*put)(void *who, demi_feed *f, const demi_region *g);
+    void *who;
+} demi_feeder;
+/* Draws a place and a velocity. 0: the place is not of the region. */
+static int demi_feed_try(const dem_world *w, demi_feed *f, const demi_region *g, dem_vec3 *x,
+                         dem_vec3 *v) {
+    const dem_feed_desc *d = &f->desc;
+    double u[6];
+    int k;
+    for (k = 0; k < 6; k++) u[k] = demi_uniform(&f->random);
+    *v = demi_v(d->velocity.x + d->spread*(dem_real)(2*u[3] - 1),
+                d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
+                d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
+    if (w->desc.planar) v->z = 0;
+    return demi_region_at(g, u, f->drawn.reach, x);
+}
+/* The grain of the class drawn becomes a body; room has been seen to. Answers its index. */
+static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_vec3 v) {
+    const int k = (int)f->next, shape = f->desc.shapes[k].id;
+    const uint32_t slot = demi_body_append(w, demi_feed_material(&f->desc, k), f->drawn.radius, x);
+    const int i = w->bodies.slot_index[slot];
+    if (shape)
+        demi_body_shape(w, i, shape - 1, demi_feed_scale(w, &f->desc, k, f->drawn.radius),
+                        f->drawn.orientation);
+    demi_put(w->bodies.vel + 4*i, v);
+    demi_put(w->bodies.half_vel + 4*i, v);
+    w->booked.inserted += demi_body_energy(w, i);
+    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
+    return i;
+}
+/* The grain drawn last is in. */
+static void demi_feed_count(demi_feed *f) {
+    f->state.fed[f->next]++;
+    f->state.total++;
+    f->state.mass += f->drawn.mass;
+    f->next = -1;
+}
+/* A world that feeds, and who is near the region. */
+typedef struct demi_world_feeder { dem_world *w; demi_crowd crowd; } demi_world_feeder;
+static dem_result demi_world_look(void *who, const demi_region *g, dem_real radius) {
+    demi_world_feeder *to = (demi_world_feeder *)who;
+    return demi_crowd_begin(to->w, &to->crowd, g, radius, demi_periods_of(to->w)) ? DEM_OK
+        : demi_no_memory(to->w, "dem_world_step");
+}
+/* The first of some places that is free. The grain joins the list there is, if it can: then nothing
+   of the others' state is made anew. Else the list is, before the step. */
+static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
+    dem_world *w = ((demi_world_feeder *)who)->w;
+    demi_crowd *c = &((demi_world_feeder *)who)->crowd;
+    const dem_real r = f->drawn.reach;
+    const uint64_t random = f->random;
+    dem_vec3 x, v;
+    int32_t found[DEMI_FEED_NEAR];
+    int tries, i, count = 0, free_place = 0, joins;
+    for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++)
+        free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
+    if (!free_place) return 0;
+    x = demi_place_of(&c->p, x);
+    joins = !f->desc.shapes[f->next].id &&
+        demi_join_possible(w, demi_feed_material(&f->desc, (int)f->next), r);
+    /* one that joins may stand at the half step, too */
+    if (!joins || !w->stage.primed) demi_finish(w);
+    if (joins)
+        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found,
+                                DEMI_FEED_NEAR);
+    joins = joins && count <= DEMI_FEED_NEAR;
+    if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + 1) ||
+        (joins && !demi_quiet_reserve(w, w->bodies.count + 1))) {
+        f->random = random;
+        return -(int)demi_no_memory(w, "dem_world_step");
+    }
+    i = demi_feed_append(w, f, x, v);
+    if (joins) {
+        qsort(found, (size_t)count, sizeof *found, demi_int_compare);
+        joins = demi_list_join(w, i, found, count);
+        w->stage.pairs_changed |= !joins;             /* then the list is made anew */
+    }
+    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0)
+        demi_scene_changed(w);                  /* something may push it */
+    /* it touches nobody: no force on it is known yet */
+    else if (w->stage.primed) demi_prime_body(w, i);
+    demi_feed_count(f);
+    return 1;
+}
+/* Where a feed's grains may begin: centres of all sizes alike. */
+static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_region *g) {
+    dem_region region = dem_region_make(d->box);
+    region.cylinder = d->round ? 'z' : 0;
+    region.inside = d->inside;
+    region.user = d->inside_user;
+    return demi_region_make(w, &region, 0, g);
+}
+/* All that is due now by the clock of w, whose feeds they are. */
+static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
+    dem_result result;
+    int i, k;
+    for (i = 0; i < w->feed_count; i++) {
+        demi_feed *f = demi_feed_at(w, i);
+        const dem_feed_desc *d = &f->desc;
+        const double until = d->end > 0 && w->clock.time > d->end ? d->end : w->clock.time;
+        const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
+        int looked = 0;                         /* is the crowd there? */
+        demi_region g;
+        while (w->clock.time >= d->start && w->clock.steps >= f->again && demi_feed_left(f)) {
+            const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
+            int done;
+            if (f->next < 0) {
+                const uint64_t random = f->random;
+                demi_feed_draw(w, f);
+                if (d->by_mass ? f->state.mass + f->drawn.mass > due + rounded
+                    : (double)f->state.total + 1 > due + rounded) {
+                    f->random = random;         /* not yet: drawn again when it is */
+                    f->next = -1;
+                    break;
+                }
+            }
+            if (!looked) {
+                dem_real r = 0;
+                for (k = 0; k < d->class_count; k++) {
+                    const dem_real reach = demi_feed_reach(w, d, k, (dem_real)f->hi[k]);
+                    r = DEMI_MAX(r, reach);
+                }
+                demi_feed_region(w, d, &g);
+                result = feeder->look(feeder->who, &g, r + demi_cover(w));
+                if (result != DEM_OK) return result;
+                looked = 1;
+            }
+            done = feeder->put(feeder->who, f, &g);
+            if (done < 0) return (dem_result)-done;
+            if (!done) f->again = w->clock.steps + DEMI_FEED_REST;
+        }
+        f->state.waiting = 0;
+        if (f->next >= 0) {
+            double waits = d->by_mass || !(d->rate > 0) ? 1 : due - (double)f->state.total;
+            uint64_t most = 0;
+            for (k = 0; k < d->class_count; k++) most += f->limit[k] - f->state.fed[k];
+            if (!(d->rate > 0) || (d->limited && waits > (double)most)) waits = (double)most;
+            waits = DEMI_MIN(DEMI_MAX(waits, 0), 1e18);        /* fits a whole number */
+            f->state.waiting = (uint64_t)(waits + 1e-9*waits);
+        }
+        f->state.done = f->next < 0 &&
+            (!demi_feed_left(f) || (d->end > 0 && w->clock.time > d->end));
+    }
+    return DEM_OK;
+}
+/* What is due in a world that is not dealt to slabs; before a step. */
+static dem_result demi_world_feed(dem_world *w) {
+    demi_world_feeder to;
+    demi_feeder feeder;
+    to.w = w;
+    feeder.look = demi_world_look;
+    feeder.put = demi_world_put;
+    feeder.who = &to;
+    return demi_feeds_run(w, &feeder);
+}
+DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
+    if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    if (id.id < 1 || id.id > w->feed_count)
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
+                         "exist, ids in this world are 1 to %d; adding it failed or it belongs to "
+                         "another world: check the id that dem_feed_add returned", (int)id.id,
+                         w->feed_count);
+    *state = demi_feed_at(w, id.id - 1)->state;
+    return DEM_OK;
+}
+
+DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
+    if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
+    const char *call = "dem_outlet_add";
+    demi_outlet outlet;
+    dem_outlet id;
+    int kept = 0, k;
+    int bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
+        !demi_finite(d->beyond) || !demi_finite(d->wanted_min) || !demi_finite(d->wanted_max) ||
+        !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
+        (d->wanted_max > 0 && !(d->wanted_max > d->wanted_min));
+    id.id = 0;
+    for (k = 0; k < d->class_count && !bad; k++)
+        bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, beyond is %g m, wanted is %g to "
+                  "%g m; there must be 0 to %d classes with ascending radii, lengths must be "
+                  ">= 0, and wanted_min below wanted_max", call, d->class_count, (double)d->beyond,
+                  (double)d->wanted_min, (double)d->wanted_max, (int)DEM_CLASSES);
+        return id;
+    }
+    if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
+    if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
+    if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
+    for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
+    if (d->keep && kept == DEMI_ZONES) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: keep is %d, but %d outlets that keep their grains "
+                  "exist already, which is the limit; count by classes instead", call, d->keep,
+                  kept);
+        return id;
+    }
+    if ((d->keep && !demi_zones_begin(w)) ||
+        !DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
+        demi_no_memory(w, call);
+        return id;
+    }
+    memset(&outlet, 0, sizeof outlet);
+    outlet.desc = *d;
+    outlet.state.since = w->clock.time;
+    outlet.zone = d->keep ? kept : -1;
+    *demi_outlet_at(w, w->outlet_count++) = outlet;
+    demi_built(w, call);
+    id.id = w->outlet_count;
+    return id;
+}
+/* The class of a grain: that whose radius is nearest. */
+static int demi_outlet_class(const dem_outlet_desc *d, dem_real r) {
+    int k = 0;
+    while (k + 1 < d->class_count && 2*r > d->radius[k] + d->radius[k + 1]) k++;
+    return k;
+}
+/* Counts grain i: in its class, and as wanted or not. */
+static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
+    const dem_outlet_desc *d = &o->desc;
+    const dem_real r = w->bodies.pos[4*i + 3];
+    const double m = (double)w->bodies.mass[i];
+    const int k = demi_outlet_class(d, r);
+    const int wanted = r >= d->wanted_min && (!(d->wanted_max > 0) || r <= d->wanted_max);
+    o->state.count[k]++;
+    o->state.mass[k] += m;
+    o->state.total++;
+    o->state.total_mass += m;
+    *(wanted ? &o->state.sorted : &o->state.gangue) += 1;
+    *(wanted ? &o->state.sorted_mass : &o->state.gangue_mass) += m;
+    o->state.last = w->clock.time;
+}
+static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
+    return x.x >= d->box.lo.x && x.x <= d->box.hi.x && x.y >= d->box.lo.y && x.y <= d->box.hi.y &&
+           x.z >= d->box.lo.z && x.z <= d->box.hi.z &&
+           x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
+}
+/* A place in the frame of an outlet's region; in a periodic world the image nearest to the region's
+   centre, or, of a region without end, the one in the box. */
+static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
+                                  const dem_outlet_desc *d, dem_vec3 x) {
+    const dem_pose *pose = d->frame.id ? &w->walls[demi_wall_place(d->frame)].pose : 0;
+    dem_vec3 c = demi_scale(demi_add(d->box.lo, d->box.hi), DEM_R(0.5));
+    if (p->any) {
+        dem_real at[3], mid[3];
+        int k;
+        if (pose) c = demi_add(pose->position, demi_rotate(pose->rotation, c));
+        demi_put(at, x);
+        demi_put(mid, c);
+        for (k = 0; k < 3; k++)
+            at[k] = demi_into(at[k], DEMI_ABS(mid[k] - p->lo[k]) < 1000*p->period[k]
+                              ? mid[k] - p->half[k] : p->lo[k], p->period[k]);
+        x = demi_at(at);
+    }
+    return pose ? demi_unrotate(pose->rotation, demi_sub(x, pose->position)) : x;
+}
+/* Is grain i in the region, and one of those that it is for? */
+static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const demi_outlet *o,
+                            int i) {
+    const dem_outlet_desc *d = &o->desc;
+    if (d->frame.id && !demi_wall_there(w, d->frame)) return 0;
+    if (d->material.id && w->bodies.material[i] != d->material.id) return 0;
+    return demi_outlet_has(d, demi_outlet_place(w, p, d, demi_at(w->bodies.pos + 4*i)));
+}
+/* Grain i as a counting outlet sees it: has it come in, or gone back? */
+static void demi_outlet_count(dem_world *w, demi_outlet *o, int i, int in) {
+    const uint32_t bit = 1u << o->zone, known = bit << DEMI_ZONES, before = w->bodies.zones[i];
+    const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+    if (before & known) {
+        if (in && !(before & bit)) demi_outlet_book(w, o, i);
+        if (!in && (before & bit)) {
+            o->state.back[k]++;
+            o->state.back_mass[k] += (double)w->bodies.mass[i];
+            o->state.back_total++;
+            o->state.back_total_mass += (double)w->bodies.mass[i];
+        }
+    }
+    w->bodies.zones[i] = (before & ~bit) | known | (in ? bit : 0);
+}
+/* After a move: those that only count look; then the first outlet that a grain is in takes it. */
+static dem_result demi_outlets_run(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    for (i = 0; i < w->bodies.count && w->outlet_count; i++) {
+        demi_outlet *takes = 0;
+        for (k = 0; k < w->outlet_count && !demi_is_ghost(w, i); k++) {
+            demi_outlet *o = demi_outlet_at(w, k);
+            if (takes && o->zone < 0) continue;
+            if (o->zone >= 0) demi_outlet_count(w, o, i, demi_outlet_sees(w, &p, o, i));
+            else if (demi_outlet_sees(w, &p, o, i)) takes = o;
+        }
+        if (!takes) continue;
+        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+        demi_outlet_book(w, takes, i);
+        demi_body_take_out(w, i--);
+        w->bodies.balance.left++;
+    }
+    return DEM_OK;
+}
+static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
+    if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
+    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, ids in this "
+              "world are 1 to %d; adding it failed or it belongs to another world: check the id "
+              "that dem_outlet_add returned", call, (int)id.id, w->outlet_count);
+    return 0;
+}
+DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
+    if (demi_null_look(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
+    const demi_periods p = demi_periods_of(w);
+    int i;
+    if (!o) return DEM_ERROR_ARGUMENT;
+    *state = o->state;
+    for (i = 0; i < w->bodies.count && o->zone >= 0; i++) {
+        const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+        const double m = (double)w->bodies.mass[i];
+        if (!demi_outlet_sees(w, &p, o, i)) continue;
+        state->held[k]++;
+        state->held_mass[k] += m;
+        state->held_total++;
+        state->held_total_mass += m;
+    }
+    return DEM_OK;
+}
+DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
+    if (demi_null(w, "dem_outlet_reset", w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_outlet *o = demi_outlet_find(w, "dem_outlet_reset", id);
+    if (!o) return DEM_ERROR_ARGUMENT;
+    memset(&o->state, 0, sizeof o->state);
+    o->state.since = w->clock.time;
+    return DEM_OK;
+}

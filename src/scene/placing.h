@@ -1,0 +1,601 @@
+/* ---------------------------------------------------------------------------------------------
+   >>placing
+   Where new grains find room: one engine for fills, packings and feeds. A region says which places
+   there are: a box, of which an axis that holds a whole period has no faces, a cylinder in it, a
+   function. A crowd says who is near: spheres in a tree of boxes, halved along the longest side
+   whenever one holds more than a few; each box knows the largest radius in it, so that what cannot
+   be near is passed over whole, whatever the mixture (1:100 and more), and nobody looks at every
+   body for every place. Walls are asked through their own cells. Places are tried at random, one
+   after the other, none moves another away [random sequential addition], by random numbers of their
+   own: the same seed gives the same places.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_CROWD_LEAF = 8, DEMI_CROWD_DEPTH = 60 };
+/* Tries for one grain: places that were taken, and places that the region does not have. */
+enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
+/* Lattice places that a packing looks at. */
+#define DEMI_PACK_MOST 3e8
+
+typedef struct demi_node {
+    int32_t child;                 /* the first of its two halves; 0: a leaf */
+    int32_t first, count;          /* of a leaf: spheres, from `first` on by `next` */
+    dem_real largest;              /* m, largest radius below it */
+} demi_node;
+typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
+typedef struct demi_crowd {
+    demi_periods p;
+    double lo[3], size[3];         /* of the tree's box; on a periodic axis the whole period */
+    int count, nodes;
+} demi_crowd;
+/* A box on the way down the tree. */
+typedef struct demi_nook { int32_t node; double lo[3], size[3]; } demi_nook;
+
+static demi_sphere *demi_crowd_spheres(const dem_world *w) {
+    return w->crowd;
+}
+static demi_node *demi_crowd_nodes(const dem_world *w) {
+    return w->crowd_nodes;
+}
+static int demi_longest(const double *size) {
+    const int k = size[1] > size[0];
+    return size[2] > size[k] ? 2 : k;
+}
+/* The half of a nook that is below (0) or above (1) its middle. */
+static demi_nook demi_nook_half(const demi_nook *n, int32_t child, int upper) {
+    demi_nook h = *n;
+    const int k = demi_longest(n->size);
+    h.node = child + upper;
+    h.size[k] = n->size[k]/2;
+    if (upper) h.lo[k] += h.size[k];
+    return h;
+}
+static int demi_nook_upper(const demi_nook *n, dem_vec3 x) {
+    const int k = demi_longest(n->size);
+    return (double)(k == 0 ? x.x : k == 1 ? x.y : x.z) >= n->lo[k] + n->size[k]/2;
+}
+/* The whole of the tree's box. */
+static demi_nook demi_crowd_root(const demi_crowd *c) {
+    demi_nook n;
+    n.node = 0;
+    memcpy(n.lo, c->lo, sizeof n.lo);
+    memcpy(n.size, c->size, sizeof n.size);
+    return n;
+}
+/* Sphere i, first in the leaf's chain. */
+static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
+    all[i].next = leaf->first;
+    leaf->first = i;
+    leaf->count++;
+    leaf->largest = DEMI_MAX(leaf->largest, all[i].radius);
+}
+/* Halves a leaf. 0 when memory ran out; it is as it was. */
+static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
+    demi_sphere *all = demi_crowd_spheres(w);
+    demi_node *nodes;
+    int32_t i, next;
+    int k;
+    if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
+    nodes = demi_crowd_nodes(w);
+    nodes[at->node].child = c->nodes;
+    for (k = 0; k < 2; k++) {
+        demi_node *half = nodes + c->nodes++;
+        half->child = half->count = 0;
+        half->first = -1;
+        half->largest = 0;
+    }
+    for (i = nodes[at->node].first; i >= 0; i = next) {
+        next = all[i].next;
+        demi_leaf_put(nodes + nodes[at->node].child + demi_nook_upper(at, all[i].at), all, i);
+    }
+    return 1;
+}
+/* One more sphere in the crowd. What stands outside the tree's box counts to the nearest leaf,
+   which is never farther from a place in the box than the sphere is. body: its index, if it is one
+   already. 0 when memory ran out. */
+static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius, int body) {
+    demi_nook at = demi_crowd_root(c);
+    demi_sphere *s;
+    demi_node *node;
+    int depth = 0;
+    if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
+    s = demi_crowd_spheres(w) + c->count;
+    s->at = demi_place_of(&c->p, x);
+    s->radius = radius;
+    s->body = body;
+    for (;;) {
+        node = demi_crowd_nodes(w) + at.node;
+        node->largest = DEMI_MAX(node->largest, radius);
+        if (!node->child && node->count >= DEMI_CROWD_LEAF && depth < DEMI_CROWD_DEPTH &&
+            !demi_leaf_split(w, c, &at)) return 0;
+        node = demi_crowd_nodes(w) + at.node;
+        if (!node->child) break;
+        at = demi_nook_half(&at, node->child, demi_nook_upper(&at, s->at));
+        depth++;
+    }
+    demi_leaf_put(node, demi_crowd_spheres(w), c->count++);
+    return 1;
+}
+/* How far a place is from a nook, squared; less where that takes no thought. */
+static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const double *x) {
+    double d2 = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double below = n->lo[k] - x[k], above = x[k] - n->lo[k] - n->size[k];
+        const double period = (double)c->p.period[k];
+        double d = below > above ? below : above;
+        if (!(d > 0)) continue;
+        if (period > 0) {                       /* or the other way round */
+            const double round = period - n->size[k] - d;
+            d = round < 0 ? 0 : DEMI_MIN(d, round);
+        }
+        d2 += d*d;
+    }
+    return d2;
+}
+/* How many of the crowd a sphere overlaps, and the bodies they are; ends with the first that
+   `found` has no room for. Its centre is in the tree's box. */
+static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
+                           dem_real radius, int32_t *found, int room) {
+    const demi_sphere *all = demi_crowd_spheres(w);
+    const demi_node *nodes = demi_crowd_nodes(w);
+    const dem_vec3 at = demi_place_of(&c->p, centre);
+    demi_nook stack[DEMI_CROWD_DEPTH + 2];
+    double x[3];
+    int top = 0, count = 0, i;
+    if (!c->count) return 0;
+    x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
+    stack[top++] = demi_crowd_root(c);
+    while (top) {
+        const demi_nook n = stack[--top];
+        const demi_node *node = nodes + n.node;
+        const double cut = (double)(radius + node->largest);
+        if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
+        if (node->child) {                      /* the half it is in comes first */
+            const int upper = demi_nook_upper(&n, at);
+            stack[top++] = demi_nook_half(&n, node->child, !upper);
+            stack[top++] = demi_nook_half(&n, node->child, upper);
+            continue;
+        }
+        for (i = node->first; i >= 0; i = all[i].next) {
+            const dem_vec3 d = demi_nearest(&c->p, demi_sub(all[i].at, at));
+            const dem_real s = all[i].radius + radius;
+            if (!(demi_dot(d, d) < s*s)) continue;
+            if (count++ == room) return count;
+            found[count - 1] = all[i].body;
+        }
+    }
+    return count;
+}
+/* Does a sphere overlap nobody in the crowd? */
+static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
+                           dem_real radius) {
+    return !demi_crowd_look(w, c, centre, radius, 0, 0);
+}
+
+/* --- regions --- */
+
+/* Where centres may be, ready for drawing. */
+typedef struct demi_region {
+    dem_vec3 lo;                   /* m */
+    double size[3];
+    int cylinder;                  /* 1 + the axis it is along; 0: all of the box */
+    dem_inside_fn inside;
+    void *user;
+} demi_region;
+
+/* Centres keep `off` (m) from the faces of the box. A box that holds a whole period has no faces
+   on that axis. 0: there is no room. */
+static int demi_region_make(const dem_world *w, const dem_region *from, double off,
+                            demi_region *to) {
+    const demi_periods p = demi_periods_of(w);
+    dem_real lo[3], hi[3];
+    int k, ok = 1;
+    demi_put(lo, from->box.lo);
+    demi_put(hi, from->box.hi);
+    for (k = 0; k < 3; k++) {
+        const double side = (double)hi[k] - (double)lo[k], period = (double)p.period[k];
+        to->size[k] = side - 2*off;
+        if (period > 0 && side >= period*(1 - 1e-6)) {
+            to->size[k] = period;
+            lo[k] = p.lo[k];
+        } else lo[k] += (dem_real)off;
+        if (k == 2 && w->desc.planar) {
+            to->size[k] = 0;
+            lo[k] = 0;
+        }
+        ok = ok && to->size[k] >= 0;
+    }
+    to->lo = demi_at(lo);
+    to->cylinder = from->cylinder ? 1 + from->cylinder - 'x' : 0;
+    to->inside = from->inside;
+    to->user = from->user;
+    return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
+}
+/* True if the centre x, whose place in the box is u (0 to 1 on each axis), is in the region. */
+static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, dem_real radius) {
+    double round = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        if (g->cylinder && g->cylinder != 1 + k) round += (2*u[k] - 1)*(2*u[k] - 1);
+    return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
+}
+/* The place that three numbers from 0 to 1 name. 0: not of the region. */
+static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
+    *x = demi_v(g->lo.x + (dem_real)(g->size[0]*u[0]), g->lo.y + (dem_real)(g->size[1]*u[1]),
+                g->lo.z + (dem_real)(g->size[2]*u[2]));
+    return demi_region_keeps(g, u, *x, radius);
+}
+/* The same for a centre that is in the box. */
+static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
+    const dem_vec3 off = demi_sub(x, g->lo);
+    const double at[3] = {(double)off.x, (double)off.y, (double)off.z};
+    double u[3];
+    int k;
+    for (k = 0; k < 3; k++) u[k] = g->size[k] > 0 ? at[k]/g->size[k] : 0.5;
+    return demi_region_keeps(g, u, x, radius);
+}
+
+/* Begins a crowd with the bodies that spheres of this radius in the region could overlap; one look
+   at each body. p: the scene's, which a slab does not have. 0 when memory ran out. */
+static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
+                            demi_periods p) {
+    dem_vec3 mid;
+    double half[3];
+    demi_node *root;
+    int i, k;
+    c->p = p;
+    demi_walls_repeat(w);
+    c->count = 0;
+    c->nodes = 1;
+    if (!DEMI_GROW(w, w->crowd_nodes, 1)) return 0;
+    root = demi_crowd_nodes(w);
+    root->child = root->count = 0;
+    root->first = -1;
+    root->largest = 0;
+    c->lo[0] = (double)g->lo.x; c->lo[1] = (double)g->lo.y; c->lo[2] = (double)g->lo.z;
+    for (k = 0; k < 3; k++) half[k] = g->size[k]/2;
+    mid = demi_v((dem_real)(c->lo[0] + half[0]), (dem_real)(c->lo[1] + half[1]),
+                 (dem_real)(c->lo[2] + half[2]));
+    for (k = 0; k < 3; k++) {
+        c->size[k] = g->size[k];
+        if (!(c->p.period[k] > 0)) continue;
+        c->lo[k] = (double)c->p.lo[k];
+        c->size[k] = (double)c->p.period[k];
+    }
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->bodies.pos + 4*i), mid));
+        /* a part in a thousand more: rounding must not lose a neighbour */
+        const double s = 1.001*(double)(r + radius);
+        if (fabs((double)d.x) > half[0]*1.001 + s || fabs((double)d.y) > half[1]*1.001 + s ||
+            fabs((double)d.z) > half[2]*1.001 + s) continue;
+        if (!demi_crowd_put(w, c, demi_at(w->bodies.pos + 4*i), r, i)) return 0;
+    }
+    return 1;
+}
+/* Its arrays go when the placing is done; feeds, which place again and again, keep theirs. */
+static void demi_crowd_end(dem_world *w) {
+    demi_free(w, w->crowd);
+    demi_free(w, w->crowd_nodes);
+    demi_free(w, w->crowd_turned);
+    w->crowd = 0;
+    w->crowd_nodes = 0;
+    w->crowd_turned = 0;
+}
+
+/* --- walls --- */
+
+/* Does a sphere touch none of the elements of a wall? at: in the wall's frame. */
+static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) {
+    const dem_real touch = radius*(DEMI_SINGLE ? DEM_R(0.9999) : DEM_R(0.999999999));
+    const dem_vec3 out = demi_v(radius, radius, radius);
+    int k, x, y, z, f[3], l[3];
+    if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
+    if (!wall->cell_start) {
+        for (k = 0; k < wall->element_count; k++)
+            if (demi_wall_distance(wall, k, at, radius) < touch) return 0;
+        return 1;
+    }
+    demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
+    for (z = f[2]; z <= l[2]; z++)
+        for (y = f[1]; y <= l[1]; y++)
+            for (x = f[0]; x <= l[0]; x++) {
+                const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++)
+                    if (demi_wall_distance(wall, wall->cell_items[k], at, radius) < touch)
+                        return 0;
+            }
+    return 1;
+}
+/* Does a sphere touch no wall, where walls are now? What is behind a plane or on the wrong side of
+   a cylinder touches it; in a sieve's sheet there is no room, holes or not; the inside of a closed
+   mesh is a place like any other. */
+static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
+    int j, a, b, c, f[3], l[3];
+    for (j = 0; j < w->wall_count; j++) {
+        const demi_wall *wall = &w->walls[j];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        demi_wall_images(w, wall, x, radius, f, l);
+        for (c = f[2]; c <= l[2]; c++)
+            for (b = f[1]; b <= l[1]; b++)
+                for (a = f[0]; a <= l[0]; a++) {
+                    const dem_vec3 at = demi_add(x, demi_wall_shift(w, a, b, c));
+                    if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
+                                             demi_sub(at, wall->pose.position)), radius)) return 0;
+                }
+    }
+    return 1;
+}
+static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
+    return demi_crowd_free(w, c, x, radius) && demi_walls_clear(w, x, radius);
+}
+
+/* --- fills --- */
+
+/* All orientations are equally likely (Shoemake 1992); in a planar world all about z. */
+static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
+    const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
+    const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
+    if (w->desc.planar)
+        return dem_quat_make((dem_real)demi_cos(a/2), 0, 0, (dem_real)demi_sin(a/2));
+    return dem_quat_make((dem_real)(r*demi_sin(a)), (dem_real)(r*demi_cos(a)),
+                         (dem_real)(s*demi_sin(b)), (dem_real)(s*demi_cos(b)));
+}
+/* Adds what was placed in the crowd from sphere `first` on, all or nothing. 0 when memory ran
+   out. */
+static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material,
+                             int shape) {
+    const demi_sphere *s = demi_crowd_spheres(w);
+    const dem_real *q = w->crowd_turned;
+    int i;
+    if (!demi_list_drop(w) ||
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)(c->count - first)) ||
+        (shape >= 0 && !demi_orient_begin(w))) return 0;
+    for (i = first; i < c->count; i++) {
+        demi_body_append(w, material, s[i].radius, s[i].at);
+        if (shape >= 0)
+            demi_body_shape(w, w->bodies.count - 1, shape, 1,
+                            demi_quat_at(q + 4*(size_t)(i - first)));
+    }
+    if (c->count > first) demi_scene_changed(w);
+    return 1;
+}
+/* Finds places in a region for up to `count` spheres, of one radius or (radii) of their own, which
+   join the crowd. Answers how many; -1: memory ran out. */
+static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *region, dem_real radius,
+                            const dem_real *radii, int turned, int count, uint64_t state) {
+    demi_region g;
+    int i, k;
+    for (i = 0; i < count; i++) {
+        int taken = 0, outside = 0;
+        dem_vec3 x;
+        if (radii) radius = radii[i];
+        demi_region_make(w, region, (double)radius, &g);
+        for (;;) {
+            double u[3];
+            for (k = 0; k < 3; k++) u[k] = k == 2 && w->desc.planar ? 0 : demi_uniform(&state);
+            if (!demi_region_at(&g, u, radius, &x)) {
+                if (++outside == DEMI_FILL_OUTSIDE) return i;
+                continue;
+            }
+            if (demi_room_free(w, c, x, radius)) break;
+            if (++taken == DEMI_FILL_TRIES) return i;
+        }
+        if (!demi_crowd_put(w, c, x, radius, -1)) return -1;
+        if (!turned) continue;
+        if (!DEMI_GROW(w, w->crowd_turned, 4*((size_t)i + 1))) return -1;
+        demi_quat_put(w->crowd_turned + 4*(size_t)i, demi_quat_random(w, &state));
+    }
+    return count;
+}
+/* Where centres of spheres of this radius may be. 0 with an error message for a cylinder along no
+   axis, and for a box that is not finite or too small. */
+static int demi_region_check(dem_world *w, const char *call, const dem_region *region,
+                             dem_real radius, demi_region *g) {
+    if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z'))
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
+                  "axis of the cylinder, or 0 for the whole box", call, region->cylinder);
+    else if (!demi_place(region->box.lo) || !demi_place(region->box.hi) ||
+             !demi_region_make(w, region, (double)radius, g))
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
+                  "give lo below hi by at least a diameter", call, (double)radius);
+    else return 1;
+    return 0;
+}
+/* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
+   radius; or with spheres of these radii, the largest first. */
+static int demi_fill(dem_world *w, const char *call, dem_material material, int shape,
+                     dem_real radius, const dem_real *radii, const dem_region *region, int count,
+                     uint64_t seed) {
+    demi_region g;
+    demi_crowd c;
+    demi_calling was;
+    int m = 0, first, done;
+    if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
+    if (radii) radius = count > 0 ? radii[0] : 1;
+    if (!(radius > 0) || !demi_finite(radius) || count < 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count is %d; the radius must be "
+                  "> 0 and finite, the count >= 0", call, (double)radius, count);
+        return 0;
+    }
+    if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
+                 : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
+                   demi_walls_strange(w, call, shape)) return 0;
+    if (!demi_region_check(w, call, region, radius, &g)) return 0;
+    /* centres of the smallest are anywhere in there */
+    if (radii) demi_region_make(w, region, count ? (double)radii[count - 1] : 0, &g);
+    done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
+    first = c.count;
+    was = demi_calls(w, call, 1);
+    if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
+    w->look.calling = was;
+    if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
+    demi_crowd_end(w);
+    if (done < 0) {
+        demi_no_memory(w, call);
+        return 0;
+    }
+    if (done < count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a free position, "
+                  "clear of other bodies and walls, in %d tries each; enlarge the %s, or %s", call,
+                  done, count, shape < 0 ? "spheres" : "bodies with bounding spheres",
+                  (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
+                  region->inside ? "region" : "box", shape < 0
+                  ? "pack them with dem_spheres_pack" : "place them with dem_bodies_add");
+    demi_built(w, call);                        /* fewer than asked: the answer says so */
+    return done;
+}
+DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius,
+                             dem_region region, int count, uint64_t seed) {
+    if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
+    return demi_fill(w, "dem_spheres_fill", material, -1, radius, 0, &region, count, seed);
+}
+DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape,
+                            dem_region region, int count, uint64_t seed) {
+    const char *call = "dem_bodies_fill";
+    const int i = demi_null(w, call, w, "world") ? -1 : demi_shape_index(w, call, shape);
+    return i < 0 ? 0
+                 : demi_fill(w, call, material, i, w->shapes[i].radius, 0, &region, count, seed);
+}
+DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes *sizes,
+                           dem_region region, int count, uint64_t seed) {
+    const char *call = "dem_sizes_fill";
+    dem_real *radii;
+    int i, done = 0;
+    if (demi_null(w, call, sizes, "sizes")) return 0;
+    radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
+    if (!radii) { demi_no_memory(w, call); return 0; }
+    if (demi_sizes_draw(w, call, sizes, count, 0, radii) == DEM_OK) {
+        for (i = 0; i < count/2; i++) {         /* the largest first */
+            const dem_real r = radii[i];
+            radii[i] = radii[count - 1 - i];
+            radii[count - 1 - i] = r;
+        }
+        done = demi_fill(w, call, material, -1, 0, radii, &region, count, seed);
+    }
+    demi_free(w, radii);
+    return done;
+}
+
+/* --- packings --- */
+
+/* Sphere (i, j, k) of a hexagonal close packing of spheres of radius r that starts at the origin:
+   even and odd layers alternate. In a plane: a triangular lattice, k = 0. */
+static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
+    return demi_v((dem_real)(r*(double)(2*i + ((j + k) & 1))),
+                  (dem_real)(r*sqrt(3.0)*((double)j + (double)(k & 1)/3.0)),
+                  (dem_real)(r*(double)k*2*sqrt(6.0)/3));
+}
+typedef struct demi_lattice {
+    dem_vec3 lo;                   /* m, the first place */
+    double size[3], r;             /* m, how far the last one may be from it; half a pitch */
+    dem_real radius;
+    const demi_region *room;
+    int count;                     /* at most; 0: all */
+    double looked;                 /* places looked at */
+} demi_lattice;
+/* Free places of the lattice, in layers along z, join the crowd's array (not its tree: they do not
+   overlap each other). Answers how many; -1: memory ran out. */
+static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
+    const double slack = 1e-9*g->r;
+    int64_t i, j, k;
+    int done = 0;
+    for (k = 0;; k++) {
+        if ((double)demi_pack_site(0, 0, k, g->r).z > g->size[2] + slack ||
+            (k > 0 && w->desc.planar)) return done;
+        for (j = 0;; j++) {
+            if ((double)demi_pack_site(0, j, k, g->r).y > g->size[1] + slack) break;
+            for (i = 0;; i++) {
+                const dem_vec3 s = demi_pack_site(i, j, k, g->r);
+                const dem_vec3 x = demi_v(g->lo.x + s.x, g->lo.y + s.y,
+                                          w->desc.planar ? 0 : g->lo.z + s.z);
+                demi_sphere *to;
+                if ((double)s.x > g->size[0] + slack) break;
+                if (++g->looked > DEMI_PACK_MOST || c->count == INT_MAX/64) return done;
+                if (!demi_region_has(g->room, x, g->radius)) continue;
+                if (!demi_room_free(w, c, x, g->radius*DEM_R(0.999999))) continue;
+                if (!DEMI_GROW(w, w->crowd, (size_t)c->count + (size_t)done + 1)) return -1;
+                to = demi_crowd_spheres(w) + c->count + done++;
+                to->at = x;
+                to->radius = g->radius;
+                if (g->count && done == g->count) return done;
+            }
+        }
+    }
+}
+/* About how many places a lattice has. */
+static double demi_lattice_places(const dem_world *w, const demi_lattice *g) {
+    const double rows = g->size[1]/(g->r*sqrt(3.0)) + 1, layers = g->size[2]/(g->r*1.633) + 1;
+    return (g->size[0]/(2*g->r) + 1)*rows*(w->desc.planar ? 1 : layers);
+}
+/* A lattice in the room that centres have. 0: a period is shorter than its pitch. */
+static int demi_lattice_make(const dem_world *w, const demi_region *room, dem_real radius,
+                             dem_real padding, demi_lattice *g) {
+    const demi_periods p = demi_periods_of(w);
+    dem_real lo[3];
+    int k;
+    memset(g, 0, sizeof *g);
+    g->r = (double)radius + (double)padding/2;
+    g->radius = radius;
+    g->room = room;
+    demi_put(lo, room->lo);
+    for (k = 0; k < 3; k++) {                   /* round a period, the last keeps off the first */
+        const int full = p.period[k] > 0 && room->size[k] >= (double)p.period[k];
+        g->size[k] = room->size[k] - (full ? 2*g->r : 0);
+        if (full) lo[k] += radius;
+        if (!(g->size[k] >= 0)) return 0;
+    }
+    g->lo = demi_at(lo);
+    return 1;
+}
+DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
+                             dem_region region, int count) {
+    const char *call = "dem_spheres_pack";
+    demi_region room;
+    demi_crowd c;
+    demi_lattice g;
+    demi_calling was;
+    int m = 0, first, done;
+    if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
+        return 0;
+    if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
+        count < 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m, padding is %g m, count is %d; the "
+                  "radius must be > 0, padding and count >= 0", call, (double)radius,
+                  (double)padding, count);
+        return 0;
+    }
+    if (demi_mass_refuse(w, call, m, radius, 0) ||
+        !demi_region_check(w, call, &region, radius, &room)) return 0;
+    if (!demi_lattice_make(w, &room, radius, padding, &g)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a period is shorter than one sphere of radius %g m "
+                  "with its padding of %g m; lengthen the domain", call, (double)radius,
+                  (double)padding);
+        return 0;
+    }
+    g.count = count;
+    if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has room for about %.3g spheres of radius "
+                  "%g m, must be at most %d, the limit of a world; make the box smaller or give a "
+                  "count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
+        return 0;
+    }
+    done = demi_crowd_begin(w, &c, &room, radius, demi_periods_of(w)) ? 0 : -1;
+    first = c.count;
+    was = demi_calls(w, call, 1);
+    if (!done) done = demi_lattice_fill(w, &c, &g);
+    w->look.calling = was;
+    c.count += DEMI_MAX(done, 0);
+    if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
+    demi_crowd_end(w);
+    if (done < 0) {
+        demi_no_memory(w, call);
+        return 0;
+    }
+    if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: stopped after %.3g trial positions, with %d spheres "
+                  "of radius %g m packed; the limits are %d bodies and %g trial positions: make "
+                  "the box smaller", call, g.looked, done, (double)radius, INT_MAX/64,
+                  DEMI_PACK_MOST);
+    demi_built(w, call);
+    return done;
+}

@@ -1,0 +1,324 @@
+/* ---------------------------------------------------------------------------------------------
+   >>lists
+   What a rebuild puts next to the neighbour list: candidates on walls (elements that a body may
+   touch before the next rebuild), room for all lists, and the contacts that are kept (>>kept): they
+   go from the lists of before, by slot, to those that are new. All
+   room is made before anything moves, so that a rebuild which gets no memory has changed nothing.
+   --------------------------------------------------------------------------------------------- */
+
+/* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
+static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
+                            int element, dem_real gap, dem_vec3 shift) {
+    int k = domain->walls;
+    if (k >= w->wall_stride) { domain->overflow |= 4; return; }
+    domain->walls++;
+    k += d*w->wall_stride;
+    w->wall_body[k] = body;
+    w->wall_id[k] = wall;
+    w->wall_element[k] = element;
+    w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* a little for rounding */
+    demi_put(w->wall_shift + 3*(size_t)k, shift);
+}
+static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
+                                   dem_real enough);
+/* The candidates of one body and wall, from `first` on: ascending by element, each once, so that
+   the order does not hang on cells. */
+static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first) {
+    int32_t *e = w->wall_element + d*w->wall_stride;
+    dem_real *gap = w->wall_gap + d*w->wall_stride;
+    const int count = domain->walls - first;
+    int step, i, k, n = first;
+    for (step = 1; step < count/3; step = 3*step + 1) continue;
+    for (; step > 0; step /= 3)                 /* Shell's sort */
+        for (k = first + step; k < domain->walls; k++) {
+            const int32_t t = e[k];
+            const dem_real g = gap[k];
+            for (i = k; i >= first + step && e[i - step] > t; i -= step) {
+                e[i] = e[i - step];
+                gap[i] = gap[i - step];
+            }
+            e[i] = t;
+            gap[i] = g;
+        }
+    for (k = first; k < domain->walls; k++) {
+        if (k > first && e[k] == e[k - 1]) continue;
+        e[n] = e[k];
+        gap[n++] = gap[k];
+    }
+    domain->walls = n;
+}
+/* Elements of one wall near body i as it is seen `shift` farther on. */
+static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
+    const demi_wall *wall = &w->walls[j];
+    const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
+    const int first = domain->walls;
+    const dem_vec3 out = demi_v(near_by, near_by, near_by);
+    dem_vec3 at = demi_unrotate(wall->pose.rotation,
+                              demi_sub(demi_add(demi_at(w->bodies.pos + 4*i), shift),
+                                                            wall->pose.position));
+    dem_real away;
+    int k, x, y, z, f[3], l[3];
+    if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
+    if (!wall->cell_start) {
+        for (k = 0; k < wall->element_count; k++) {
+            away = demi_wall_distance(wall, k, at, near_by);
+            if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r, shift);
+        }
+    } else {
+        demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
+        for (z = f[2]; z <= l[2]; z++)
+            for (y = f[1]; y <= l[1]; y++)
+                for (x = f[0]; x <= l[0]; x++) {
+                    const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                    for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
+                        const int element = wall->cell_items[k];
+                        const int32_t *e = w->wall_element + d*w->wall_stride;
+                        int q = DEMI_MAX(first, domain->walls - 16);       /* rather not twice */
+                        while (q < domain->walls && e[q] != element) q++;
+                        if (q < domain->walls) continue;
+                        away = demi_wall_distance(wall, element, at, near_by);
+                        if (away < near_by)
+                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift);
+                    }
+                }
+    }
+    if (domain->walls > first) demi_walls_order(w, domain, d, first);
+}
+/* Elements of all walls near body i. */
+static void demi_body_walls(dem_world *w, int d, int i) {
+    demi_domain *domain = &w->domains[d];
+    int j, a, b, c, f[3], l[3];
+    if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
+    for (j = 0; j < w->wall_count; j++) {
+        const demi_wall *wall = &w->walls[j];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (!w->repeating) {
+            demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
+            continue;
+        }
+        demi_wall_images(w, wall, demi_at(w->bodies.pos + 4*i),
+                         w->bodies.pos[4*i + 3] + demi_cover(w), f, l);
+        for (c = f[2]; c <= l[2]; c++)
+            for (b = f[1]; b <= l[1]; b++)
+                for (a = f[0]; a <= l[0]; a++)
+                    demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
+    }
+}
+/* Candidates on walls of one domain, body by body; those of a body and wall stand together. */
+static void demi_domain_walls(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    int i;
+    domain->walls = 0;
+    domain->overflow &= ~4;
+    for (i = domain->begin; i < domain->end; i++) demi_body_walls(w, d, i);
+}
+
+/* Room for a list. 0 when memory ran out; what did grow is pointed at all the same. */
+static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
+    const size_t n = (size_t)domains*(size_t)stride;
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) &&
+                   DEMI_GROW(w, list->b, n) &&
+                   DEMI_GROW(w, list->place, n) &&
+                   DEMI_GROW(w, list->image, n);
+    if (ok) list->stride = stride;
+    return ok;
+}
+/* Has every near pair coefficients of its own? */
+static int demi_many_species(const dem_world *w) {
+    return w->effects.species_count > DEMI_SPECIES;
+}
+/* The same for the near list. */
+static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
+    const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
+                   DEMI_GROW(w, near->b, n) &&
+                   DEMI_GROW(w, near->k, n) &&
+                   DEMI_GROW(w, near->image, n) &&
+                   DEMI_GROW(w, near->balls, w->bodies.shaped ? n : 0) &&
+                   DEMI_GROW(w, near->memory, m) &&
+                   (w->effects.uniform || (demi_many_species(w)
+                       ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)
+                       : DEMI_GROW(w, near->row, n)));
+    if (ok) near->stride = stride;
+    return ok;
+}
+/* The same for candidates on walls. */
+static int demi_wall_lists_reserve(dem_world *w, int stride) {
+    const size_t n = (size_t)w->domain_count*(size_t)stride;
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
+                   DEMI_GROW(w, w->wall_id, n) &&
+                   DEMI_GROW(w, w->wall_shift, 3*n) &&
+                   DEMI_GROW(w, w->wall_gap, n) &&
+                   DEMI_GROW(w, w->wall_element, n);
+    if (ok) w->wall_stride = stride;
+    return ok;
+}
+/* Room for what domains do to walls. */
+static int demi_wall_sums_room(dem_world *w) {
+    const size_t n = (size_t)w->domain_count*(size_t)w->wall_count;
+    return DEMI_GROW(w, w->wall_sums, n) &&
+           (!demi_exchanges(w) || DEMI_GROW(w, w->wall_rates, (size_t)w->bodies.real_count*n));
+}
+/* Room for all entries that the cross lists can hold. */
+static int demi_cross_reserve(dem_world *w) {
+    const size_t entries = (size_t)w->domain_count*(size_t)w->cross.stride;
+    const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
+                   DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1)) &&
+                   (!demi_exchanges(w) ||
+                    DEMI_GROW(w, w->cross_rate,
+                              (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1)));
+    return ok;
+}
+/* The domain a body belongs to. */
+static int demi_domain_of(const dem_world *w, int body) {
+    int d = (int)((int64_t)body*w->domain_count/w->bodies.count);
+    while (body >= w->domains[d].end) d++;
+    while (body < w->domains[d].begin) d--;
+    return d;
+}
+/* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from
+   before it. */
+static void demi_cross_index(dem_world *w) {
+    int d, k, e;
+    for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
+    for (d = 0; d < w->domain_count; d++)
+        for (k = 0; k < w->domains[d].cross; k++) {
+            e = demi_domain_of(w, w->cross.b[d*w->cross.stride + k]);
+            w->cross_incoming_start[e + 1]++;
+        }
+    for (d = 0; d < w->domain_count; d++)
+        w->cross_incoming_start[d + 1] += w->cross_incoming_start[d];
+    w->cross_entries = w->cross_incoming_start[w->domain_count];
+    for (d = w->domain_count - 1; d >= 0; d--)
+        for (k = w->domains[d].cross - 1; k >= 0; k--) {
+            const int entry = d*w->cross.stride + k;
+            e = demi_domain_of(w, w->cross.b[entry]);
+            w->cross_incoming[--w->cross_incoming_start[e + 1]] = entry;
+        }
+    for (d = 0; d < w->domain_count; d++)
+        w->cross_incoming_start[d] = w->cross_incoming_start[d + 1];
+    w->cross_incoming_start[w->domain_count] = w->cross_entries;
+}
+
+/* Places that one body may have with one wall at most: its candidates of domain d from k on, *end:
+   the first that is not theirs. A polyhedron has four of each way in which it touches (a facet's
+   two sides, its curtains), and four of each of gaps. */
+static int demi_places_of(const dem_world *w, int d, int k, int *end) {
+    const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
+    const demi_wall *wall = &w->walls[id];
+    const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
+    const int sets = wall->kind == DEMI_WALL_SIEVE ? 2 : 1, ways = sets*DEMI_FLATS;    /* wires */
+    int n = 0, flats = 0;
+    for (; k < w->domains[d].walls && w->wall_body[base + k] == body &&
+           w->wall_id[base + k] == id; k++) {
+        const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[base + k] : 0;
+        n += kind->most + (cut ? 2*(cut[1] - cut[0]) : 0);
+        flats += kind->corners ? 4*ways + 4 : 8*ways;
+    }
+    if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);
+    *end = k;
+    return w->bodies.shaped ? DEMI_MAX(n, flats) : n;
+}
+/* The most contacts with walls that domain d may ever have with these candidates. */
+static int demi_places_most(const dem_world *w, int d) {
+    int k = 0, n = 0;
+    while (k < w->domains[d].walls) n += demi_places_of(w, d, k, &k);
+    return n;
+}
+/* Room for the places of one body and wall, for each domain its own. 0 when memory ran out. */
+static int demi_touching_reserve(dem_world *w) {
+    size_t n = 0;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        int most = DEMI_SIEVE_MOST;
+        w->domains[d].touching_first = (int)n;
+        for (k = 0; k < w->domains[d].walls;) {
+            const int places = demi_places_of(w, d, k, &k);
+            most = DEMI_MAX(most, places);
+        }
+        n += (size_t)most;
+        if (n > (size_t)INT_MAX/8) return 0;
+    }
+    w->touching_valid = DEMI_GROW(w, w->touching, n) &&
+                        DEMI_GROW(w, w->touching_links, n) &&
+                        DEMI_GROW(w, w->touching_table, 4*n);
+    return w->touching_valid;
+}
+/* Where each domain's contacts stand when there is room for what its candidates may give: as a rule
+   hardly more than one contact for each, and what lasts (crowd), and a quarter. Slabs of spheres do
+   not stop in the middle of a step to make room: as much as there may ever be. listed: domains in
+   use; the others only hold what lasts. */
+static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int *first) {
+    int d;
+    for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
+        const demi_domain *domain = &w->domains[d];
+        int n = d < listed ? domain->walls : 0;
+        if (d == listed - 1 && w->wall_count) n += w->join_room;
+        n = DEMI_MAX(n, crowd[d]);
+        n += n ? n/4 + 16 : 0;
+        if (d < listed && w->bodies.ghost) n = DEMI_MAX(n, demi_places_most(w, d));
+        if (d < listed && w->bodies.shaped) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
+        first[d + 1] = first[d] + n;
+    }
+}
+/* Room for contacts in the domains of a new list, and for the walls' sums; nothing moves yet.
+   first: where those of each domain will begin. 0 when memory ran out. */
+static int demi_kept_room(dem_world *w, int *first) {
+    int crowd[DEMI_DOMAINS], d, k, total = 0;
+    memset(crowd, 0, sizeof crowd);
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
+    for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
+        for (k = 0; k < w->domains[d].kept; k++) {
+            const demi_kept *c = demi_kept_of(w, d) + k;
+            const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
+            if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
+        }
+    demi_kept_lay(w, w->domain_count, crowd, first);
+    return demi_wall_sums_room(w) &&
+           DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
+           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]);
+}
+/* Contacts that still last, from the last list (by slot) into the domains of the new one, each with
+   its lower body as a: what turns round, turns round. */
+static void demi_kept_move(dem_world *w, const int *first) {
+    int d, k, e = 0, i;
+    for (d = 0; d < DEMI_DOMAINS; d++) {
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept c = demi_kept_of(w, d)[k];
+            const int pair = c.b >= 0;
+            c.a = w->bodies.slot_index[c.a];
+            if (pair) c.b = w->bodies.slot_index[c.b];
+            if (c.a < 0 || (pair && c.b < 0) ||
+                (!pair && w->walls[c.wall].kind == DEMI_WALL_NONE)) continue;
+            if (pair && c.b < c.a) {
+                const dem_vec3 arm = c.arm_a;
+                i = c.a; c.a = c.b; c.b = i;
+                i = c.part_a; c.part_a = c.part_b; c.part_b = i;
+                c.arm_a = c.arm_b; c.arm_b = arm;
+                c.normal = demi_scale(c.normal, -1);
+                c.lambda = c.lambda > 0 ? 1 - c.lambda : 0;
+                if (c.corners) c.corner ^= 1;
+                for (i = 0; i < w->memory_stride; i++)
+                    if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
+            }
+            c.coef_r = 0;                       /* materials may have changed */
+            if (!pair && !demi_shape_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
+            w->kept_next[e++] = c;
+        }
+        w->domains[d].kept = 0;
+    }
+    memcpy(w->kept_first, first, sizeof w->kept_first);
+    /* deal out in the order of body a; `order` has done its work in the search and counts here */
+    if (e) memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
+    for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
+    for (d = 0; d < w->domain_count; d++)
+        for (i = w->domains[d].begin; e && i < w->domains[d].end; i++) {
+            const int here = w->bodies.order[i];
+            w->bodies.order[i] = w->domains[d].kept;
+            w->domains[d].kept += here;
+        }
+    for (k = 0; k < e; k++) {
+        const demi_kept *c = &w->kept_next[k];
+        demi_kept_of(w, demi_domain_of(w, c->a))[w->bodies.order[c->a]++] = *c;
+    }
+}

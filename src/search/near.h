@@ -1,0 +1,471 @@
+/* ---------------------------------------------------------------------------------------------
+   >>near
+   The near list: candidates that touch or may within margin.span, were they to meet head-on at the
+   speed they have now; and margin.slack more, because speeds change. Forces are worked out for all
+   of it, touching or not, so that a step neither looks at candidates nor packs them; what does not
+   touch answers zero. It is made anew, from the candidates, when the time is over or accelerations
+   may have used up the slack. Memory comes from the list before or, after a search, from where it
+   was filed. Numbers do not depend on how long a list lasts: a zero more or less does not change a
+   sum.
+   Why nothing is missed: let v be the speed at which two bodies approach when the list is made. A
+   step changes a velocity by at most last_change, dt times the largest acceleration of all; after n
+   steps two have changed by at most 2 (change), change the sum of these. So they have come nearer
+   than v t by at most creep, the sum over steps of 2 dt change. A pair that was left out had a gap
+   of more than v span + slack: as long as the age is below span and creep below slack, it is open.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- species: which spheres are alike, and the coefficients of every two kinds. A scene has few of
+       them (one, two sizes of beads, balls and powder) or as many as grains (radii drawn at
+       random), seldom something between. With few, a near pair carries the number of a row, 4 byte
+       where its coefficients take 88, and tiles of pairs that are all of one row copy nothing; a
+       single steel ball among glass beads then slows only the tiles that it is in. With many, each
+       pair carries its own. The species are those of the last search: whoever comes in between, by
+       a feed, must be of one of them (demi_species_known), or the list is made anew. --- */
+static demi_species demi_species_of(const dem_world *w, int body) {
+    demi_species s;
+    s.radius = w->bodies.pos[4*body + 3];
+    s.mass = w->bodies.mass[body];
+    s.inv_mass = w->bodies.inv_mass[body];
+    s.material = w->bodies.material[body];
+    s.none = 0;
+    return s;
+}
+/* Which one the body is of; species_count when of none. By every bit: a radius that differs in the
+   last one has coefficients of its own. */
+static int demi_species_find(const dem_world *w, int body) {
+    const demi_species s = demi_species_of(w, body);
+    int k;
+    for (k = 0; k < w->effects.species_count; k++)
+        if (!memcmp(&w->effects.species[k], &s, sizeof s)) break;
+    return k;
+}
+/* Has the body coefficients with others? Not when a file names other species than its bodies
+   are. */
+static int demi_species_has(const dem_world *w, int body) {
+    return demi_many_species(w) || demi_species_find(w, body) < w->effects.species_count;
+}
+/* Those of all spheres there are; of one more than have a table when there are more. */
+static void demi_species_count(dem_world *w) {
+    demi_in_force *e = &w->effects;
+    int i;
+    e->species_count = 0;
+    for (i = 0; i < w->bodies.count && e->species_count <= DEMI_SPECIES; i++) {
+        if (demi_shape_of(w, i) || demi_species_has(w, i)) continue;
+        if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = demi_species_of(w, i);
+        e->species_count++;
+    }
+}
+/* Coefficients of a pair. R* of equal radii is half of them to the last bit, so that two alike get
+   what a world gets in which all are. */
+static void demi_species_coefs(const dem_world *w, const demi_species *a, const demi_species *b,
+                               dem_real *coef) {
+    const double ra = (double)a->radius, rb = (double)b->radius;
+    const double sum = (double)a->inv_mass + (double)b->inv_mass;
+    /* there a fixed grain has mass too */
+    const double inv = w->desc.convention == DEM_CONVENTION_MILL
+        ? 1/(double)a->mass + 1/(double)b->mass : sum;
+    demi_coefficients(w, a->material - 1, b->material - 1,
+                      ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 1/inv, 0, coef);
+    coef[DEMI_M_EFF] = (dem_real)(1/sum);
+}
+/* Which columns differ from pair to pair, and are asked for. In a table one can see it; of too many
+   species it is those that hang on radii, and on materials where there are several. */
+static void demi_species_vary(dem_world *w) {
+    const int rows = w->effects.species_count*w->effects.species_count;
+    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL | 1 << DEMI_K_AD;
+    int e, k, materials = 0;
+    w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
+    if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF | 1 << DEMI_M_EFF);
+    if (demi_many_species(w)) {
+        for (k = 0; k < w->bodies.count; k++)
+            materials |= w->bodies.material[k]^w->bodies.material[0];
+        if (!materials) w->species_vary &= ~fixed;
+        if (!demi_normal_is(w, DEMI_BRANCHED))
+            w->species_vary &= ~(1 << DEMI_K_UN | 1 << DEMI_K_AD);
+        return;
+    }
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
+        const dem_real *column = w->species_coef + e;
+        for (k = 1; k < rows; k++)
+            if (memcmp(column, column + DEMI_PAIR_COLUMNS*k, sizeof *column)) break;
+        if (k >= rows) w->species_vary &= ~(1 << e);
+    }
+}
+/* Would a new sphere find its coefficients? */
+static int demi_species_known(const dem_world *w, int material, dem_real radius) {
+    const demi_species *s = w->effects.species;
+    int k;
+    for (k = 0; k < w->effects.species_count && !demi_many_species(w); k++)
+        if (s[k].material == material + 1 && s[k].inv_mass > 0 && !(s[k].radius < radius) &&
+            !(s[k].radius > radius)) return 1;
+    /* a second material makes columns vary that did not */
+    return demi_many_species(w) &&
+           (w->species_vary >> DEMI_MU & 1 || w->bodies.material[0] == material + 1);
+}
+/* Room for the table; 0 when memory ran out. What is refused here is refused before any list is
+   changed; filling the table cannot fail. */
+static int demi_species_room(dem_world *w) {
+    const size_t n = demi_many_species(w) ? 0 : (size_t)w->effects.species_count;
+    return DEMI_GROW(w, w->species_coef, n*n*DEMI_PAIR_COLUMNS);
+}
+/* What is in it. */
+static void demi_species_lay(dem_world *w) {
+    const int n = w->effects.species_count;
+    int k;
+    for (k = 0; k < n*n && !demi_many_species(w); k++)
+        demi_species_coefs(w, &w->effects.species[k/n], &w->effects.species[k%n],
+                           w->species_coef + DEMI_PAIR_COLUMNS*k);
+}
+/* A pair learns its row, or is given columns; only needed where bodies differ. */
+static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
+    const demi_species one = demi_species_of(w, a), other = demi_species_of(w, b);
+    dem_real coef[DEMI_PAIR_COLUMNS], *to;
+    int e;
+    if (!demi_many_species(w)) {
+        near->row[d*near->stride + p] = demi_species_find(w, a)*w->effects.species_count +
+            demi_species_find(w, b);
+        return;
+    }
+    demi_species_coefs(w, &one, &other, coef);
+    to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
+}
+/* Entry `to` of the domain has the coefficients of entry `from`, of the same list or another. */
+static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int to,
+                                 const demi_near *last, int from) {
+    const size_t columns = DEMI_PAIR_COLUMNS, stride = (size_t)near->stride;
+    const size_t last_stride = (size_t)last->stride;
+    dem_real *m;
+    const dem_real *old;
+    size_t e;
+    if (w->effects.uniform) return;
+    if (!demi_many_species(w)) {
+        near->row[d*near->stride + to] = last->row[d*last->stride + from];
+        return;
+    }
+    m = near->coef + (size_t)d*columns*stride + (size_t)to;
+    old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
+    for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
+}
+/* Picks near ones from the candidates of one list, without a branch; their entries from p on.
+   Answers where they end, or -1 when there is no room. */
+DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
+                                 int p, int mixed) {
+    const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
+    const dem_real margin = (dem_real)(w->margin.reach + w->margin.slack);
+    const dem_real span = (dem_real)w->margin.span;
+    const int room = w->near.stride - DEMI_LANES;
+    const int32_t *shape = w->bodies.shape;
+    int32_t *out = w->near.k + d*w->near.stride;
+    int k;
+    for (k = begin; k < end && p < room; k++) {
+        const dem_real *a = DEMI_AT(x, list->a[k]), *b = DEMI_AT(x, list->b[k]);
+        const dem_real *s = shift + list->image[k];
+        const dem_real *ua = DEMI_AT(u, list->a[k]), *ub = DEMI_AT(u, list->b[k]);
+        const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
+        const dem_real ux = ub[0] - ua[0], uy = ub[1] - ua[1], uz = ub[2] - ua[2];
+        const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
+        out[p] = k;
+        p += (dx*dx + dy*dy + dz*dz < cut*cut) &
+            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]));
+    }
+    return k < end ? -1 : p;
+}
+static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
+    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+        : demi_near_pick_as(w, list, begin, end, d, p, 0);
+}
+/* m/s, at most, with what their spins bring: how fast surfaces of two bodies approach. */
+static dem_real demi_approach(const dem_world *w, int a, int b) {
+    const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
+    dem_real speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b),
+                                          demi_at(w->bodies.vel + 4*a)));
+    if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->moment_arm*
+                     demi_scale_of(w, a, fa);
+    if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->moment_arm*
+                     demi_scale_of(w, b, fb);
+    return speed;
+}
+/* How near two bodies' surfaces, or parts of them, are that may touch while the list lasts, m. */
+static dem_real demi_near_cut(const dem_world *w, int a, int b) {
+    return (dem_real)(w->margin.reach + w->margin.slack) +
+        (dem_real)w->margin.span*demi_approach(w, a, b);
+}
+/* A body's spheres about its centre, rows of centre and radius, and how many; lone: for that of a
+   sphere. 0: it is of other parts. */
+DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    *count = shape ? shape->count : 1;
+    if (shape) return shape->count ? demi_centres_of(w, body) : 0;
+    lone[0] = lone[1] = lone[2] = 0;
+    lone[3] = w->bodies.pos[4*body + 3];
+    return lone;
+}
+/* Are two bodies, or parts of them, nearer than `cut`, m? */
+static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *shift, dem_real cut) {
+    const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                         demi_at(w->bodies.pos + 4*a)), demi_at(shift));
+    const dem_real far_b = w->bodies.pos[4*b + 3] + cut;
+    dem_real lone[2][4];
+    const dem_real *x, *y;
+    int na, nb, i, j;
+    x = demi_balls_of(w, a, lone[0], &na);
+    y = demi_balls_of(w, b, lone[1], &nb);
+    if (!x || !y) return demi_bodies_gap(w, a, b, shift, cut) < cut;
+    for (i = 0; i < na; i++, x += 4) {
+        const dem_vec3 to = demi_sub(r, demi_at(x));
+        const dem_real all = x[3] + far_b;
+        if (!(demi_dot(to, to) < all*all)) continue;
+        for (j = 0; j < nb; j++) {
+            const dem_vec3 gap = demi_add(to, demi_at(y + 4*j));
+            const dem_real near_by = x[3] + y[4*j + 3] + cut;
+            if (demi_dot(gap, gap) < near_by*near_by) return 1;
+        }
+    }
+    return 0;
+}
+/* As demi_near_pick, pairs that are not of two spheres: by the distance of their surfaces. */
+static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
+                                 int p) {
+    const int room = w->near.stride - DEMI_LANES;
+    int32_t *out = w->near.k + d*w->near.stride;
+    int k;
+    for (k = begin; k < end && p < room; k++) {
+        const int a = list->a[k], b = list->b[k];
+        dem_real cut;
+        if (!demi_shape_of(w, a) && !demi_shape_of(w, b)) continue;
+        cut = demi_near_cut(w, a, b);
+        out[p] = k;
+        p += demi_bodies_near(w, a, b, w->image_shift + list->image[k], cut);
+    }
+    return k < end ? -1 : p;
+}
+/* Memory and coefficients of the domain's entry p, which is new or was entry `from` before. */
+static void demi_near_recall(dem_world *w, int d, int p, int from) {
+    demi_near *near = &w->near;
+    const demi_near *last = &w->near_last;
+    const size_t keep = (size_t)w->memory_stride, stride = (size_t)near->stride;
+    const size_t last_stride = (size_t)last->stride;
+    const int at = d*near->stride + p;
+    dem_real *m = near->memory + (size_t)d*keep*stride + (size_t)p;
+    size_t e;
+    int flip = 0;
+    if (from >= 0) {
+        const dem_real *old = last->memory + (size_t)d*keep*last_stride + (size_t)from;
+        for (e = 0; e < keep; e++) m[e*stride] = old[e*last_stride];
+        demi_near_coefs_copy(w, near, d, p, last, from);
+        return;
+    }
+    if (!w->effects.uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
+    for (e = 0; e < keep; e++) m[e*stride] = 0;
+    if (!keep || !w->near_fresh ||
+        (from = demi_carry_find(w, near->a[at], near->b[at], &flip)) < 0) return;
+    for (e = 0; e < keep; e++) {
+        const dem_real value = w->filed.memory[(size_t)from*keep + e];
+        m[e*stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
+    }
+}
+
+/* What follows from the near list of a domain: groups are filled up with copies of their last pair,
+   whose answers nobody reads (then no group is cut short), and candidates learn their entries. */
+static void demi_near_adopt(dem_world *w, int d) {
+    demi_near *near = &w->near;
+    const demi_domain *domain = &w->domains[d];
+    const size_t stride = (size_t)near->stride;
+    dem_real *memory = w->memory_stride
+        ? near->memory + (size_t)d*(size_t)w->memory_stride*stride : 0;
+    int l, p, e;
+    for (l = 0; l < 2; l++) {
+        const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
+        if (end == (l ? domain->near_cross : 0)) continue;
+        for (p = end; p%DEMI_LANES; p++) {
+            near->a[at + p] = near->a[at + end - 1];
+            near->b[at + p] = near->b[at + end - 1];
+            near->k[at + p] = near->k[at + end - 1];
+            near->image[at + p] = near->image[at + end - 1];
+            for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
+            demi_near_coefs_copy(w, near, d, p, near, end - 1);
+        }
+    }
+    for (p = domain->near_shaped; p < domain->near_shaped_end; p++)
+        near->balls[d*near->stride + p].count = DEMI_BALLS_UNKNOWN;
+    for (l = 0; l < 2; l++) {
+        demi_list *list = l ? &w->cross : &w->own;
+        const int count = l ? domain->cross : domain->own;
+        if (count) memset(list->place + d*list->stride, 0, (size_t)count*sizeof *list->place);
+        for (p = l ? domain->near_cross : 0; p < (l ? domain->near_end : domain->near_own); p++)
+            list->place[near->k[d*near->stride + p]] = p + 1;
+        for (p = l ? domain->near_shaped_cross : domain->near_shaped;
+             p < (l ? domain->near_shaped_end : domain->near_shaped_cross); p++)
+            list->place[near->k[d*near->stride + p]] = p + 1;
+    }
+}
+/* The near list that was being made is the one in use now; memory comes over with its pairs. */
+static void demi_domain_adopt(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    domain->near_own = domain->near_next_own;
+    domain->near_cross = domain->near_next_cross;
+    domain->near_end = domain->near_next_end;
+    domain->near_shaped = domain->near_next_shaped;
+    domain->near_shaped_cross = domain->near_next_shaped_cross;
+    domain->near_shaped_end = domain->near_next_shaped_end;
+    demi_near_adopt(w, d);
+}
+
+/* Near pairs of one domain. */
+static void demi_domain_near(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    demi_near *near = &w->near;
+    int l, q, p = 0;
+    domain->overflow &= ~8;
+    for (l = 0; l < 2; l++) {
+        const demi_list *list = l ? &w->cross : &w->own;
+        const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
+        const int first = p;
+        p = demi_near_pick(w, list, begin, end, d, p);
+        if (p < 0) { domain->overflow |= 8; return; }
+        for (q = first; q < p; q++) {
+            const int at = d*near->stride + q, k = near->k[at];
+            near->a[at] = list->a[k];
+            near->b[at] = list->b[k];
+            near->image[at] = list->image[k];
+            if (w->memory_stride || !w->effects.uniform)
+                demi_near_recall(w, d, q, w->near_fresh ? -1 : list->place[k] - 1);
+        }
+        if (l) domain->near_next_end = p;
+        else domain->near_next_own = p;
+        p = (p + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+        if (!l) domain->near_next_cross = p;
+    }
+    domain->near_next_shaped = p;
+    for (l = 0; l < 2; l++) {
+        const demi_list *list = l ? &w->cross : &w->own;
+        const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
+        const int first = p;
+        if (l) domain->near_next_shaped_cross = p;
+        if (w->bodies.shaped) p = demi_near_pick_shaped(w, list, begin, end, d, p);
+        if (p < 0) { domain->overflow |= 8; return; }
+        for (q = first; q < p; q++) {
+            const int at = d*near->stride + q, k = near->k[at];
+            near->a[at] = list->a[k];
+            near->b[at] = list->b[k];
+            near->image[at] = list->image[k];
+        }
+    }
+    domain->near_next_shaped_end = p;
+}
+/* --- quiet bodies: where nothing but near pairs and walls can push (no gravity, no force field,
+       no other slab), bodies in none of those fly straight on until the next near list: only
+       positions change. Told for DEMI_SOME bodies at a time. Skipping writes what was there, so
+       bits are the same. --- */
+typedef struct demi_quiet {
+    int restless;                  /* 2: something may push; 1: not now, but did; 0: quiet */
+    dem_real speed2;               /* the largest |v|^2 when last looked at */
+} demi_quiet;
+DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
+    return w->quiet + d + i/DEMI_SOME;     /* no two domains share one */
+}
+static int demi_quiet_reserve(dem_world *w, int bodies) {
+    return DEMI_GROW(w, w->quiet, (size_t)(bodies/DEMI_SOME + w->domain_count + 1));
+}
+static int demi_quiet_possible(const dem_world *w) {
+    const dem_vec3 g = w->desc.gravity;
+    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
+           (!w->bodies.backward || demi_impulsive(w)) && !w->joint_count;
+}
+/* Says of every few bodies whether anything is near any of them: where nothing is, and no field
+   acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */
+static void demi_domain_quiet(dem_world *w, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const demi_near *near = &w->near;
+    int i, p, k;
+    for (i = domain->begin; i < domain->end; i++) demi_quiet_at(w, d, i)->restless = 1;
+    for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+        demi_quiet_at(w, d, near->a[d*near->stride + p])->restless = 2;
+        if (p < domain->near_own) demi_quiet_at(w, d, near->b[d*near->stride + p])->restless = 2;
+    }
+    for (p = domain->near_shaped; p < domain->near_shaped_end; p++) {
+        demi_quiet_at(w, d, near->a[d*near->stride + p])->restless = 2;
+        if (p < domain->near_shaped_cross)
+            demi_quiet_at(w, d, near->b[d*near->stride + p])->restless = 2;
+    }
+    for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++)
+        if (w->cross.place[w->cross_incoming[k]])
+            demi_quiet_at(w, d, w->cross.b[w->cross_incoming[k]])->restless = 2;
+    for (k = 0; k < domain->walls; k++)
+        demi_quiet_at(w, d, w->wall_body[d*w->wall_stride + k])->restless = 2;
+}
+
+/* How long the next near list is to last, from counted work, so that it is the same on every run: a
+   force costs 1; making the list, 0.15 for each candidate and 1 for each near pair (bench/ measures
+   both). Pairs that do not touch grow with the span, how often the list is made shrinks with it. */
+static void demi_near_choose(dem_world *w) {
+    const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1),
+        dt = (double)w->clock.dt;
+    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span;
+    int d;
+    if (span < dt) span = dt;                   /* the first of all */
+    if (w->margin.age > 0) {
+        for (d = 0; d < w->domain_count; d++) {
+            const demi_domain *domain = &w->domains[d];
+            near += domain->near_own + domain->near_end - domain->near_cross;
+            near += 4*(domain->near_shaped_end - domain->near_shaped);
+            touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
+            candidates += domain->own + domain->cross;
+        }
+        if (w->bodies.shaped) candidates *= 6;   /* supports, and some meetings */
+        longer = sqrt((0.15*candidates + near)*dt/
+                      (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
+        longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
+        span = DEMI_MIN(DEMI_MAX(w->margin.age*longer, 2*dt), 1000*dt);
+        /* creep grows with the square of time */
+        w->margin.slack = w->margin.creep*span*span/(w->margin.age*w->margin.age)*1.2;
+    }
+    w->margin.slack = DEMI_MIN(DEMI_MAX(w->margin.slack, 1e-5*r), 0.1*r);
+    w->margin.span = span;
+}
+/* A step has gone by, in which no velocity changed by more than `change`. */
+static void demi_near_pass(dem_world *w, double change) {
+    w->margin.last_change = change;
+    w->margin.change += change;
+    w->margin.creep += 2*w->margin.change*(double)w->clock.dt;
+    w->margin.age += (double)w->clock.dt;
+}
+static int demi_near_due(const dem_world *w) {
+    return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
+}
+/* Makes the near list; fresh: after a search. 0 when memory ran out: the list before is in use. */
+static int demi_near_make(dem_world *w, int fresh) {
+    const demi_near swap = w->near;
+    int d, again, stride;
+    w->near = w->near_last;
+    w->near_last = swap;
+    w->near_fresh = fresh;
+    if (!demi_quiet_reserve(w, w->bodies.count)) {
+        w->near_last = w->near;
+        w->near = swap;
+        return 0;
+    }
+    stride = DEMI_MAX(w->near_last.stride, DEMI_MAX(64, w->bodies.count/w->domain_count*5/2));
+    stride = (stride + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    do {                                        /* until every domain's pairs fit */
+        again = 0;
+        if (demi_near_reserve(w, &w->near, w->domain_count, stride)) {
+            demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_near);
+            for (d = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 8;
+            stride = stride/4*5/DEMI_LANES*DEMI_LANES + 4*DEMI_LANES;
+            continue;
+        }
+        w->near_last = w->near;
+        w->near = swap;
+        return 0;
+    } while (again);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
+    if (!fresh && demi_quiet_possible(w))
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
+    w->margin.age = w->margin.creep = 0;
+    w->stage.near_stale = 0;
+    /* speeds now, and those that move, are as much as this apart */
+    w->margin.change = w->margin.last_change;
+    return 1;
+}

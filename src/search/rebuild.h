@@ -1,0 +1,485 @@
+/* ---------------------------------------------------------------------------------------------
+   >>rebuild
+   Everything that hangs on which bodies are near which, made anew: the effects in force, the
+   skin, the order of bodies, domains, lists. Why so often: a list is right as long as nobody has
+   gone farther than half the skin (margin.gone), since all pairs nearer than the skin are in
+   it; a wide skin makes lists last and each of them long, and the skin is chosen where both
+   together cost least. Refusals come first: a rebuild that fails leaves places, memory and the
+   old list as they were. New bodies may join a list that stands (demi_list_join).
+   --------------------------------------------------------------------------------------------- */
+
+/* What the laws in force keep per contact: the user's own what desc says, built-in ones what their
+   rows say, one after the other (demi_laws_set). */
+static void demi_effects_memory(dem_world *w) {
+    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
+    if (w->desc.law) {
+        w->laws.memory = w->desc.law_memory;
+        w->laws.at_sliding = demi_laws_sliding(&w->laws.memory, w->effects.sticks);
+        w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
+    }
+    w->memory_stride = demi_impulsive(w) ? (int)DEMI_IMPULSE_REALS : w->laws.memory;
+    w->vector_mask = demi_impulsive(w) ? 0x3f : w->laws.vectors;
+}
+/* Does any pair of the scene have friction, rolling friction, or static friction above that of
+   sliding? */
+static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
+    int i, j;
+    *friction = *rolling = *sticks = 0;
+    for (i = 0; i < w->material_count; i++)
+        for (j = 0; j < w->material_count; j++) {
+            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
+            *friction |= p->friction > 0 || p->friction_static > 0;
+            *rolling |= p->rolling_friction > 0;
+            *sticks |= p->friction_static > p->friction;
+        }
+}
+/* Do impulses choose how far they look ahead? Their reach follows the speeds, so that no scene may
+   be refused because of it. */
+static int demi_reach_free(const dem_world *w) {
+    return demi_impulsive(w) && !(w->desc.law_range > 0);
+}
+/* m: the farthest that a law is asked about any two, the largest of this radius. Impulses look
+   ahead three steps of the fastest body, at most a radius, and no farther than a short period
+   has room for: there they see a fast partner later. */
+static double demi_reach_of(const dem_world *w, double radius) {
+    if (demi_reach_free(w)) {
+        const demi_periods p = demi_periods_of(w);
+        double seen = DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius);
+        int k;
+        for (k = 0; k < 3; k++) {
+            const double skin = DEMI_MAX((double)w->desc.skin, 0);
+            const double room = (double)p.period[k]/2 - 2*radius - skin;
+            if (p.period[k] > 0) seen = DEMI_MIN(seen, 0.8*room);
+        }
+        return DEMI_MAX(0.1*radius, seen);
+    }
+    return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
+}
+/* The effects of the live scene: which laws act, whether all bodies are alike. */
+static void demi_effects(dem_world *w) {
+    int i, friction, rolling, sticks;
+    demi_pairs_rub(w, &friction, &rolling, &sticks);
+    w->effects.sticks = sticks;
+    w->normal = (int)w->desc.normal_law;
+    w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
+    w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
+    demi_effects_memory(w);
+    w->effects.uniform = w->bodies.count > 0;
+    w->effects.fixed_count = 0;
+    w->effects.radius_min = w->effects.radius_max = w->bodies.count ? w->bodies.pos[3] : 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_real r = w->bodies.pos[4*i + 3];
+        w->effects.radius_min = DEMI_MIN(w->effects.radius_min, r);
+        w->effects.radius_max = DEMI_MAX(w->effects.radius_max, r);
+        w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
+        w->effects.uniform &= w->bodies.material[i] == w->bodies.material[0];
+    }
+    w->effects.tight = 0;
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        w->effects.uniform &= w->bodies.shape[i] == w->bodies.shape[0];
+        w->effects.tight |= shape && shape->radius > 2*shape->equal;
+    }
+    w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
+        !w->effects.fixed_count;
+    w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
+    demi_species_count(w);
+}
+
+/* Skin from counted work, so that it is the same on every run: looking at a candidate costs 1, a
+   search 40 per body (bench/ measures both); candidates, looked at whenever the near list is made,
+   grow with the skin, searches shrink with it. */
+static void demi_skin_choose(dem_world *w) {
+    const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1);
+    const double steps = (double)(w->clock.steps - w->clock.last_rebuild);
+    int k;
+    /* all bodies may be others by now */
+    w->margin.skin_auto = DEMI_MIN(w->margin.skin_auto, 2*r);
+    if (w->desc.skin > 0) { w->margin.skin = (double)w->desc.skin; return; }
+    if (w->desc.skin < 0) { w->margin.skin = 0; return; }
+    if (w->margin.skin_auto <= 0) w->margin.skin_auto = 0.1*r;
+    else if (steps > 0 && w->clock.rebuilds > 1 && w->bodies.count > 0) {
+        double n = 0, hits = 0, slope, best;
+        const double per_step =
+            DEMI_MAX(2*w->margin.gone, w->margin.gone + w->margin.walls_gone)/steps;
+        const double looks = DEMI_MIN(DEMI_MAX(w->margin.span/(double)w->clock.dt, 1), 100);
+        int d;
+        for (d = 0; d < w->domain_count; d++) {
+            n += w->domains[d].own + w->domains[d].cross;
+            hits += w->domains[d].contacts;
+        }
+        slope = DEMI_MAX((n - hits)/w->bodies.count, 0.02)/w->margin.skin_auto;
+        best = sqrt(40*per_step*looks/slope);
+        best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
+        w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
+    }
+    for (k = 0; k < 3; k++) {  /* a period must hold two grains and the skin, twice */
+        const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
+            2*(double)w->effects.radius_max - w->margin.reach;
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
+            w->margin.skin_auto = DEMI_MIN(w->margin.skin_auto, room);
+    }
+    w->margin.skin = w->margin.skin_auto;
+}
+
+/* Does a function of the user's answer forces? */
+static int demi_own(const dem_world *w) {
+    return w->desc.law || w->desc.body_reals_fn || w->desc.force || w->desc.body_force;
+}
+/* Do laws ask for spins in this scene? Does any body have one that matters? */
+static int demi_spins(const dem_world *w) {
+    return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
+           w->effects.rolling != DEM_ROLLING_NONE;
+}
+static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
+
+/* How many domains: of the number of bodies alone, so that bits do not depend on threads; 1, 2, 4,
+   or a multiple of 8, which most numbers of threads share fairly. */
+static int demi_domains_for(int count) {
+    int n = 1;
+    while (n < 8 && n*DEM_DOMAIN_BODIES < count) n *= 2;
+    return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
+}
+
+/* A domain out of use: what it counted long ago must not steer the next lists. Contacts that last
+   are still to be moved. */
+static void demi_domain_forget(demi_domain *o) {
+    const int kept = o->kept;
+    memset(o, 0, sizeof *o);
+    o->kept = kept;
+}
+/* Says that a body is nowhere: a run that blew up before, and was gone on with. */
+static dem_result demi_lost(dem_world *w, int body) {
+    const dem_real *x = w->bodies.pos + 4*body;
+    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position is "
+                     "(%g, %g, %g) m, must be finite and at most %g m from the origin; the run "
+                     "blew up earlier (two grains at the same position, dt too large, or a "
+                     "user-defined law, field or motion that divides by zero): remove the body, "
+                     "or go back to a checkpoint", (unsigned long long)w->clock.steps,
+                     (unsigned)w->bodies.slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
+                     DEMI_FARTHEST);
+}
+/* Bodies that lie on each other, or far from all others, share a cell, and a cell's bodies are all
+   compared. 1 with a sentence when that would take minutes. */
+static int demi_crowd_refuse(dem_world *w) {
+    const int32_t *start = w->cell_start;
+    const int n = w->cells[0]*w->cells[1]*w->cells[2];
+    double work = 0;
+    int c, crowd = 0;
+    for (c = 0; c < n; c++) {
+        const int here = start[c + 1] - start[c];
+        work += (double)here*here;
+        crowd = DEMI_MAX(crowd, here);
+    }
+    if (!demi_searches[w->desc.search].crowds || work <= 1e9 + 2e4*w->bodies.count) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
+              "bodies are in one cell of %.3g by %.3g by %.3g m; either they lie on each other, "
+              "or a few bodies far away stretch the grid: remove those (an outflow boundary "
+              "does), or spread the others", work, crowd, w->bodies.count, w->cell_size[0],
+              w->cell_size[1], w->cell_size[2]);
+    return 1;
+}
+/* A wall longer than the period does not repeat, and must be there for all that stands in the box;
+   says so when one ends too near. */
+static int demi_walls_end(dem_world *w, const char *call) {
+    const demi_periods p = demi_periods_of(w);
+    const double reach = demi_reach_free(w) ? 0 : w->margin.reach;
+    const dem_real need = w->effects.radius_max*DEM_R(0.999) + (dem_real)reach;
+    int j, k;
+    for (j = 0; j < w->wall_count; j++)
+        for (k = 0; k < 3; k++) {
+            const demi_wall *wall = &w->walls[j];
+            const dem_real lo = p.lo[k], hi = lo + p.period[k];
+            if (wall->kind == DEMI_WALL_NONE || wall->extent < 0 || wall->repeats[k] ||
+                !(p.period[k] > 0) || !(w->bodies.count > 0) ||
+                (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic "
+                      "axis %d, which is longer than the period of %g m, so that it does not "
+                      "repeat; extend it by %g m (the largest radius%s) beyond the faces at %g "
+                      "and %g m, or make it no longer than the period", call, (int)wall->id,
+                      (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
+                      (double)w->effects.radius_max + reach, reach > 0 ? " and the law's range"
+                      : "", (double)lo, (double)hi);
+            return 1;
+        }
+    return 0;
+}
+/* --- new spheres join the list, so that a steady feed does not have it made anew for every grain:
+       the candidates of a newcomer are written behind those of the others. It belongs to the last
+       domain. Whether there is room hangs on counts alone, not on what was allocated: runs that go
+       on from a checkpoint must do the same. --- */
+enum { DEMI_JOIN_MOST = 8192 };
+
+/* Is there no room behind the candidates? 1: pairs inside, 2: pairs leading out, 4: walls. */
+static int demi_join_lack(const dem_world *w) {
+    const int last = w->domain_count - 1;
+    int d, lack = 0;
+    if (!w->join_room) return 0;
+    if (w->domains[last].own + w->join_room > w->own.stride) lack = 1;
+    for (d = 0; d < last; d++)
+        if (w->domains[d].cross + w->join_room > w->cross.stride) lack |= 2;
+    return lack | (w->domains[last].walls + w->join_room > w->wall_stride ? 4 : 0);
+}
+/* May a sphere join? Not when it would bring an effect in, nor beside bodies of other shapes. */
+static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
+    if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
+        w->bodies.ghost) return 0;
+    return demi_species_known(w, material, radius);
+}
+/* Could the two touch before the near list is made anew? As demi_near_pick asks. */
+static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int b) {
+    const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->bodies.pos + 4*b),
+                                                demi_at(w->bodies.pos + 4*a)));
+    const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
+    return demi_length(x) < w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] +
+           (dem_real)(w->margin.reach + w->margin.slack) +
+                            (dem_real)w->margin.span*demi_length(u);
+}
+/* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
+   skin. 0: there was no room, the list must be made anew. Asks for no memory: what it needs was
+   there before the body came (demi_world_put), or a refusal would look like a lack of room. */
+static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) {
+    const int last = w->domain_count - 1, walls = w->domains[last].walls;
+    const demi_periods p = demi_periods_of(w);
+    int k, leading = 0;
+    w->domains[last].end = i + 1;
+    /* contacts of impulses are found half a step ahead */
+    if (demi_impulsive(w)) w->margin.gone += w->margin.step_gone/2;
+    if (count >= w->join_room) return 0;
+    w->join_room -= count;
+    for (k = 0; k < count; k++) {
+        const int a = found[k], d = demi_domain_of(w, a);
+        demi_domain *domain = &w->domains[d];
+        demi_list *list = d == last ? &w->own : &w->cross;
+        const int at = d == last ? domain->own : domain->cross;
+        list->place[d*list->stride + at] = 0;
+        demi_pair_offer(w, d, &p, demi_cover(w), a, i);
+        leading |= d < last;
+        w->stage.near_stale |= demi_join_near(w, &p, a, i);
+    }
+    if (leading) demi_cross_index(w);
+    demi_body_walls(w, last, i);
+    if (w->domains[last].walls - walls >= w->join_room) return 0;
+    w->join_room -= w->domains[last].walls - walls;
+    if (w->domains[last].walls > walls) w->touching_valid = 0;
+    demi_quiet_at(w, last, i)->restless = 2;
+    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
+    w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
+    return 1;
+}
+
+/* What the laws of before kept, for those in force now: each law's reals go where it has them. own:
+   how many the user's law has, which are the first; -1: the laws are built in. */
+static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
+                            const dem_real *old, dem_real *m) {
+    int k;
+    for (k = 0; k < now->memory; k++) m[k] = k < own ? old[k] : 0;
+    if (was->at_sliding < DEMI_MEMORY && now->at_sliding < DEMI_MEMORY)
+        m[now->at_sliding] = old[was->at_sliding];
+    if (own >= 0) return;
+    for (k = 0; k < now->tangent->memory && was->tangent == now->tangent; k++) m[k] = old[k];
+    for (k = 0; k < now->rolling->memory && was->rolling == now->rolling; k++)
+        m[now->at_rolling + k] = old[was->at_rolling + k];
+    for (k = 0; k < now->normal->memory; k++) m[now->at_normal + k] = old[was->at_normal + k];
+}
+/* All memory on its way to the next list (there is none now). 0 when memory ran out; nothing
+   changed then. */
+static int demi_memory_move(dem_world *w, const demi_laws *was) {
+    const size_t from = (size_t)w->filed.stride, to = (size_t)w->laws.memory;
+    const int own = w->desc.law ? w->desc.law_memory : -1;
+    dem_real old[DEMI_MEMORY], *fresh = 0;
+    int d, k;
+    if (w->filed.stride != was->memory) w->filed.count = 0;    /* of no use: not these laws' */
+    if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
+    for (k = 0; k < w->filed.count; k++)
+        demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from,
+                        fresh + (size_t)k*to);
+    demi_free(w, w->filed.memory);
+    w->filed.memory = fresh;
+    w->filed.stride = (int)to;
+    for (d = 0; d < w->domain_count; d++) {
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            memcpy(old, c->memory, sizeof old);
+            memset(c->memory, 0, sizeof c->memory);
+            demi_memory_map(was, &w->laws, own, old, c->memory);
+        }
+    }
+    return 1;
+}
+/* The effects of the scene as it is now; when friction has come into it, or has gone, memory moves
+   with the laws. 0 when memory ran out: the laws of before stay in force. */
+static int demi_effects_take(dem_world *w) {
+    const demi_laws was = w->laws, *now = &w->laws;
+    const int tangent = w->effects.tangent, rolling = w->effects.rolling;
+    const int sticks = w->effects.sticks;
+    demi_effects(w);
+    if (demi_species_room(w) && (demi_impulsive(w) || !was.normal ||
+        (was.memory == now->memory && (w->desc.law || (was.tangent == now->tangent &&
+                                                       was.rolling == now->rolling))) ||
+        demi_memory_move(w, &was))) {
+        demi_species_lay(w);
+        demi_species_vary(w);
+        return 1;
+    }
+    w->effects.tangent = tangent;
+    w->effects.rolling = rolling;
+    w->effects.sticks = sticks;
+    demi_effects_memory(w);
+    return 0;
+}
+/* Answers 1 with a sentence when a period is too short for one image of each partner. */
+static int demi_periods_refuse(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    const double need = 2*(2*(double)w->effects.radius_max + (double)demi_cover(w));
+    int k;
+    for (k = 0; k < 3; k++)
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
+                      "axis %d, must be at least %g m (two grains and the skin%s, twice); make it "
+                      "longer or the grains smaller", (double)p.period[k], k, need,
+                      w->margin.reach > 0 ? " and the law's range" : "");
+            return 1;
+        }
+    return 0;
+}
+/* Deals the bodies, in the order of the sort, to domains. */
+static void demi_domains_deal(dem_world *w) {
+    int d;
+    for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
+    w->domain_count = demi_domains_for(w->bodies.count);
+    for (d = 0; d < w->domain_count; d++) {
+        w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
+        w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);
+        w->domains[d].overflow = 0;
+    }
+}
+/* Which of the lists in `lists` (1: own, 2: cross, 4: walls) some domain had too little room in. */
+static int demi_lists_overflow(const dem_world *w, int lists) {
+    int d, over = demi_join_lack(w);
+    for (d = 0; d < w->domain_count; d++) over |= w->domains[d].overflow;
+    return over & lists;
+}
+/* Neighbour lists of bodies: searched anew until every domain's pairs fit. 0: no memory. */
+static int demi_pairs_find(dem_world *w) {
+    const int n = w->domain_count, stride = DEMI_MAX(64, w->bodies.count/n*3);
+    int over;
+    if (demi_searches[w->desc.search].lay && !demi_searches[w->desc.search].lay(w)) return 0;
+    w->join_room = w->feed_count ? DEMI_MIN(512 + w->bodies.count/16, DEMI_JOIN_MOST) : 0;
+    if (!demi_list_reserve(w, &w->own, n, DEMI_MAX(stride, (int)w->own.stride)) ||
+        !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
+        return 0;
+    do {
+        demi_parallel(w, w->desc.threads, n, demi_domain_search);
+        over = demi_lists_overflow(w, 3);
+        if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
+            (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
+    } while (over);
+    if (!demi_cross_reserve(w)) return 0;
+    demi_cross_index(w);
+    return 1;
+}
+/* Candidates on walls, likewise. */
+static int demi_walls_find(dem_world *w) {
+    int room = DEMI_MAX(w->wall_stride, 64);
+    do {
+        if (!demi_wall_lists_reserve(w, room)) return 0;
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
+        room = w->wall_stride/2*3 + 64;
+    } while (demi_lists_overflow(w, 4));
+    return 1;
+}
+/* Contacts that are kept move to the new lists: all room first, for what has moved cannot go
+   back. */
+static int demi_contacts_move(dem_world *w) {
+    int first[DEMI_DOMAINS + 1];
+    if (!demi_kept_room(w, first) || !demi_touching_reserve(w)) return 0;
+    demi_kept_move(w, first);
+    return 1;
+}
+/* Slots freed since the last list may be used again. */
+static void demi_slots_release(dem_world *w) {
+    while (w->bodies.slot_pending >= 0) {
+        const int slot = w->bodies.slot_pending;
+        w->bodies.slot_pending = -2 - w->bodies.slot_index[slot];
+        w->bodies.slot_index[slot] = -2 - w->bodies.slot_free;
+        w->bodies.slot_free = slot;
+    }
+}
+/* Rebuilds everything the step needs to find contacts: first what may be refused, then bodies are
+   put in order, then lists are made and memory moves to them. DEM_ERROR_MEMORY leaves bodies and
+   memory as they were (the next call tries again). */
+static dem_result demi_lists_make(dem_world *w, const char *call) {
+    double least;
+    int k;
+    for (k = 0; k < w->bodies.count; k++)
+        if (!demi_place(demi_at(w->bodies.pos + 4*k))) return demi_lost(w, k);
+    if (!demi_list_drop(w) || !demi_effects_take(w)) return demi_no_memory(w, call);
+    if (!w->stage.skin_chosen || w->bodies.ghost) demi_skin_choose(w);
+    w->stage.skin_chosen = 1;
+    if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
+    demi_walls_repeat(w);
+    if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
+    demi_wrap(w);                               /* after what may be refused: places stay then */
+    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
+    demi_levels_choose(w);
+    least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
+        (double)demi_cover(w);
+    if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
+    demi_bodies_sort(w);
+    if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
+    if ((w->bodies.shaped && !demi_centres_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
+        return demi_no_memory(w, call);
+    demi_image_shifts(w);
+    demi_domains_deal(w);
+    if (!demi_pairs_find(w)) return demi_no_memory(w, call);
+    if (!w->stage.near_chosen) demi_near_choose(w);
+    w->stage.near_chosen = 1;
+    if (!demi_near_make(w, 1) || !demi_walls_find(w) || !demi_contacts_move(w))
+        return demi_no_memory(w, call);
+    if (demi_quiet_possible(w))
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
+    demi_slots_release(w);
+    w->filed.count = 0;
+    w->stage.skin_chosen = w->stage.near_chosen = 0;
+    w->margin.gone = w->margin.walls_gone = 0;
+    w->clock.last_rebuild = w->clock.steps;
+    w->clock.rebuilds++;
+    w->stage.list_valid = 1;
+    return DEM_OK;
+}
+/* A rebuild that is refused leaves the domains of before: contacts still stand in those. */
+static dem_result demi_rebuild(dem_world *w, const char *call) {
+    const int domains = w->domain_count;
+    const dem_result result = demi_lists_make(w, call);
+    if (result != DEM_OK) w->domain_count = domains;    /* contacts still stand in those */
+    return result;
+}
+
+/* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
+static int demi_list_stale(const dem_world *world, const char *call) {
+    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls were added or changed "
+              "after the last step, so there is no list of contacts; call dem_candidates_rebuild "
+              "or dem_world_step first", call);
+    return -1;
+}
+DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
+    if (demi_null_look(w, "dem_candidates_get", w, "world")) return -1;
+    int d, l, k, n = 0;
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_candidates_get");
+    for (d = 0; d < w->domain_count; d++)
+        for (l = 0; l < 2; l++) {
+            const demi_list *list = l ? &w->cross : &w->own;
+            const int count = l ? w->domains[d].cross : w->domains[d].own;
+            for (k = d*list->stride; k < d*list->stride + count; k++, n++) {
+                if (n >= capacity || !out) continue;
+                out[2*n] = w->bodies.slot[list->a[k]] + 1;
+                out[2*n + 1] = w->bodies.slot[list->b[k]] + 1;
+            }
+        }
+    return n;
+}
+DEM_API dem_result dem_candidates_rebuild(dem_world *w) {
+    if (demi_null(w, "dem_candidates_rebuild", w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_rebuild(w, "dem_candidates_rebuild");
+}

@@ -1,0 +1,755 @@
+/* ---------------------------------------------------------------------------------------------
+   >>deal
+   Dealing a scene to slabs and collecting it again: their worlds, what each process finds out
+   about the others' when they are made, and the state of all of them written into one world. A
+   slab's world has the scene's materials, shapes, walls, fields and outlets, and slots for all
+   bodies there are; geometry is held once in a process. Collecting first asks whether the world
+   can take everything, then gets all its room, then writes: refused, it has changed nothing.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- an allocator of the user's own, as slabs on several threads see it --- */
+static void *demi_slabs_alloc(size_t size, void *user) {
+    const dem_allocator *a = (const dem_allocator *)user;
+    void *p;
+#if DEMI_OPENMP
+    #pragma omp critical(demi_slabs)            /* the user's may be called by one at a time */
+#endif
+    p = a->alloc_fn(size, a->user);
+    return p;
+}
+static void demi_slabs_free(void *memory, size_t size, void *user) {
+    const dem_allocator *a = (const dem_allocator *)user;
+#if DEMI_OPENMP
+    #pragma omp critical(demi_slabs)
+#endif
+    a->free_fn(memory, size, a->user);
+}
+
+/* Copies the walls; slabs after the first share the geometry of the first. */
+static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world *first) {
+    const size_t n = (size_t)from->wall_count;
+    int i;
+    to->walls = (demi_wall *)demi_hold(to, DEMI_RUN, n, sizeof *to->walls);
+    if (!n) return 1;
+    if (!to->walls) return 0;
+    for (i = 0; i < from->wall_count; i++) {
+        demi_wall *b = &to->walls[i];
+        *b = first ? first->walls[i] : from->walls[i];
+        if (!first && !demi_wall_own(to, b)) return 0;
+        if (first) b->motion.kind = DEM_MOTION_FIXED;
+        to->wall_count = i + 1;
+    }
+    to->facets_valid = first || from->facets_valid;
+    return to->facets_valid || demi_facets_weigh(to);
+}
+/* Copies the shapes; slabs after the first share those of the first. 0 when memory ran out. */
+static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_world *first) {
+    int i;
+    if (first) {
+        to->shapes = first->shapes;
+        to->shape_count = first->shape_count;
+        return 1;
+    }
+    for (i = 0; i < from->shape_count; i++) {
+        demi_shape shape = from->shapes[i];
+        if (!demi_shape_copy(to, &shape)) return 0;
+        if (!demi_shape_adopt(to, "dem_slabs_create", &shape).id) return 0;
+    }
+    return 1;
+}
+/* What an outlet has let out, of which nothing is known yet. */
+static void demi_outlet_clear(demi_outlet *o) {
+    const double since = o->state.since, last = o->state.last;
+    memset(&o->state, 0, sizeof o->state);
+    o->state.since = since;
+    o->state.last = last;
+}
+/* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
+static void demi_slab_sums_clear(dem_world *w) {
+    int i;
+    memset(w->booked.energy, 0, sizeof w->booked.energy);
+    w->booked.removed = w->booked.throughput = w->booked.inserted = 0;
+    w->bodies.balance.left = 0;
+    for (i = 0; i < w->wall_count; i++) {
+        const double time = w->walls[i].loads.time;
+        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
+        w->walls[i].loads.time = time;
+    }
+    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
+}
+/* Every slab has all outlets: they stand where they stand, and take what is in that slab. */
+static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
+    if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
+    if (from->outlet_count)
+        memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
+    to->outlet_count = from->outlet_count;
+    return !from->bodies.zoned || demi_zones_begin(to);
+}
+/* The head has the feeds; slabs look at them. 0 when memory ran out. */
+static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
+    if (!DEMI_GROW(h, h->feeds, (size_t)w->feed_count)) return 0;
+    if (w->feed_count) memcpy(h->feeds, w->feeds, (size_t)w->feed_count*sizeof *h->feeds);
+    h->feed_count = w->feed_count;
+    return 1;
+}
+/* Each slab sums what its own grains add; what there is already, one slab inherits. */
+static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
+    int i;
+    for (i = 0; i < from->field_count; i++) {
+        const demi_field *a = &from->fields[i];
+        if (dem_field_add(to, &a->desc).id != i + 1) return 0;
+        to->fields[i].next = a->next;
+        to->fields[i].samples = a->samples;
+        if (inherit) memcpy(to->fields[i].sums, a->sums, demi_field_reals(a)*sizeof(double));
+    }
+    return 1;
+}
+/* A slab's world: everything of the scene but the grains. */
+static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
+                                  const dem_world *first, dem_allocator *allocator) {
+    dem_world_desc desc = from->asked;
+    const size_t slots = (size_t)from->bodies.slot_count;
+    dem_world *w;
+    desc.threads = s->local == 1 ? from->desc.threads : 1;
+    if (s->ring) desc.boundary[s->axis] = DEM_BOUNDARY_OPEN;
+    if (desc.allocator.alloc_fn) {
+        desc.allocator.alloc_fn = demi_slabs_alloc;
+        desc.allocator.free_fn = demi_slabs_free;
+        desc.allocator.user = allocator;
+    }
+    w = dem_world_create(&desc);
+    if (!w) return 0;
+    w->desc.gravity = from->desc.gravity;       /* of now: dem_world_gravity_set, */
+    w->desc.dt = from->desc.dt;                 /* and dem_world_dt_set */
+    if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
+    memcpy(w->materials, from->materials, sizeof w->materials);
+    memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
+    w->material_count = from->material_count;
+    w->feeds = s->head.feeds;
+    w->feed_count = s->head.feed_count;
+    w->bodies.ghost = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
+    w->bodies.slot_index = (int32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(int32_t));
+    w->bodies.slot_generation = (uint32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(uint32_t));
+    w->bodies.slot_capacity = (int)slots + 1;
+    w->bodies.slot_count = (int)slots;
+    if (!w->bodies.ghost || !w->bodies.slot_index || !w->bodies.slot_generation ||
+        (from->bodies.orienting && !demi_orient_begin(w)) ||
+        !demi_slab_shapes(w, from, first) ||
+        !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
+        !demi_slab_outlets_copy(w, from)) return w;
+    s->head.shapes = w->shapes;                 /* for what feeds draw */
+    s->head.shape_count = w->shape_count;
+    memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
+    if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
+                      slots*sizeof(uint32_t));
+    w->clock.time = from->clock.time;           w->clock.steps =
+        from->clock.steps;       w->clock.rebuilds = from->clock.rebuilds;
+    w->clock.since = from->clock.since;
+    w->clock.last_rebuild = from->clock.steps;  w->margin.skin_auto = from->margin.skin_auto;
+    w->margin.skin = from->margin.skin;           w->clock.dt =
+        from->clock.dt;             w->stage.dt_valid = from->stage.dt_valid;
+    w->wall_fastest = from->wall_fastest;                         w->margin.span =
+        from->margin.span;
+    w->margin.slack = from->margin.slack;
+    w->clock.assumed_speed = from->clock.assumed_speed;                       w->stage.primed =
+        from->stage.primed;
+    w->booked.overlap_max =
+        from->booked.overlap_max;                           w->booked.speed_max =
+            from->booked.speed_max;
+    w->bodies.balance = from->bodies.balance;     w->booked.removed = from->booked.removed;
+    w->booked.inserted = from->booked.inserted;
+    w->booked.throughput =
+        from->booked.throughput;                             w->clock.half_kick =
+            from->clock.half_kick;
+    w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
+    memcpy(w->booked.energy, from->booked.energy, sizeof w->booked.energy);
+    if (index > 0) demi_slab_sums_clear(w);
+    return w;
+}
+/* Has it got all it was to get? */
+static int demi_slab_ready(const dem_world *w, const dem_world *from) {
+    return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
+           w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
+           w->wall_count == from->wall_count && w->field_count == from->field_count &&
+           w->outlet_count == from->outlet_count;
+}
+/* The grains of one slab, from the world. */
+static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uint8_t *marks) {
+    dem_world *w = b->world;
+    const char *at;
+    demi_message_head h;
+    int i;
+    for (i = 0; i < from->bodies.count; i++) {
+        const double x = (double)from->bodies.pos[4*i + s->axis];
+        marks[from->bodies.slot[i]] = (b->index == 0 || x >= s->borders[b->index]) &&
+            (b->index == s->count - 1 || x < s->borders[b->index + 1]);
+    }
+    b->out[0].size = 0;
+    if (!demi_pack(w, from, marks, 1, 1, s->axis, 0, &b->out[0])) return 0;
+    at = b->out[0].bytes;
+    demi_unpack(&at, &h, sizeof h);
+    if (!demi_bodies_reserve(w, (size_t)h.grains) || !demi_filed_reserve(w, &b->add, &h)) return 0;
+    for (i = 0; i < h.grains; i++) demi_grain_append(w, &at);
+    demi_filed_unpack(w, b->add, &h, at);
+    return 1;
+}
+
+/* What is wrong with a desc, as a sentence in the world; DEM_OK when nothing is. */
+static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
+    const char *call = "dem_slabs_create";
+    const int local = d->local ? d->local : d->count;
+    if (demi_impulsive(w))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
+                         "cannot be split into slabs; use threads", call);
+    if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
+                         "one along which the scene is longest", call, d->axis,
+                         w->desc.planar ? " (for discs, at z = 0, only 0 or 1)" : "");
+    if (d->count < 1 || d->count > DEMI_SLABS)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to %d (required); one "
+                         "slab per processor is a good choice", call, d->count, (int)DEMI_SLABS);
+    if (d->first < 0 || local < 1 || d->first > d->count - local || (!d->local && d->first))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: first and local give slabs %d to %d, must "
+                         "lie in 0 to %d; set both, or leave both 0 for all slabs", call, d->first,
+                         d->first + local - 1, d->count - 1);
+    if (!d->transport.exchange_fn != !d->transport.reduce_fn ||
+        (local < d->count && !d->transport.exchange_fn))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
+                         "transport lacks exchange_fn or reduce_fn; give both, or hold all slabs",
+                         call, local, d->count);
+    if (!demi_finite(d->balance) || (d->balance > 0 && d->balance < 1) || d->balance_interval < 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval is %d; "
+                         "balance must be 0, >= 1 or < 0 (never), balance_interval >= 0", call,
+                         (double)d->balance, d->balance_interval);
+    if (w->stage.moved)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is in the middle of a step that "
+                         "ran out of memory; finish the step with dem_world_step first", call);
+    return DEM_OK;
+}
+/* Do all processes hold the same scene in the same order, with a list or without, have they got
+   their memory, and all slabs between them? Digests travel as whole numbers of 32 bits. */
+static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
+    uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash_get(w) << 1);
+    double v[9], slabs = s->local;
+    dem_result result;
+    int k, differ = 0;
+    digest = demi_hash(digest, &w->stage.list_valid, sizeof w->stage.list_valid);
+    if (w->bodies.count)
+        digest = demi_hash(digest, w->bodies.slot, (size_t)w->bodies.count*sizeof(uint32_t));
+    v[0] = (double)(digest >> 32);
+    v[2] = (double)(digest & 0xffffffffu);
+    v[4] = s->count;
+    v[6] = s->axis;
+    for (k = 1; k < 8; k += 2) v[k] = -v[k - 1];
+    v[8] = !ok;
+    result = demi_slabs_reduce(s, v, 9, 0);
+    if (result == DEM_OK) result = demi_slabs_reduce(s, &slabs, 1, 1);
+    if (result != DEM_OK) return demi_fail(w, result, "%s", s->head.error);
+    if (v[8] > 0) return demi_no_memory(w, "dem_slabs_create");
+    for (k = 0; k < 8; k += 2) differ |= v[k] + v[k + 1] > 0;
+    if (!differ && (int)slabs == s->count) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s and together hold %d "
+                     "slabs of %d; build the same world from the same numbers in every process, "
+                     "search or step it in all or none, and assign every slab once", differ
+                     ? "built different scenes" : "do not match", (int)slabs, s->count);
+}
+
+/* The head's share of a world. 0 when memory ran out. */
+static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
+    dem_world *h = &s->head;
+    const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
+    h->asked = w->asked;
+    demi_names_own(h, &w->asked);
+    h->stage.synced = 1;
+    h->bodies.slot_free = h->bodies.slot_pending = -1;
+    h->domains = &s->total;
+    h->material_count = w->material_count;
+    h->wall_count = w->wall_count;
+    memcpy(h->materials, w->materials, sizeof h->materials);
+    h->clock.time = w->clock.time;           h->clock.steps =
+        w->clock.steps;         h->clock.rebuilds = w->clock.rebuilds;
+    h->clock.since = w->clock.since;         h->bodies.balance = w->bodies.balance;
+    h->clock.last_rebuild = w->clock.steps;  h->margin.skin_auto =
+        w->margin.skin_auto; h->margin.skin = w->margin.skin;
+    h->clock.dt = w->clock.dt;               h->stage.dt_valid =
+        w->stage.dt_valid;   h->stage.primed = w->stage.primed;
+    h->clock.assumed_speed = w->clock.assumed_speed;
+    h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
+    h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                      sizeof(demi_pair));
+    h->bodies.pos = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
+    h->bodies.vel = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
+    h->bodies.inv_mass = (dem_real *)demi_hold(h, DEMI_RUN, most, sizeof(dem_real));
+    h->bodies.material = (int32_t *)demi_hold(h, DEMI_RUN, most, sizeof(int32_t));
+    s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
+    s->values = (double *)demi_hold(h, DEMI_RUN, s->value_room, sizeof(double));
+    s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
+    s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
+    if (!h->pairs || !h->bodies.pos || !h->bodies.vel || !h->bodies.inv_mass ||
+        !h->bodies.material || !s->values ||
+        !s->borders || !s->slabs) return 0;
+    memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
+    return demi_slabs_feeds_copy(h, w);
+}
+/* First borders: the same number of grains in every slab. */
+static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
+    const int n = DEMI_SLAB_BINS*s->count;
+    double ends[2] = {-1e300, -1e300}, lo[3], hi[3];
+    int k;
+    demi_domain_limits(w, lo, hi);
+    s->borders[0] = s->ring ? lo[s->axis] : -1e300;
+    s->borders[s->count] = s->ring ? hi[s->axis] : 1e300;
+    demi_slabs_extent(s, w, ends);
+    if (s->ring) { ends[0] = hi[s->axis]; ends[1] = -lo[s->axis]; }
+    if (!(ends[0] > -ends[1])) { ends[0] = w->bodies.count ? ends[0] + 1e-3 : 1; ends[1] = 0; }
+    for (k = 0; k < n; k++) s->values[k] = 0;
+    demi_slabs_bin(s, w, 1, s->values, n, -ends[1], ends[0]);
+    demi_slabs_lay(s, s->values, n, -ends[1], ends[0]);
+}
+
+DEM_API void dem_slabs_destroy(dem_slabs *s) {
+    dem_allocator allocator;
+    int k;
+    if (!s || demi_null(&s->head, "dem_slabs_destroy", s, "slabs")) return;
+    for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
+    allocator = s->head.desc.allocator;
+    demi_free_chain(&s->head, DEMI_RUN);
+    demi_raw_free(&allocator, s, sizeof *s);
+}
+static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
+    const size_t slots = (size_t)w->bodies.slot_count + 1;
+    dem_slabs *s;
+    uint8_t *marks;
+    int k, ok;
+    if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
+        return 0;
+    /* the world keeps its list: it is only read */
+    if (w->stage.list_valid && !demi_carry_collect(w)) {
+        demi_no_memory(w, "dem_slabs_create");
+        return 0;
+    }
+    s = (dem_slabs *)demi_raw_alloc(&w->desc.allocator, sizeof *s);
+    if (!s) { demi_no_memory(w, "dem_slabs_create"); return 0; }
+    memset(s, 0, sizeof *s);
+    s->head.desc = w->desc;
+    s->desc = *desc;
+    s->axis = desc->axis;
+    s->count = desc->count;
+    s->first = desc->first;
+    s->local = desc->local ? desc->local : desc->count;
+    s->ring = s->count > 1 && w->desc.boundary[s->axis] == DEM_BOUNDARY_PERIODIC;
+    s->period = (double)demi_periods_of(w).period[s->axis];
+    marks = (uint8_t *)demi_alloc(w, slots, 1);
+    ok = marks && demi_slabs_head(s, w);
+    s->slots = s->told = s->dealt = w->bodies.slot_count;
+    ok = ok && DEMI_GROW(&s->head, s->known, slots);
+    for (k = 0; k < w->bodies.slot_count && ok; k++)
+        s->known[k] = w->bodies.slot_index[k] < 0 ? 0 : w->bodies.slot_generation[k];
+    if (ok) demi_slabs_first_borders(s, w);
+    for (k = 0; k < s->local && ok; k++) {
+        demi_slab *b = &s->slabs[k];
+        b->index = s->first + k;
+        b->world = demi_slab_world(s, w, b->index, k ? s->slabs[0].world : 0,
+                                   &s->head.desc.allocator);
+        ok = demi_slab_ready(b->world, w) && demi_slab_fill(s, b, w, marks);
+    }
+    demi_free(w, marks);
+    if (demi_slabs_same(s, w, ok) == DEM_OK) return s;
+    dem_slabs_destroy(s);
+    return 0;
+}
+DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
+    demi_calling was;
+    dem_slabs *s;
+    if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
+    was = demi_calls(w, "dem_slabs_create", 1);
+    s = demi_slabs_make(w, desc);
+    w->look.calling = was;
+    return s;
+}
+
+/* --- collect --- */
+
+/* What a slab has besides grains and memory; then come the walls' loads, fields, outlets, a
+   message. */
+typedef struct demi_slab_sums {
+    int32_t index, walls;
+    uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
+    double energy[DEMI_ENERGIES], removed, inserted, throughput, overlap_max;
+    uint64_t met[DEMI_MATERIALS];
+} demi_slab_sums;
+
+/* All that one slab holds, as one message. */
+static int demi_slab_report(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world, *h = &s->head;
+    demi_message *out = &s->mine;
+    const size_t start = out->size;
+    demi_slab_sums sums;
+    int i, ok;
+    memset(&sums, 0, sizeof sums);
+    sums.index = b->index;
+    sums.walls = w->wall_count;
+    sums.left = w->bodies.balance.left;
+    memcpy(sums.energy, w->booked.energy, sizeof sums.energy);
+    sums.removed = w->booked.removed;
+    sums.inserted = w->booked.inserted;
+    sums.throughput = w->booked.throughput;
+    sums.overlap_max = w->booked.overlap_max;
+    memcpy(sums.met, w->booked.met, sizeof sums.met);
+    if (w->stage.list_valid) demi_met_look(w, sums.met);
+    ok = demi_message_put(h, out, &sums, sizeof sums);
+    for (i = 0; i < w->wall_count && ok; i++)
+        ok = demi_message_put(h, out, &w->walls[i].loads, sizeof(dem_wall_loads));
+    for (i = 0; i < w->field_count && ok; i++) {
+        const demi_field *f = &w->fields[i];
+        ok = demi_message_put(h, out, f->sums, demi_field_reals(f)*sizeof(double));
+    }
+    for (i = 0; i < w->outlet_count && ok; i++)
+        ok = demi_message_put(h, out, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
+    ok = ok && (!w->stage.list_valid || demi_carry_collect(w)) &&
+         demi_pack(h, w, w->bodies.ghost, DEMI_ALL, 1, s->axis, 0, out);
+    if (!ok) return 0;
+    sums.size = out->size - start;
+    memcpy(out->bytes + start, &sums, sizeof sums);
+    return 1;
+}
+/* Reports of all processes, passed round the ring: each hands on what it got from below. */
+static dem_result demi_slabs_gather(dem_slabs *s) {
+    demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
+    double processes = 1;
+    dem_result result = demi_slabs_reduce(s, &processes, 1, 1);
+    /* of a step, to be put back */
+    const size_t sent = top->out[1].size, below = low->in[0].size, above = top->in[1].size;
+    int round, k;
+    s->mine.size = s->all.size = 0;
+    for (k = 0; k < s->local; k++)
+        if (s->slabs[k].result == DEM_OK && !demi_slab_report(s, &s->slabs[k]))
+            s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_collect");
+    top->out[1].size = 0;
+    if (!demi_message_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
+        !demi_message_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
+        top->result = demi_no_memory(top->world, "dem_slabs_collect");
+    if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);
+    for (round = 1; round < (int)processes && result == DEM_OK; round++) {
+        result = demi_slabs_exchange(s, DEMI_UP, 0);
+        if (result != DEM_OK) break;
+        top->out[1].size = 0;
+        if (!demi_message_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
+            !demi_message_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
+            top->result = demi_no_memory(top->world, "dem_slabs_collect");
+        result = demi_slabs_agree(s, 0, 0);
+    }
+    top->out[1].size = sent;
+    low->in[0].size = below;
+    top->in[1].size = above;
+    return result;
+}
+/* The report of one slab; null when it is missing. */
+static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums *sums) {
+    const char *from = s->all.bytes, *end = from + s->all.size;
+    for (; from < end; from += sums->size) {
+        memcpy(sums, from, sizeof *sums);
+        if (sums->index == index) return from + sizeof *sums;
+    }
+    return 0;
+}
+/* What one slab's outlet has let out, on top of the others'. */
+static const char *demi_outlet_add(demi_outlet *o, const char *from) {
+    dem_outlet_state *to = &o->state, part;
+    int k;
+    demi_unpack(&from, &part, sizeof part);
+    for (k = 0; k < DEM_CLASSES; k++) {
+        to->count[k] += part.count[k];
+        to->mass[k] += part.mass[k];
+        to->back[k] += part.back[k];
+        to->back_mass[k] += part.back_mass[k];
+    }
+    to->back_total += part.back_total;
+    to->back_total_mass += part.back_total_mass;
+    to->total += part.total;
+    to->total_mass += part.total_mass;
+    to->sorted += part.sorted;
+    to->sorted_mass += part.sorted_mass;
+    to->gangue += part.gangue;
+    to->gangue_mass += part.gangue_mass;
+    to->last = DEMI_MAX(to->last, part.last);
+    return from;
+}
+/* Adds a slab's sums to the world's, which were cleared before. Answers where its message
+   begins. */
+static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
+    int i, k;
+    for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
+    w->booked.removed += sums->removed;
+    w->booked.inserted += sums->inserted;
+    w->booked.throughput += sums->throughput;
+    w->bodies.balance.left += sums->left;
+    w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
+    for (i = 0; i < DEMI_MATERIALS; i++) w->booked.met[i] |= sums->met[i];
+    for (i = 0; i < sums->walls; i++) {
+        dem_wall_loads *c = &w->walls[i].loads, part;
+        demi_unpack(&from, &part, sizeof part);
+        c->force = demi_add(c->force, part.force);
+        c->torque = demi_add(c->torque, part.torque);
+        c->torque_axial += part.torque_axial;
+        c->power += part.power;
+        c->contacts += part.contacts;
+        c->touched |= part.touched;
+        for (k = 0; k < 3; k++) c->impulse[k] += part.impulse[k];
+        c->torque_impulse += part.torque_impulse;
+        c->work += part.work;
+        for (k = 0; k < DEM_BODY_REALS; k++) c->rate[k] += part.rate[k];
+        for (k = 0; k < DEM_BODY_REALS; k++) c->gained[k] += part.gained[k];
+        c->time = part.time;
+    }
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        size_t n;
+        for (n = 0; n < demi_field_reals(f); n++) {
+            double part;
+            demi_unpack(&from, &part, sizeof part);
+            f->sums[n] += part;
+        }
+    }
+    for (i = 0; i < w->outlet_count; i++) from = demi_outlet_add(demi_outlet_at(w, i), from);
+    return from;
+}
+/* From a slab's sums to its grains. */
+static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
+                                   const char *from) {
+    int i;
+    from += (size_t)sums->walls*sizeof(dem_wall_loads);
+    for (i = 0; i < w->field_count; i++) from += demi_field_reals(&w->fields[i])*sizeof(double);
+    return from + (size_t)w->outlet_count*sizeof(dem_outlet_state);
+}
+/* Time, step, and what else is the same in all slabs. */
+static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
+    const dem_world *h = &s->head, *from = s->slabs[0].world;
+    int i;
+    w->desc.gravity = h->desc.gravity;       w->desc.dt = h->desc.dt;
+    w->clock.time = h->clock.time;           w->clock.steps =
+        h->clock.steps;         w->clock.rebuilds = h->clock.rebuilds;
+    w->clock.since = h->clock.since;
+    w->clock.last_rebuild = h->clock.last_rebuild;                        w->margin.skin_auto =
+        h->margin.skin_auto;
+    if (s->count == 1) w->margin.skin_auto = from->margin.skin_auto;
+    w->margin.skin = h->margin.skin;           w->clock.dt =
+        h->clock.dt;               w->stage.dt_valid = h->stage.dt_valid;
+    w->clock.assumed_speed = h->clock.assumed_speed;                      w->stage.primed =
+        h->stage.primed;
+    w->booked.speed_max = h->booked.speed_max; w->stage.moved =
+        h->stage.moved;         w->stage.synced = from->stage.synced;
+    w->clock.half_kick = from->clock.half_kick;
+    w->margin.gone = h->margin.gone;         w->margin.walls_gone = h->margin.walls_gone;
+    w->stage.forces_valid = h->stage.forces_valid;
+    w->bodies.balance.left = 0;
+    w->booked.removed = w->booked.inserted = w->booked.throughput = w->booked.overlap_max = 0;
+    memset(w->booked.energy, 0, sizeof w->booked.energy);
+    for (i = 0; i < w->wall_count; i++) {
+        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
+        w->walls[i].pose = from->walls[i].pose;
+        w->walls[i].mid = from->walls[i].mid;
+    }
+    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc desc = w->feeds[i].desc;           /* pointers are the world's own */
+        w->feeds[i] = h->feeds[i];
+        w->feeds[i].desc = desc;
+    }
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
+        f->samples = from->fields[i].samples;
+        f->next = from->fields[i].next;
+    }
+}
+/* Grains, memory and contacts of one slab; those that were fed since are new in the world. */
+static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
+    demi_message_head head;
+    int i;
+    demi_unpack(&from, &head, sizeof head);
+    for (i = 0; i < head.grains; i++) {
+        const uint32_t slot = demi_grain_slot(from);
+        if (w->bodies.slot_index[slot] < 0) {
+            w->bodies.slot_index[slot] = w->bodies.count++;
+            w->bodies.balance.present++;
+        }
+        demi_grain_unpack(w, w->bodies.slot_index[slot], &from);
+        seen[slot] = 1;
+    }
+    w->lll_valid = 0;
+    demi_filed_unpack(w, add, &head, from);
+}
+/* Slots of grains that were fed since the world was told the last time, nobody's as yet. */
+static void demi_slabs_slots(const dem_slabs *s, dem_world *w) {
+    for (; w->bodies.slot_count < s->slots; w->bodies.slot_count++) {
+        w->bodies.slot_generation[w->bodies.slot_count] = 1;
+        w->bodies.slot_index[w->bodies.slot_count] = -1;
+    }
+}
+/* Those from `first` on whose grains have gone again are free. */
+static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) {
+    int slot;
+    for (slot = w->bodies.slot_count - 1; slot >= first; slot--) {
+        if (seen[slot]) continue;
+        w->bodies.slot_generation[slot]++;
+        w->bodies.slot_index[slot] = -2 - w->bodies.slot_free;
+        w->bodies.slot_free = slot;
+    }
+}
+/* Room for all that was gathered, and whether the world can hold it. */
+static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
+    const char *call = "dem_slabs_collect";
+    dem_world *h = &s->head;
+    demi_slab_sums sums;
+    demi_message_head come = {0, 0, 0, 0};
+    int k, i;
+    if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations only in %s; collect "
+                         "into the world from which the slabs were created, unchanged, or one "
+                         "built like it", call, w->bodies.orienting ? "the world" : "the slabs");
+    if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
+        w->material_count != h->material_count || w->feed_count != h->feed_count ||
+        w->field_count != s->slabs[0].world->field_count ||
+        w->outlet_count != s->slabs[0].world->outlet_count)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
+                         "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
+                         "from which they were created, unchanged, or one built like it", call,
+                         w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
+                         s->dealt, h->wall_count, h->material_count, h->feed_count);
+    for (i = 0; i < w->bodies.count; i++) {
+        const uint32_t slot = w->bodies.slot[i];
+        if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])
+            return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
+                             "slabs were created; collect before adding grains, or create the "
+                             "slabs again afterwards", call, (unsigned)slot + 1);
+    }
+    for (k = 0; k < s->count; k++) {
+        const char *from = demi_slabs_find(s, k, &sums);
+        demi_message_head head;
+        if (!from)
+            return demi_fail(h, DEM_ERROR_STOPPED, "%s: slab %d did not report; check that every "
+                             "process makes this call and that the ring of processes is closed",
+                             call, k);
+        from = demi_slabs_skip(w, &sums, from);
+        demi_unpack(&from, &head, sizeof head);
+        come.pairs += head.pairs;
+        come.contacts += head.contacts;
+        if (head.pairs) come.stride = head.stride;
+        for (i = 0; i < head.grains; i++) {
+            const uint32_t slot = demi_grain_slot(from);
+            from += demi_body_size(w);
+            if ((int)slot < w->bodies.slot_count && w->bodies.slot_index[slot] < 0)
+                return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
+                                 "in the world; collect before removing grains, or create the "
+                                 "slabs again afterwards", call, (unsigned)slot + 1, k);
+        }
+    }
+    if (!demi_list_drop(w)) return demi_no_memory(h, call);
+    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;
+    w->filed.count = 0;
+    i = w->bodies.slot_count;
+    if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)DEMI_MAX(s->slots - i, 0)))
+        return demi_no_memory(h, call);
+    demi_slabs_slots(s, w);
+    if (!demi_filed_reserve(w, add, &come)) {
+        w->bodies.slot_count = i;
+        return demi_no_memory(h, call);
+    }
+    memset(*seen, 0, (size_t)s->slots + 1);
+    return DEM_OK;
+}
+DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
+    if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world") ||
+        demi_null(w, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
+    int32_t *add = 0;
+    uint8_t *seen = 0;
+    dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
+    const int slots = w->bodies.slot_count;
+    demi_calling was[2];
+    demi_slab_sums sums;
+    int k, i;
+    was[0] = demi_calls(&s->head, "dem_slabs_collect", 1);
+    was[1] = demi_calls(w, "dem_slabs_collect", 1);
+    if (result == DEM_OK) result = demi_slabs_gather(s);
+    if (result == DEM_OK) result = demi_slabs_room(s, w, &add, &seen);
+    if (result == DEM_OK) {
+        demi_slabs_common(s, w);
+        for (k = 0; k < s->count; k++) {
+            const char *from = demi_slabs_find(s, k, &sums);
+            from = demi_slabs_add(w, &sums, from);
+            demi_slabs_write(w, add, seen, from);
+        }
+        demi_slabs_slots_free(w, seen, slots);
+        s->told = s->slots;
+        /* in no slab: left through an outflow boundary or an outlet */
+        for (i = w->bodies.count - 1; i >= 0; i--)
+            if (!seen[w->bodies.slot[i]]) {
+                const double removed = w->booked.removed;
+                demi_body_take_out(w, i);
+                w->booked.removed = removed;
+            }
+        /* whatever happened here since */
+        w->bodies.balance.inserted = s->head.bodies.balance.inserted;
+        w->bodies.balance.removed = s->head.bodies.balance.removed;
+        demi_effects(w);                        /* the world may never have taken a step itself */
+        demi_kernel_choose(w);
+    }
+    w->look.calling = was[1];
+    s->head.look.calling = was[0];
+    demi_free(w, add);
+    demi_free(&s->head, seen);
+    return result;
+}
+DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
+    if (!s || demi_null(&s->head, "dem_slabs_loads_reset", s, "slabs")) return;
+    int k, i;
+    for (k = 0; k < s->local; k++) {
+        dem_world *w = s->slabs[k].world;
+        w->booked.overlap_max = 0;
+        for (i = 0; i < w->wall_count; i++) {
+            dem_wall_loads *c = &w->walls[i].loads;
+            memset(c->impulse, 0, sizeof c->impulse);
+            memset(c->gained, 0, sizeof c->gained);
+            c->torque_impulse = c->work = c->time = 0;
+        }
+    }
+}
+
+DEM_API const char *dem_slabs_error_get(const dem_slabs *s) {
+    return s ? s->head.error : "dem_slabs_create: returned null; dem_world_error_get(world) says "
+    "why";
+}
+DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
+    if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
+    const demi_slab *b;
+    if (index < s->first || index >= s->first + s->local)
+        return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
+                         "here, this process holds slabs %d to %d of %d; make this call in the "
+                         "process that holds it", index, s->first, s->first + s->local - 1,
+                         s->count);
+    b = &s->slabs[index - s->first];
+    out->grains = b->world->bodies.count - b->ghost_count;
+    out->ghosts = b->ghost_count;
+    out->lo = s->borders[index];
+    out->hi = s->borders[index + 1];
+    out->work = b->work;
+    out->seconds = b->seconds;
+    out->bytes = b->bytes;
+    return DEM_OK;
+}
+DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
+    dem_slabs_counters c;
+    int k;
+    memset(&c, 0, sizeof c);
+    if (!s) return c;
+    c.time = s->head.clock.time;
+    c.steps = s->head.clock.steps;
+    c.rebuilds = s->head.clock.rebuilds;
+    c.border_moves = s->border_moves;
+    for (k = 0; k < s->local; k++) c.migrated += s->slabs[k].migrated;
+    c.skin = (dem_real)s->head.margin.skin;
+    c.dt = s->head.clock.dt;
+    return c;
+}

@@ -1,0 +1,151 @@
+/* ---------------------------------------------------------------------------------------------
+   >>slabs-run
+   Feeds into slabs, and one step after the other. The head has the feeds and draws, in every
+   process the same; each slab says who is near; the one whose part of the scene a new grain is in
+   takes it. Its slot is one nobody has had, and all lists are made anew before the step; forces
+   stay as they are, for it touches nobody.
+   --------------------------------------------------------------------------------------------- */
+
+/* Slot numbers are those of the whole scene: every slab gets room for one more. 0: no memory. */
+static int demi_slab_widen(demi_slab *b, int slot) {
+    dem_world *w = b->world;
+    return demi_bodies_reserve(w, (size_t)w->bodies.count + 1) &&
+           DEMI_GROW(w, w->bodies.ghost, (size_t)slot + 2);
+}
+/* Who is near a feed's region, each slab for itself; distances are those of the whole scene, which
+   may be periodic where a slab is not. */
+static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
+    dem_slabs *s = (dem_slabs *)who;
+    int k;
+    if (!s->head.stage.primed) demi_slabs_phase(s, demi_slab_finish);
+    for (k = 0; k < s->local; k++) {
+        demi_slab *b = &s->slabs[k];
+        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, demi_periods_of(&s->head)))
+            b->result = demi_no_memory(b->world, "dem_slabs_step");
+    }
+    return demi_slabs_agree(s, 0, 0);
+}
+/* Room for a grain at x of radius r, and for its slot; `owner`: the slab that takes it, if it is in
+   this process. */
+static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 x, dem_real r) {
+    int k;
+    for (k = 0; k < s->local; k++)
+        if (!demi_slab_widen(&s->slabs[k], s->slots))
+            s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_step");
+    if (!DEMI_GROW(&s->head, s->known, (size_t)s->slots + 2))
+        s->slabs[0].result = demi_no_memory(s->slabs[0].world, "dem_slabs_step");
+    if (owner && owner->result == DEM_OK &&
+        (!demi_crowd_put(owner->world, &owner->crowd, x, r, owner->world->bodies.count) ||
+         !demi_list_drop(owner->world)))
+        owner->result = demi_no_memory(owner->world, "dem_slabs_step");
+    return demi_slabs_agree(s, 0, 0);
+}
+/* All places that may be tried are asked about at once: is anybody in the way? Then the first that
+   is free counts, as in a world that tries one after the other. */
+static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
+    dem_slabs *s = (dem_slabs *)who;
+    dem_world *h = &s->head;
+    const dem_real r = f->drawn.reach;
+    const demi_periods p = demi_periods_of(h);
+    const uint64_t random = f->random;
+    uint64_t after[DEMI_FEED_TRIES];
+    double taken[DEMI_FEED_TRIES], at[3];
+    dem_vec3 x[DEMI_FEED_TRIES], v[DEMI_FEED_TRIES];
+    demi_slab *owner = 0;
+    dem_result result;
+    int n, k;
+    for (n = 0; n < DEMI_FEED_TRIES; n++) {
+        taken[n] = !demi_feed_try(h, f, g, &x[n], &v[n]) ||
+                   !demi_walls_clear(s->slabs[0].world, x[n], r);
+        after[n] = f->random;
+        for (k = 0; k < s->local && !(taken[n] > 0); k++)
+            taken[n] = !demi_crowd_free(s->slabs[k].world, &s->slabs[k].crowd, x[n], r);
+    }
+    result = demi_slabs_reduce(s, taken, DEMI_FEED_TRIES, 0);
+    for (n = 0; n < DEMI_FEED_TRIES && taken[n] > 0; n++) continue;
+    if (result == DEM_OK && n == DEMI_FEED_TRIES) return 0;
+    if (result == DEM_OK) {
+        x[n] = demi_place_of(&p, x[n]);
+        at[0] = (double)x[n].x; at[1] = (double)x[n].y; at[2] = (double)x[n].z;
+        for (k = 0; k < s->local; k++)
+            if ((s->slabs[k].index == 0 || at[s->axis] >= s->borders[s->slabs[k].index]) &&
+                (s->slabs[k].index == s->count - 1 ||
+                 at[s->axis] < s->borders[s->slabs[k].index + 1])) owner = &s->slabs[k];
+        result = demi_slabs_feed_room(s, owner, x[n], r);
+    }
+    if (result != DEM_OK) { f->random = random; return -(int)result; }
+    f->random = after[n];
+    for (k = 0; k < s->local; k++) {
+        demi_bodies *bodies = &s->slabs[k].world->bodies;
+        const int rest = bodies->slot_free;
+        bodies->slot_free = -1;                 /* a number nobody has had: the next */
+        bodies->slot_index[s->slots] = -1;
+        bodies->slot_generation[s->slots] = 1;
+        bodies->ghost[s->slots] = 0;
+        bodies->slot_count = s->slots + (&s->slabs[k] != owner);
+        if (&s->slabs[k] == owner) {
+            const int i = demi_feed_append(owner->world, f, x[n], v[n]);
+            if (h->stage.primed) demi_prime_body(owner->world, i);
+        }
+        bodies->slot_free = rest;
+    }
+    s->known[s->slots++] = 1;
+    h->bodies.balance.inserted++;
+    h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
+    h->stage.list_valid = 0;
+    if (h->desc.force || h->desc.body_force) demi_scene_changed(h);
+    demi_feed_count(f);
+    return 1;
+}
+/* All that is due; then the time step may be another. */
+static dem_result demi_slabs_feed(dem_slabs *s) {
+    demi_feeder feeder;
+    dem_result result;
+    if (!s->head.feed_count) return DEM_OK;
+    feeder.look = demi_slabs_look;
+    feeder.put = demi_slabs_put;
+    feeder.who = s;
+    result = demi_feeds_run(&s->head, &feeder);
+    return result == DEM_OK ? demi_slabs_settle(s) : result;
+}
+
+/* Not after the transport has failed. */
+static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
+    if (!s->broken) return DEM_OK;
+    return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed earlier, so slabs may "
+                     "be out of step; create them again from the last collected world or "
+                     "checkpoint", call);
+}
+DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
+    if (!s || demi_null(&s->head, "dem_slabs_step", s, "slabs")) return DEM_ERROR_ARGUMENT;
+    dem_result result = demi_slabs_usable(s, "dem_slabs_step");
+    dem_world *h = &s->head;
+    demi_calling was;
+    int i, f, whole = 1;
+    if (result != DEM_OK) return result;
+    if (steps < 0)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
+                         steps);
+    was = demi_calls(h, "dem_slabs_step", 1);
+    for (i = 0; i < steps && result == DEM_OK; i++) {
+        const dem_world *w = s->slabs[0].world;
+        int sampling = 0;
+        if (!h->stage.moved) {
+            result = demi_slabs_settle(s);
+            if (result == DEM_OK) result = demi_slabs_feed(s);
+            if (result == DEM_OK && !h->stage.forces_valid) result = demi_slabs_refresh(s);
+            else if (result == DEM_OK && !h->stage.list_valid) result = demi_slabs_rebuild(s);
+            if (result == DEM_OK) result = demi_slabs_dt_check(s);
+            if (result != DEM_OK) break;
+            if (!h->stage.primed) { demi_slabs_phase(s, demi_slab_prime); h->stage.primed = 1; }
+        }
+        result = demi_slabs_step_once(s);
+        whole = result == DEM_OK;
+        for (f = 0; f < w->field_count; f++) sampling |= demi_field_due(w, &w->fields[f]);
+        if (sampling && whole) demi_slabs_phase(s, demi_slab_sample);
+    }
+    if (whole && result == DEM_OK) result = demi_slabs_agree(s, 0, 0);  /* of the last forces */
+    if (whole && !h->stage.moved) demi_slabs_phase(s, demi_slab_finish);
+    h->look.calling = was;
+    return result;
+}

@@ -1,0 +1,215 @@
+/* ---------------------------------------------------------------------------------------------
+   >>motions
+   Poses of walls at any time: rotation, oscillation, translation with a ramp, and tables of poses.
+   Velocity and spin are the exact derivatives of position and rotation. Reads the motion and the
+   first pose of a wall; writes poses only.
+   --------------------------------------------------------------------------------------------- */
+static void demi_pose_identity(dem_pose *p) {
+    memset(p, 0, sizeof *p);
+    p->rotation[0] = p->rotation[4] = p->rotation[8] = 1;
+}
+
+/* How far a speed that rises for `ramp` s has brought one after t >= 0, as the time that it would
+   have taken at full speed, s, and which part of the full speed there is. */
+static double demi_ramp(double t, double ramp, double *part) {
+    const double u = ramp > 0 && t < ramp ? t/ramp : 1;
+    *part = u*u*(3 - 2*u);
+    return u < 1 ? ramp*u*u*u*(1 - u/2) : t - ramp/2;
+}
+/* Number c (0..2: position, 3..6: rotation) of row k of a table; rows of one that repeats go on. */
+static double demi_row_number(const dem_motion *m, int k, int c) {
+    const dem_motion_row *r = m->table + k;
+    switch (c) {
+    case 0: return (double)r->position.x;
+    case 1: return (double)r->position.y;
+    case 2: return (double)r->position.z;
+    case 3: return (double)r->rotation.w;
+    case 4: return (double)r->rotation.x;
+    case 5: return (double)r->rotation.y;
+    default: return (double)r->rotation.z;
+    }
+}
+/* Slope of number c at row k, 1/s: of the parabola through it and its neighbours; 0 at the ends of
+   a table that does not repeat. */
+static double demi_row_slope(const dem_motion *m, int k, int c) {
+    const int last = m->table_count - 1, ends = k == 0 || k == last;
+    const int before = k == 0 ? last - 1 : k - 1, after = k == last ? 1 : k + 1;
+    const int here_a = k == 0 ? last : k, here_b = k == last ? 0 : k;   /* the same place */
+    int i;
+    double a, b, ta, tb, side = 0;
+    if (ends && !m->table_repeats) return 0;
+    /* of the two quaternions of one turn the last row may have the other */
+    for (i = 3; ends && c > 2 && i < 7; i++)
+        side += demi_row_number(m, 0, i)*demi_row_number(m, last, i);
+    ta = m->table[here_a].time - m->table[before].time;
+    tb = m->table[after].time - m->table[here_b].time;
+    a = (demi_row_number(m, here_a, c) - demi_row_number(m, before, c))/ta;
+    b = (demi_row_number(m, after, c) - demi_row_number(m, here_b, c))/tb;
+    if (side < 0) *(k == 0 ? &a : &b) *= -1;
+    return (a*tb + b*ta)/(ta + tb);
+}
+/* Cubic by Hermite between two rows; quaternions likewise, then made unit: their derivative, and
+   with it the spin, is that of what is drawn. */
+static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
+    const dem_motion *m = &wall->motion;
+    const int last = m->table_count - 1;
+    const double end = m->table[last].time;
+    double x[7], v[7], size = 0, along = 0, h, u, R[9], w[3];
+    dem_real T[9];
+    dem_vec3 arm, at;
+    int k = 0, c, i, j;
+    if (m->table_repeats && t > 0) t = fmod(t, end);
+    t = DEMI_MIN(DEMI_MAX(t, 0), end);
+    while (k + 1 < last && t >= m->table[k + 1].time) k++;
+    h = m->table[k + 1].time - m->table[k].time;
+    u = (t - m->table[k].time)/h;
+    for (c = 0; c < 7; c++) {
+        const double a = demi_row_number(m, k, c), b = demi_row_number(m, k + 1, c);
+        const double p = h*demi_row_slope(m, k, c), q = h*demi_row_slope(m, k + 1, c);
+        x[c] = a + u*(p + u*(3*(b - a) - 2*p - q + u*(2*(a - b) + p + q)));
+        v[c] = (p + u*(2*(3*(b - a) - 2*p - q) + u*3*(2*(a - b) + p + q)))/h;
+    }
+    for (c = 3; c < 7; c++) size += x[c]*x[c];
+    size = sqrt(size);
+    for (c = 3; c < 7; c++) { x[c] /= size; v[c] /= size; along += x[c]*v[c]; }
+    for (c = 3; c < 7; c++) v[c] -= along*x[c];
+    /* w = 2 dq/dt q* */
+    w[0] = 2*(-v[3]*x[4] + v[4]*x[3] - v[5]*x[6] + v[6]*x[5]);
+    w[1] = 2*(-v[3]*x[5] + v[4]*x[6] + v[5]*x[3] - v[6]*x[4]);
+    w[2] = 2*(-v[3]*x[6] - v[4]*x[5] + v[5]*x[4] + v[6]*x[3]);
+    R[0] = 1 - 2*(x[5]*x[5] + x[6]*x[6]); R[1] = 2*(x[4]*x[5] - x[3]*x[6]);
+    R[2] = 2*(x[4]*x[6] + x[3]*x[5]);     R[3] = 2*(x[4]*x[5] + x[3]*x[6]);
+    R[4] = 1 - 2*(x[4]*x[4] + x[6]*x[6]); R[5] = 2*(x[5]*x[6] - x[3]*x[4]);
+    R[6] = 2*(x[4]*x[6] - x[3]*x[5]);     R[7] = 2*(x[5]*x[6] + x[3]*x[4]);
+    R[8] = 1 - 2*(x[4]*x[4] + x[5]*x[5]);
+    for (i = 0; i < 9; i++) T[i] = (dem_real)R[i];
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            pose->rotation[3*i + j] = (dem_real)(R[3*i]*(double)wall->home.rotation[j] +
+                R[3*i + 1]*(double)wall->home.rotation[3 + j] +
+                R[3*i + 2]*(double)wall->home.rotation[6 + j]);
+    arm = demi_rotate(T, demi_sub(wall->home.position, m->point));
+    at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
+    pose->position = demi_add(demi_add(m->point, at), arm);
+    pose->spin = demi_v((dem_real)w[0], (dem_real)w[1], (dem_real)w[2]);
+    pose->velocity = demi_add(demi_v((dem_real)v[0], (dem_real)v[1], (dem_real)v[2]),
+                              demi_cross(pose->spin, arm));
+}
+/* A wall's own table of a motion's rows, quaternions unit and each on the side of the one before.
+   0: memory ran out. */
+static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **out) {
+    dem_motion_row *rows;
+    int k;
+    *out = 0;
+    if (m->kind != DEM_MOTION_TABLE) return 1;
+    rows = (dem_motion_row *)demi_hold(w, DEMI_SCENE, (size_t)m->table_count, sizeof *rows);
+    if (!rows) return 0;
+    for (k = 0; k < m->table_count; k++) {
+        dem_quat q = m->table[k].rotation;
+        rows[k] = m->table[k];
+        if (!(demi_quat_most(q) > 0)) q = dem_quat_make(1, 0, 0, 0);
+        q = demi_quat_unit(q);
+        if (k && q.w*rows[k - 1].rotation.w + q.x*rows[k - 1].rotation.x +
+            q.y*rows[k - 1].rotation.y + q.z*rows[k - 1].rotation.z < 0)
+            q = dem_quat_make(-q.w, -q.x, -q.y, -q.z);
+        rows[k].rotation = q;
+    }
+    *out = rows;
+    return 1;
+}
+/* Of a motion with a table: what is wrong with it, in the name of dem_wall_motion_set. */
+static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) {
+    int k, bad = -1;
+    if (!m->table || m->table_count < 2)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the table of wall %d has %d "
+                         "rows, must have at least 2; set table and table_count", wall,
+                         m->table ? m->table_count : 0);
+    for (k = 0; k < m->table_count && bad < 0; k++) {
+        const dem_motion_row *r = m->table + k;
+        if (!demi_finite_double(r->time) || !demi_place(r->position) ||
+            !demi_quat_finite(r->rotation) ||
+            (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
+    }
+    if (bad < 0) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: row %d of the table of wall %d, "
+                     "at %g s, is not finite or not later than the row before; the first row must "
+                     "be at 0 s", bad, wall, m->table[bad].time);
+}
+/* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no
+   error builds up. Velocities are exact derivatives. */
+static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
+    const dem_motion *m = &wall->motion;
+    const double t = time - m->start;
+    double gone, part;
+    *pose = wall->home;
+    pose->velocity = pose->spin = demi_v(0, 0, 0);
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: break;
+    case DEM_MOTION_TRANSLATING:
+        if (t <= 0) break;
+        gone = demi_ramp(t, m->ramp, &part);
+        pose->position = demi_add(pose->position, demi_scale(m->velocity, (dem_real)gone));
+        pose->velocity = demi_scale(m->velocity, (dem_real)part);
+        break;
+    case DEM_MOTION_ROTATING: {
+        const dem_vec3 axis = demi_unit(m->axis), arm = demi_sub(wall->home.position, m->point);
+        double turn[9];
+        dem_real T[9];
+        int i, j;
+        if (t <= 0) break;
+        gone = demi_ramp(t, m->ramp, &part);
+        demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
+                      fmod((double)m->speed*gone, 2*DEMI_PI));
+        for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3; j++)
+                pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
+                    turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
+                    turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
+        pose->position = demi_add(m->point, demi_rotate(T, arm));
+        pose->spin = demi_scale(axis, m->speed*(dem_real)part);
+        pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
+        break;
+    }
+    case DEM_MOTION_OSCILLATING: {
+        const dem_vec3 way = demi_unit(m->velocity);
+        const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
+        const double u = m->ramp > 0 && t < m->ramp ? DEMI_MAX(t, 0)/m->ramp : 1;
+        const double grows = u < 1 ? 6*u*(1 - u)/m->ramp : 0;
+        part = u*u*(3 - 2*u);
+        pose->position = demi_add(pose->position, demi_scale(way, (dem_real)(
+            part*(double)m->amplitude*demi_sin(phase))));
+        pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*
+            (part*w*demi_cos(phase) + grows*demi_sin(phase))));
+        break;
+    }
+    case DEM_MOTION_USER: m->function(time, pose, m->user); break;
+    case DEM_MOTION_TABLE: demi_table_pose(wall, t, pose); break;
+    }
+}
+
+/* A rotation, as far as its numbers tell, and a place, a velocity and a spin that can be. */
+static int demi_pose_sane(const dem_pose *p) {
+    int i, ok = demi_place(p->position) && demi_place(p->velocity) && demi_place(p->spin);
+    for (i = 0; i < 9; i++)
+        ok = ok && demi_finite(p->rotation[i]) && DEMI_ABS(p->rotation[i]) <= 2;
+    return ok;
+}
+/* The numbers of a motion. */
+static int demi_motion_sane(const dem_motion *m) {
+    return demi_place(m->velocity) && demi_place(m->point) && demi_place(m->axis) &&
+        demi_bounded((double)m->speed) && demi_bounded((double)m->amplitude) &&
+        demi_bounded((double)m->frequency) && demi_bounded((double)m->phase) &&
+        demi_bounded(m->start) && demi_bounded(m->ramp) && m->ramp >= 0;
+}
+
+/* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in
+   place. */
+static double demi_wall_speed(const demi_wall *wall) {
+    const dem_pose *p = &wall->pose;
+    if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
+    if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* endless: no bound, look again
+                                                                     every step */
+    if (wall->extent < 0) return (double)demi_length(p->velocity);
+    return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->extent;
+}

@@ -1,0 +1,120 @@
+/* ---------------------------------------------------------------------------------------------
+   >>sheets
+   Which facets of one wall hang together, which way round each turns, and where they end. Made when
+   a wall is loaded; polyhedra need it, which see a surface from one of its two sides.
+   --------------------------------------------------------------------------------------------- */
+
+/* Has a side of a triangle (3*element + side) nothing beside it, or a triangle that is too thin to
+   count? beside: as demi_wall_sheets has it. */
+static int demi_side_ends(const demi_wall *wall, const int32_t *beside, int side) {
+    const dem_vec3 n = demi_at(wall->planes + 4*(DEMI_MAX(beside[side], 0)/3));
+    return beside[side] < 0 || !(demi_dot(n, n) > 0);
+}
+/* Where sheets end (beside: as demi_wall_sheets has it), and their mean normals there: of all
+   triangles of the sheet at a corner, by their angles, which does not change as they are cut. 0
+   when memory ran out. */
+static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *beside) {
+    const int all = wall->element_count, points = wall->vertex_count;
+    int32_t *first = (int32_t *)demi_alloc(w, (size_t)(points + 2 + 3*all), sizeof *first);
+    int32_t *at = first ? first + points + 2 : 0;      /* 3*element + corner, by vertex */
+    int i, k, c, count = 0;
+    for (i = 0; i < 3*all; i++) count += demi_side_ends(wall, beside, i);
+    wall->border_count = count;
+    wall->borders = (demi_border *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MAX(count, 1),
+                                             sizeof *wall->borders);
+    if (!first || !wall->borders) { demi_free(w, first); return 0; }
+    memset(first, 0, (size_t)(points + 2)*sizeof *first);
+    for (i = 0; i < 3*all; i++) first[wall->corners[i] + 2]++;
+    for (i = 2; i < points + 2; i++) first[i] += first[i - 1];
+    for (i = 0; i < 3*all; i++) at[first[wall->corners[i] + 1]++] = i;
+    for (i = 0, count = 0; i < 3*all; i++) {
+        demi_border *e = &wall->borders[count];
+        if (!demi_side_ends(wall, beside, i)) continue;
+        count++;
+        e->side = i;
+        for (k = 0; k < 2; k++) {
+            const int32_t v = wall->corners[i/3*3 + (i + k)%3];
+            e->normal[k] = demi_v(0, 0, 0);
+            for (c = first[v]; c < first[v + 1]; c++) {
+                const int32_t *own = wall->corners + at[c]/3*3, sheet = wall->sheet[at[c]/3];
+                const dem_vec3 x = demi_at(wall->vertices + 3*v);
+                const dem_vec3 p = demi_sub(demi_at(wall->vertices + 3*own[(at[c] + 1)%3]), x);
+                const dem_vec3 q = demi_sub(demi_at(wall->vertices + 3*own[(at[c] + 2)%3]), x);
+                const double angle = demi_atan2((double)demi_length(demi_cross(p, q)),
+                                                (double)demi_dot(p, q));
+                if (sheet != wall->sheet[i/3] && sheet != -wall->sheet[i/3]) continue;
+                e->normal[k] = demi_add(e->normal[k], demi_scale(
+                    demi_at(wall->planes + 4*(at[c]/3)), (dem_real)(sheet < 0 ? -angle : angle)));
+            }
+            if (demi_dot(e->normal[k], e->normal[k]) > 0) e->normal[k] = demi_unit(e->normal[k]);
+        }
+    }
+    demi_free(w, first);
+    return 1;
+}
+/* Marks triangles with the corners of an earlier one: their sheet is INT_MAX. s: room for all. */
+static void demi_facets_copies(demi_wall *wall, demi_side *s) {
+    const int all = wall->element_count;
+    int i;
+    for (i = 0; i < all; i++) {
+        const int32_t *c = wall->corners + 3*i;
+        const int32_t lo = DEMI_MIN(c[0], DEMI_MIN(c[1], c[2]));
+        const int32_t hi = DEMI_MAX(c[0], DEMI_MAX(c[1], c[2]));
+        s[i] = demi_side_of(lo, hi, c[0] + c[1] + c[2] - lo - hi, i);
+    }
+    qsort(s, (size_t)all, sizeof *s, demi_side_compare);
+    for (i = 1; i < all; i++)
+        if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi && s[i].facet == s[i - 1].facet)
+            wall->sheet[s[i].side] = INT_MAX;
+}
+/* Sheets: facets that are joined by edges (segments: by ends) which two of them have, and which way
+   round each turns. A triangle with the corners of an earlier one is of none: that stands for both.
+   0 when memory ran out. */
+static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
+    const int n = demi_wall_per(wall), all = wall->element_count;
+    demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
+    int32_t *beside = (int32_t *)demi_alloc(w, (size_t)all*4, sizeof *beside);
+    int32_t *row = beside ? beside + 3*all : 0;
+    int i, k, count = 0, rows, sheets = 0;
+    wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
+    if (n == 3 && sides && wall->sheet) demi_facets_copies(wall, sides);
+    for (i = 0; i < all && sides && beside && wall->sheet; i++)
+        for (k = 0; k < n && !wall->sheet[i]; k++) {
+            const int32_t *c = wall->corners + n*i;
+            sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
+        }
+    if (count) qsort(sides, (size_t)count, sizeof *sides, demi_side_compare);
+    for (i = 0; i < 3*all && beside; i++) beside[i] = -1;
+    for (i = 0; i < count; i = k) {
+        for (k = i + 1; k < count && sides[k].lo == sides[i].lo && sides[k].hi == sides[i].hi; k++)
+            continue;
+        if (k != i + 2) continue;
+        beside[3*sides[i].facet + sides[i].side] = 3*sides[i + 1].facet + sides[i + 1].side;
+        beside[3*sides[i + 1].facet + sides[i + 1].side] = 3*sides[i].facet + sides[i].side;
+    }
+    for (i = 0; i < all && count; i++) {
+        if (wall->sheet[i]) continue;
+        wall->sheet[i] = ++sheets;
+        row[0] = i;
+        for (rows = 1; rows > 0;) {
+            const int from = row[--rows];
+            for (k = 0; k < n; k++) {
+                const int32_t other = beside[3*from + k];
+                int32_t *sheet;
+                int same;
+                if (other < 0 || wall->sheet[other/3]) continue;
+                sheet = &wall->sheet[other/3];
+                /* alike: they go along their edge in opposite ways, or one ends where one begins */
+                same = n == 2 ? other%3 != k
+                    : wall->corners[3*from + k] != wall->corners[3*(other/3) + other%3];
+                *sheet = same ? wall->sheet[from] : -wall->sheet[from];
+                row[rows++] = other/3;
+            }
+        }
+    }
+    for (i = 0; i < all && count; i++) if (wall->sheet[i] == INT_MAX) wall->sheet[i] = 0;
+    demi_free(w, sides);
+    i = count && (n != 3 || demi_wall_borders(w, wall, beside));
+    demi_free(w, beside);
+    return i;
+}

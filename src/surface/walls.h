@@ -1,0 +1,726 @@
+/* ---------------------------------------------------------------------------------------------
+   >>walls
+   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
+   of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
+   a cost that does not depend on their number. Planes and cylinders are one element each, without
+   end. Kinds are rows: DEMI_WALLS in >>layout.
+   --------------------------------------------------------------------------------------------- */
+/* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
+#define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
+    &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->borders, &(wall)->planes, \
+    &(wall)->cut_start, &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, \
+    &(wall)->motion.table}
+/* Its arrays, by the one list of them; what is left is a wall that was removed. */
+static void demi_wall_free(dem_world *w, demi_wall *wall) {
+    void *places[] = DEMI_WALL_ARRAYS(wall), *data;
+    size_t k;
+    for (k = 0; k < sizeof places/sizeof *places; k++) {
+        memcpy(&data, places[k], sizeof data);
+        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a copy for trials does not */
+    }
+    memset(wall, 0, sizeof *wall);
+}
+/* Arrays of its own instead of those it shares with another wall. 0 when memory ran out: it has
+   none then. */
+static int demi_wall_own(dem_world *w, demi_wall *wall) {
+    void *places[] = DEMI_WALL_ARRAYS(wall), *data, *copy;
+    size_t k;
+    int ok = 1;
+    for (k = 0; k < sizeof places/sizeof *places; k++) {
+        memcpy(&data, places[k], sizeof data);
+        copy = data ? demi_hold(w, DEMI_SCENE, demi_room(data, 1), 1) : 0;
+        ok = ok && !copy == !data;
+        if (copy) memcpy(copy, data, demi_room(data, 1));
+        memcpy(places[k], &copy, sizeof copy);
+    }
+    if (!ok) demi_wall_free(w, wall);
+    return ok;
+}
+
+/* Number of corners an element of this wall has; their coordinates. */
+static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) {
+    const int n = demi_wall_per(wall);
+    int k;
+    for (k = 0; k < n; k++)
+        out[k] = demi_at(wall->vertices + 3*(wall->corners ? wall->corners[n*element + k]
+                                             : element));
+    return n;
+}
+
+/* Cells of the element grid that a box touches. */
+static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int *first,
+                            int *last) {
+    double a[3], b[3], o[3];
+    int k;
+    a[0] = (double)lo.x; a[1] = (double)lo.y; a[2] = (double)lo.z;
+    b[0] = (double)hi.x; b[1] = (double)hi.y; b[2] = (double)hi.z;
+    o[0] = (double)wall->box.lo.x; o[1] = (double)wall->box.lo.y; o[2] = (double)wall->box.lo.z;
+    for (k = 0; k < 3; k++) {
+        const double f = floor((a[k] - o[k])/(double)wall->cell);
+        const double l = floor((b[k] - o[k])/(double)wall->cell);
+        first[k] = f < 0 ? 0 : f > wall->cells[k] ? wall->cells[k] : (int)f;
+        last[k] = l >= wall->cells[k] ? wall->cells[k] - 1 : l < -1 ? -1 : (int)l;
+    }
+}
+
+/* Box of an element, with what grains of a wall stand out. */
+static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
+    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
+    dem_vec3 c[3];
+    dem_box box;
+    int k, n;
+    c[0] = demi_v(0, 0, 0);
+    n = demi_wall_corners(wall, element, c);
+    box.lo = box.hi = c[0];
+    for (k = 1; k < n; k++) {
+        box.lo = demi_v(DEMI_MIN(box.lo.x, c[k].x), DEMI_MIN(box.lo.y, c[k].y),
+                        DEMI_MIN(box.lo.z, c[k].z));
+        box.hi = demi_v(DEMI_MAX(box.hi.x, c[k].x), DEMI_MAX(box.hi.y, c[k].y),
+                        DEMI_MAX(box.hi.z, c[k].z));
+    }
+    box.lo = demi_sub(box.lo, demi_v(pad, pad, pad));
+    box.hi = demi_add(box.hi, demi_v(pad, pad, pad));
+    return box;
+}
+/* Box of all, and how far from the frame's origin they go. */
+static void demi_wall_bounds(demi_wall *wall) {
+    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
+    dem_real extent = 0;
+    int i;
+    wall->box = demi_wall_element_box(wall, 0);
+    for (i = 1; i < wall->element_count; i++) {
+        const dem_box b = demi_wall_element_box(wall, i);
+        wall->box.lo = demi_v(DEMI_MIN(wall->box.lo.x, b.lo.x), DEMI_MIN(wall->box.lo.y, b.lo.y),
+                              DEMI_MIN(wall->box.lo.z, b.lo.z));
+        wall->box.hi = demi_v(DEMI_MAX(wall->box.hi.x, b.hi.x), DEMI_MAX(wall->box.hi.y, b.hi.y),
+                              DEMI_MAX(wall->box.hi.z, b.hi.z));
+    }
+    for (i = 0; i < wall->vertex_count; i++)
+        extent = DEMI_MAX(extent, demi_length(demi_at(wall->vertices + 3*i)) + pad);
+    wall->extent = extent;
+}
+/* Size of the cells: the mean element, so that each is in few, but finer where elements are long
+   and thin; coarser until neither cells nor entries are too many. */
+static void demi_wall_cells_choose(demi_wall *wall) {
+    const dem_vec3 size = demi_sub(wall->box.hi, wall->box.lo);
+    const double volume = (double)size.x*(double)size.y*(double)size.z, n = wall->element_count;
+    double extent = 0, mean, fine, entries;
+    int i, k, f[3], l[3];
+    for (i = 0; i < wall->element_count; i++) {
+        dem_vec3 c[3];
+        const int corners = demi_wall_corners(wall, i, c);
+        for (k = 1; k < corners; k++)
+            extent += (double)demi_length(demi_sub(c[k], c[0]))/(corners - 1);
+        if (corners == 1) extent += 2*(double)wall->radius;
+    }
+    mean = extent/n;
+    fine = volume > 0 ? demi_pow(volume/(16*n), 1.0/3) : mean;
+    wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
+    for (;; wall->cell *= DEM_R(1.26)) {
+        wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
+        wall->cells[1] = (int)DEMI_MIN(size.y/wall->cell, DEM_R(1e6)) + 1;
+        wall->cells[2] = (int)DEMI_MIN(size.z/wall->cell, DEM_R(1e6)) + 1;
+        if ((double)wall->cells[0]*wall->cells[1]*wall->cells[2] > 32*n + 64) continue;
+        for (i = 0, entries = 0; i < wall->element_count; i++) {
+            const dem_box b = demi_wall_element_box(wall, i);
+            demi_wall_cells(wall, b.lo, b.hi, f, l);
+            entries += (double)(l[0] - f[0] + 1)*(l[1] - f[1] + 1)*(l[2] - f[2] + 1);
+        }
+        if (entries <= 48*n + 64) return;
+    }
+}
+/* The grid of a wall's elements. 0 when memory ran out. */
+static int demi_wall_index(dem_world *w, demi_wall *wall) {
+    int i, n, pass, x, y, z, f[3], l[3];
+    if (wall->element_count <= 4) return 1;     /* a handful: just look at all */
+    demi_wall_cells_choose(wall);
+    n = wall->cells[0]*wall->cells[1]*wall->cells[2];
+    wall->cell_start = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)n + 1, sizeof(int32_t));
+    if (!wall->cell_start) return 0;
+    for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back */
+        for (i = wall->element_count - 1; i >= 0; i--) {
+            const dem_box b = demi_wall_element_box(wall, i);
+            demi_wall_cells(wall, b.lo, b.hi, f, l);
+            for (z = f[2]; z <= l[2]; z++)
+                for (y = f[1]; y <= l[1]; y++)
+                    for (x = f[0]; x <= l[0]; x++) {
+                        int32_t *slot = &wall->cell_start[x +
+                                                          wall->cells[0]*(y + wall->cells[1]*z)];
+                        if (pass == 0) ++*slot; else wall->cell_items[--*slot] = i;
+                    }
+        }
+        if (pass == 0) {
+            for (i = 1; i <= n; i++) wall->cell_start[i] += wall->cell_start[i - 1];
+            wall->cell_item_count = wall->cell_start[n];
+            wall->cell_items = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)wall->cell_item_count,
+                                                     sizeof(int32_t));
+            if (!wall->cell_items) return 0;
+        }
+    }
+    return 1;
+}
+
+/* Index of the place for one more wall: the first that a removed wall has left and whose ids are
+   not used up, else a new one. */
+static int demi_wall_vacant(const dem_world *w) {
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind == DEMI_WALL_NONE && w->walls[i].id <= INT32_MAX - DEMI_WALLS_MOST)
+            return i;
+    return i;
+}
+/* The id of the next wall in this place. */
+static dem_wall demi_wall_next(const dem_world *w, int place) {
+    dem_wall id;
+    id.id = place < w->wall_count && w->walls[place].id ? w->walls[place].id + DEMI_WALLS_MOST
+                                                        : place + 1;
+    return id;
+}
+/* Takes over a prepared wall (its arrays included) or frees it. */
+static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall) {
+    dem_wall id;
+    int i;
+    id.id = 0;
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
+        const int part = demi_shape_strange(w, wall, demi_shape_of(w, i));
+        if (part < 0) continue;
+        demi_strangers(w, call, wall, (int)demi_wall_next(w, demi_wall_vacant(w)).id,
+                       (int)w->bodies.slot[i], part);
+        demi_wall_free(w, wall);
+        return id;
+    }
+    for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* and of those that are to come */
+        const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
+        const int part = demi_shape_strange(w, wall, shape ? &w->shapes[shape - 1] : 0);
+        if (part < 0) continue;
+        demi_strangers(w, call, wall, (int)demi_wall_next(w, demi_wall_vacant(w)).id, -1, part);
+        demi_wall_free(w, wall);
+        return id;
+    }
+    i = demi_wall_vacant(w);
+    if (i == DEMI_WALLS_MOST || !DEMI_GROW(w, w->walls, (size_t)i + 1) || !demi_list_drop(w)) {
+        demi_wall_free(w, wall);
+        if (i == DEMI_WALLS_MOST)
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a world holds at most %d walls; put several "
+                      "surfaces into one mesh", call, (int)DEMI_WALLS_MOST);
+        else demi_no_memory(w, call);
+        return id;
+    }
+    id = demi_wall_next(w, i);
+    w->walls[i] = *wall;
+    w->walls[i].id = id.id;
+    w->wall_count = DEMI_MAX(w->wall_count, i + 1);
+    w->facets_valid = 0;
+    demi_built(w, call);
+    demi_scene_changed(w);
+    return id;
+}
+/* Takes the wall that was entered last back: all is as it was before. */
+static void demi_wall_leave(dem_world *w, dem_wall wall) {
+    const int place = demi_wall_place(wall);
+    demi_wall_free(w, &w->walls[place]);
+    if (wall.id > DEMI_WALLS_MOST) w->walls[place].id = wall.id - DEMI_WALLS_MOST;
+    else w->wall_count = place;
+}
+/* The same for a wall at rest in its first pose. */
+static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
+    wall->pose = wall->mid = wall->ahead = wall->first = wall->home;
+    return demi_wall_enter(w, call, wall);
+}
+
+/* What all kinds of walls have in common. 0 with a sentence when there is no such material. */
+static int demi_wall_begin(dem_world *w, const char *call, dem_material material, int kind,
+                           demi_wall *wall) {
+    memset(wall, 0, sizeof *wall);
+    demi_pose_identity(&wall->home);
+    wall->kind = kind;
+    wall->share = 1;
+    wall->symmetric = 1;                        /* until it moves */
+    return demi_material_index(w, call, material, &wall->material) == DEM_OK;
+}
+
+DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec3 point,
+                               dem_vec3 normal) {
+    if (demi_null(w, "dem_wall_plane_add", w, "world")) return demi_no_wall;
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_wall_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
+    if (!demi_place(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_plane_add: normal is (%g, %g, %g), must be "
+                  "finite "
+                  "and not zero; point is (%g, %g, %g) m, must be within %g m of the origin",
+                  (double)normal.x, (double)normal.y, (double)normal.z, (double)point.x,
+                  (double)point.y, (double)point.z, DEMI_FARTHEST);
+        return none;
+    }
+    wall.element_count = 1;
+    wall.home.position = point;
+    wall.motion.point = point;
+    wall.motion.axis = demi_unit(normal);
+    demi_frame_of(wall.home.rotation, demi_unit(normal));
+    wall.extent = -1;
+    return demi_wall_adopt(w, "dem_wall_plane_add", &wall);
+}
+
+DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis,
+                                  dem_real radius, int inside) {
+    if (demi_null(w, "dem_wall_cylinder_add", w, "world")) return demi_no_wall;
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_wall_cylinder_add", material, DEMI_WALL_CYLINDER,
+                         &wall)) return none;
+    if (!demi_place(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
+        !(radius > 0) || !demi_bounded((double)radius)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_cylinder_add: radius is %g m and axis is (%g, "
+                  "%g, %g); the radius must be > 0, the axis not zero, the radius and the "
+                  "coordinates of the point at most %g m", (double)radius, (double)axis.x,
+                  (double)axis.y, (double)axis.z, DEMI_FARTHEST);
+        return none;
+    }
+    wall.element_count = 1;
+    wall.radius = radius;
+    wall.inside = inside != 0;
+    wall.home.position = point;
+    wall.motion.point = point;
+    wall.motion.axis = demi_unit(axis);
+    demi_frame_of(wall.home.rotation, demi_unit(axis));
+    wall.extent = -1;
+    return demi_wall_adopt(w, "dem_wall_cylinder_add", &wall);
+}
+
+/* dem_wall_revolved_add, in the name of `call`. */
+static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material material,
+                                   dem_vec3 point, dem_vec3 axis, int count,
+                                   const dem_real *radii, const dem_real *heights) {
+    demi_wall wall;
+    int k, bad = -1;
+    if (!demi_wall_begin(w, call, material, DEMI_WALL_REVOLVED, &wall)) return demi_no_wall;
+    if (count < 2 || count > DEM_RINGS || !demi_place(point) || !demi_finite3(axis) ||
+        !(demi_dot(axis, axis) > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and axis is (%g, %g, %g); there must be "
+                  "2 to %d rings, the axis must not be zero, the point must be finite", call, count,
+                  (double)axis.x, (double)axis.y, (double)axis.z, (int)DEM_RINGS);
+        return demi_no_wall;
+    }
+    for (k = 0; k < count && bad < 0; k++) {
+        const dem_real r = radii[k], h = heights[k];
+        if (!(r >= 0) || !demi_finite(r) || !demi_finite(h) || !((double)r < DEMI_FARTHEST) ||
+            !(fabs((double)h) < DEMI_FARTHEST)) bad = k;
+        else if (k && !(demi_size(demi_v(r - radii[k - 1], h - heights[k - 1], 0)) > DEMI_LEAST))
+            bad = k;
+        else if (k && !(r > 0) && !(radii[k - 1] > 0)) bad = k;
+        wall.ring_radius[k] = r;
+        wall.ring_height[k] = h;
+        wall.radius = DEMI_MAX(wall.radius, r);
+        wall.extent = DEMI_MAX(wall.extent, DEMI_SQRT(r*r + h*h));
+    }
+    if (bad >= 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: ring %d has radius %g m at height %g m; both must "
+                  "be finite, the radius >= 0, not 0 for two rings in a row, and no ring equal to "
+                  "the one before", call, bad, (double)radii[bad], (double)heights[bad]);
+        return demi_no_wall;
+    }
+    wall.ring_count = count;
+    wall.element_count = 1;
+    wall.home.position = wall.motion.point = point;
+    wall.motion.axis = demi_unit(axis);
+    demi_frame_of(wall.home.rotation, wall.motion.axis);
+    return demi_wall_adopt(w, call, &wall);
+}
+DEM_API dem_wall dem_wall_revolved_add(dem_world *w, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis, int count, const dem_real *radii,
+                                  const dem_real *heights) {
+    if (demi_null(w, "dem_wall_revolved_add", radii, "radii") ||
+        demi_null(w, "dem_wall_revolved_add", heights, "heights")) return demi_no_wall;
+    return demi_revolved_make(w, "dem_wall_revolved_add", material, point, axis, count, radii,
+                              heights);
+}
+DEM_API dem_wall dem_wall_cone_add(dem_world *w, dem_material material, dem_vec3 from, dem_vec3 to,
+                              dem_real radius_from, dem_real radius_to) {
+    const dem_vec3 way = demi_sub(to, from);
+    dem_real radii[2], heights[2];
+    if (demi_null(w, "dem_wall_cone_add", w, "world")) return demi_no_wall;
+    radii[0] = radius_from;
+    radii[1] = radius_to;
+    heights[0] = 0;
+    heights[1] = demi_length(way);
+    return demi_revolved_make(w, "dem_wall_cone_add", material, from, way, 2, radii, heights);
+}
+/* For pictures a surface of revolution is so many flat sides around. */
+enum { DEMI_RING_SIDES = 48 };
+static void demi_ring_corner(const demi_wall *wall, int ring, int side, dem_real *out) {
+    const double a = 2*DEMI_PI*side/(int)DEMI_RING_SIDES, r = (double)wall->ring_radius[ring];
+    out[0] = (dem_real)(r*demi_cos(a));
+    out[1] = (dem_real)(r*demi_sin(a));
+    out[2] = wall->ring_height[ring];
+}
+/* Corner c of triangle t (two for each side of each piece): a number of ring*SIDES + side. */
+static int demi_ring_triangle(int t, int c) {
+    const int side = t/2%DEMI_RING_SIDES, piece = t/2/DEMI_RING_SIDES, next = side + 1;
+    const int a = piece*DEMI_RING_SIDES + side, b = piece*DEMI_RING_SIDES + next%DEMI_RING_SIDES;
+    if (t & 1) return c == 0 ? b : c == 1 ? b + DEMI_RING_SIDES : a + DEMI_RING_SIDES;
+    return c == 0 ? a : c == 1 ? b : a + DEMI_RING_SIDES;
+}
+
+/* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are
+   bad. */
+static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices,
+                          const dem_real *xyz,
+                          int per_vertex, int elements, const int32_t *corners, int per_element) {
+    int i, k;
+    if (!demi_mesh_sound(w, call, vertices, xyz, per_vertex, elements, corners, per_element))
+        return 0;
+    wall->vertex_count = vertices;
+    wall->element_count = elements;
+    wall->vertices = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)vertices*3, sizeof(dem_real));
+    if (per_element) wall->corners = (int32_t *)demi_hold(w, DEMI_SCENE,
+                                                           (size_t)elements*(size_t)per_element,
+                                                           sizeof(int32_t));
+    if (!wall->vertices || (per_element && !wall->corners)) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return 0;
+    }
+    for (i = 0; i < vertices; i++)
+        for (k = 0; k < per_vertex; k++) wall->vertices[3*i + k] = xyz[per_vertex*i + k];
+    if (per_element) memcpy(wall->corners, corners,
+                            (size_t)elements*(size_t)per_element*sizeof(int32_t));
+    if (per_element && (!demi_facets_begin(w, wall) || !demi_wall_sheets(w, wall))) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return 0;
+    }
+    demi_wall_bounds(wall);
+    if (per_element && (!demi_facets_any(wall) ||
+                        !(demi_size(demi_sub(wall->box.hi, wall->box.lo)) > DEMI_LEAST))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: none of the %d elements has a size: corners "
+                  "coincide, triangles have no height, or all lie within %g m; check that "
+                  "coordinates were read and are in metres", call, elements, DEMI_LEAST);
+        demi_wall_free(w, wall);
+        return 0;
+    }
+    if (!demi_wall_index(w, wall)) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return 0;
+    }
+    return 1;
+}
+
+DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
+                                      const dem_profile *profile,
+                                 dem_edge_rule rule) {
+    if (demi_null(w, "dem_wall_profile_add", profile, "profile")) return demi_no_wall;
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_wall_profile_add", material, rule == DEM_EDGE_FRACTION
+                         ? DEMI_WALL_SEGMENTS : DEMI_WALL_PROFILE, &wall)) return none;
+    if (rule < DEM_EDGE_RESOLVED || rule > DEM_EDGE_FRACTION) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is %d, must be "
+                  "DEM_EDGE_RESOLVED "
+                  "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
+        return none;
+    }
+    if (rule == DEM_EDGE_FRACTION && (w->desc.law_range > 0 || w->desc.law_range_radii > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is DEM_EDGE_FRACTION, but "
+                  "the law of this world has a range; that rule weighs the chord of a segment "
+                  "inside a grain, which does not exist before the two touch: use "
+                  "DEM_EDGE_RESOLVED");
+        return none;
+    }
+    wall.rule = rule;
+    if (!demi_wall_load(w, "dem_wall_profile_add", &wall, profile->vertex_count, profile->vertices,
+                        2,
+                        profile->segment_count, profile->segments, 2)) return none;
+    wall.motion.axis = demi_v(0, 0, 1);
+    return demi_wall_adopt(w, "dem_wall_profile_add", &wall);
+}
+
+/* A wall of triangles that the world has not adopted yet. 0 with a sentence when it is refused. */
+static int demi_mesh_make(dem_world *w, dem_material material, const dem_mesh *mesh,
+                          demi_wall *wall) {
+    if (!demi_wall_begin(w, "dem_wall_mesh_add", material, DEMI_WALL_MESH, wall) ||
+        !demi_wall_load(w, "dem_wall_mesh_add", wall, mesh->vertex_count, mesh->vertices, 3,
+                        mesh->triangle_count, mesh->triangles, 3)) return 0;
+    wall->motion.axis = demi_v(0, 0, 1);
+    return 1;
+}
+DEM_API dem_wall dem_wall_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
+    if (demi_null(w, "dem_wall_mesh_add", mesh, "mesh")) return demi_no_wall;
+    demi_wall wall;
+    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, "dem_wall_mesh_add", &wall)
+                                                    : demi_no_wall;
+}
+
+DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int count,
+                                     const dem_real *positions,
+                                     dem_real radius, dem_real share) {
+    if (demi_null(w, "dem_wall_grains_add", w, "world")) return demi_no_wall;
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_wall_grains_add", material, DEMI_WALL_GRAINS, &wall)) return none;
+    if (!(radius > 0) || !demi_bounded((double)radius) || !(share > 0) || !(share <= 1)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_grains_add: radius is %g m and share is %g; "
+                  "the radius must be > 0 and at most %g m, the share > 0 and at most 1",
+                  (double)radius, (double)share, DEMI_FARTHEST);
+        return none;
+    }
+    wall.radius = radius;
+    wall.share = share;
+    wall.motion.axis = demi_v(0, 0, 1);
+    if (!demi_wall_load(w, "dem_wall_grains_add", &wall, count, positions, 3, count, 0,
+                        0)) return none;
+    return demi_wall_adopt(w, "dem_wall_grains_add", &wall);
+}
+
+DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
+    if (demi_null(w, "dem_wall_sieve_add", d, "desc")) return demi_no_wall;
+    demi_wall wall;
+    dem_wall none;
+    const char *bad = 0, *limit = "";
+    dem_real value = 0;
+    dem_vec3 n = d->normal, t = d->along;
+    dem_real *R = wall.home.rotation;
+    const int plate = d->kind == DEM_SIEVE_SQUARE || d->kind == DEM_SIEVE_ROUND ||
+                      d->kind == DEM_SIEVE_SLOTS;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
+#define DEMI_BAD(field, good, text) \
+    if (!bad && (!demi_bounded((double)d->field) || !(good))) { \
+        bad = #field; value = (dem_real)d->field; limit = text; \
+    }
+    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value")
+    DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
+    DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
+    DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
+             d->length >= d->aperture), "0, or for slots at least the aperture (m)")
+    DEMI_BAD(thickness, DEMI_ABS(d->thickness) <= 0 || (plate && d->thickness > 0),
+             ">= 0 m, and 0 except for plates")
+    DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
+             ">= 0 m, and 0 except for a weave of wires")
+    DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
+    DEMI_BAD(staggered, !d->staggered || d->kind == DEM_SIEVE_ROUND, "0 except for round holes")
+    DEMI_BAD(model, !d->model || (d->kind == DEM_SIEVE_REDUCED && d->model > 0 && d->model <= 2),
+             "0, or for reduced holes 1 or 2")
+    DEMI_BAD(clearance, DEMI_ABS(d->clearance) <= 0 || (d->kind == DEM_SIEVE_REDUCED &&
+             d->clearance > 0 && d->clearance <= 1), "0, or for reduced holes up to 1")
+#undef DEMI_BAD
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: %s is %g, must be %s, at most %g; "
+                  "start from DEM_SIEVE_DESC and set only what differs", bad, (double)value, limit,
+                  DEMI_FARTHEST);
+        return none;
+    }
+    if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
+                  "finite, or point is farther than %g m from the origin; check how it was "
+                  "computed", DEMI_FARTHEST);
+        return none;
+    }
+    n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
+    if (demi_size(t) > 0) t = demi_unit(t);
+    t = demi_sub(t, demi_scale(n, demi_dot(t, n)));
+    if (!(demi_dot(t, t) > DEM_R(1e-6))) {      /* not said, or across the sieve: x, else y */
+        const dem_vec3 x = DEMI_ABS(n.x) < DEM_R(0.9) ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
+        t = demi_sub(x, demi_scale(n, demi_dot(x, n)));
+    }
+    t = demi_unit(t);
+    t = demi_unit(demi_sub(t, demi_scale(n, demi_dot(t, n))));      /* what rounding left */
+    R[0] = t.x; R[3] = t.y; R[6] = t.z;
+    R[2] = n.x; R[5] = n.y; R[8] = n.z;
+    t = demi_cross(n, t);
+    R[1] = t.x; R[4] = t.y; R[7] = t.z;
+    wall.sieve = *d;
+    wall.element_count = 1;
+    wall.radius = d->radius;
+    wall.home.position = wall.motion.point = d->point;
+    wall.motion.axis = n;
+    wall.extent = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
+    return demi_wall_adopt(w, "dem_wall_sieve_add", &wall);
+}
+
+/* Index of a wall, or -1 with a sentence. */
+static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
+    const int place = demi_wall_place(wall);
+    if (wall.id < 1 || place >= w->wall_count) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids in this world are 1 to "
+                  "%d; adding it failed (dem_world_error_get says why) or it belongs to another "
+                  "world: check the id that adding it returned", call, (int)wall.id, w->wall_count);
+        return -1;
+    }
+    if (!demi_wall_there(w, wall)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more, because "
+                  "dem_wall_remove removed it; add it again and use the id that this returns", call,
+                  (int)wall.id);
+        return -1;
+    }
+    return place;
+}
+
+/* 1 when turning about axis through point leaves the wall's surface where it is. */
+static int demi_wall_symmetric(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    dem_vec3 z, off;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (m->kind != DEM_MOTION_ROTATING || (wall->extent >= 0 && !wall->ring_count)) return 0;
+    z = demi_v(wall->home.rotation[2], wall->home.rotation[5], wall->home.rotation[8]);
+    if (demi_length(demi_cross(z, demi_unit(m->axis))) > DEM_R(1e-6)) return 0;
+    if (demi_wall_is(wall, DEMI_FLAT)) return 1;
+    off = demi_sub(m->point, wall->home.position);
+    return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
+}
+
+/* Refuses a motion of the wall of this id, which need not be there yet. */
+static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
+                         "zero; give a direction",
+                         (int)id.id);
+    if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity,
+                                                             motion->velocity) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of oscillating "
+                         "wall %d is zero, but gives the direction of its motion; set it",
+                         (int)id.id);
+    if (motion->kind == DEM_MOTION_USER && !motion->function)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
+                         "DEM_MOTION_USER "
+                         "and no function; "
+                         "set motion.function", (int)id.id);
+    if (!demi_motion_sane(motion) || (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: a number in the motion of "
+                         "wall %d is not finite or beyond %g (m, m/s, rad/s, s), its ramp of %g s "
+                         "is below 0, or its kind %d is unknown; start from DEM_MOTION", (int)id.id,
+                         DEMI_FARTHEST, motion->ramp, (int)motion->kind);
+    return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
+}
+/* The wall of this id, which need not be there yet, as it is once it has this motion. An error
+   leaves *next alone. */
+static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *motion,
+                                  const demi_wall *wall, demi_wall *next) {
+    demi_wall laid = *wall;
+    dem_motion_row *rows = 0;
+    demi_calling was;
+    if (demi_motion_check(w, id, motion) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion_set");
+    laid.home = laid.pose;                      /* goes on from where it is */
+    laid.home.velocity = laid.home.spin = demi_v(0, 0, 0);
+    laid.motion = *motion;
+    laid.motion.table = rows;
+    if (!(demi_dot(motion->axis, motion->axis) > 0)) laid.motion.axis = demi_v(0, 0, 1);
+    laid.motion.start = DEMI_MAX(motion->start, w->clock.time);
+    laid.symmetric = demi_wall_symmetric(&laid);
+    was = demi_calls(w, "dem_wall_motion_set", 1);
+    demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
+    w->look.calling = was;
+    laid.mid = laid.pose;
+    if (!demi_pose_sane(&laid.pose)) {
+        demi_free(w, rows);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the motion of wall %d gives "
+                         "a pose that is not finite, whose matrix is not a rotation, or that is "
+                         "beyond %g m, m/s or rad/s now, at %g s; check the motion", (int)id.id,
+                         DEMI_FARTHEST, w->clock.time);
+    }
+    *next = laid;
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
+    demi_wall next;
+    const void *rows;
+    void *old;
+    int dropped;
+    dem_result result;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
+    if (result != DEM_OK) return result;
+    dropped = demi_list_drop(w);
+    rows = dropped ? w->walls[i].motion.table : next.motion.table;
+    memcpy(&old, &rows, sizeof old);
+    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
+    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    w->walls[i] = next;
+    w->facets_valid = 0;
+    demi_built(w, "dem_wall_motion_set");
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
+    if (demi_null_look(world, "dem_wall_pose_get", pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, "dem_wall_pose_get", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *pose = world->walls[i].pose;
+    return DEM_OK;
+}
+
+/* Ends the contacts of a wall that goes: its place may get another one. After demi_list_drop. */
+static void demi_wall_forget(dem_world *w, int wall) {
+    int d, k, left;
+    for (d = 0; d < DEMI_DOMAINS; d++) {
+        demi_kept *c = w->domains[d].kept ? demi_kept_of(w, d) : 0;
+        for (k = left = 0; k < w->domains[d].kept; k++)
+            if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
+        w->domains[d].kept = left;
+    }
+}
+DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
+    if (demi_null(w, "dem_wall_remove", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_remove", id);
+    int k;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    for (k = 0; k < w->outlet_count; k++)
+        if (w->outlets[k].desc.frame.id == id.id)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_remove: outlet %d moves with wall "
+                             "%d and would stop working without it; keep the wall", k + 1,
+                             (int)id.id);
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
+    demi_wall_forget(w, i);
+    demi_wall_free(w, &w->walls[i]);            /* other walls keep their places */
+    w->walls[i].id = id.id;
+    w->facets_valid = 0;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_reals_get(const dem_world *w, dem_wall id, dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_wall_reals_get", reals, 1, 0);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_wall_find((dem_world *)w, "dem_wall_reals_get", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(reals, w->walls[i].reals, (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_reals_set(dem_world *w, dem_wall id, const dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_wall_reals_set", reals, 1, 1);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_wall_find(w, "dem_wall_reals_set", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(w->walls[i].reals, reals, (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_wall_loads *loads) {
+    if (demi_null_look(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, "dem_wall_loads_get", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *loads = world->walls[i].loads;
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
+    if (demi_null(w, "dem_wall_loads_reset", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
+    demi_wall *wall;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    wall = &w->walls[i];
+    memset(wall->loads.impulse, 0, sizeof wall->loads.impulse);
+    memset(wall->loads.gained, 0, sizeof wall->loads.gained);
+    wall->loads.torque_impulse = wall->loads.work = wall->loads.time = 0;
+    return DEM_OK;
+}

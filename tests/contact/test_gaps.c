@@ -1,0 +1,125 @@
+/* Gaps of polyhedra by GJK and EPA (>>gaps) beside brute force and MPR, which know nothing of them: tests/convex.h.
+   PAIRS=100000 for more pairs; GAPS_NUMBERS=1 prints how far they are off, and times. */
+#include "../convex.h"
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include <stdlib.h>
+#include <time.h>
+
+static void solid_from(const convex_solid *from, demi_solid *s) {
+    int i, k;
+    memset(s, 0, sizeof *s);
+    s->corners = from->corners;
+    for (i = 0; i < s->corners; i++)
+        for (k = 0; k < 3; k++) {
+            s->corner[i][k] = from->corner[3*i + k];
+            s->centre[k] += from->corner[3*i + k]/s->corners;
+        }
+}
+static double seconds(void) { return (double)clock()/CLOCKS_PER_SEC; }
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("GJK with EPA, MPR and brute force agree on contact, gap and depth of polyhedra, 1e-5 to 10 m, aspect ratios "
+         "to 50") {
+        const long pairs = getenv("PAIRS") ? atol(getenv("PAIRS")) : 400;
+        static convex_solid a, b;
+        static demi_solid p, q;
+        uint64_t state = 20261124;
+        double worst = 0, time[3] = {0, 0, 0}, since;
+        long k, other = 0, near_miss = 0, strange = 0, shallow = 0, short_of = 0, off[8] = {0};
+        for (k = 0; k < pairs; k++) {
+            demi_simplex tells;
+            double n[3] = {0, 0, 0}, gap, size, error;
+            convex_body one, two;
+            convex_gap g;
+            convex_verdict v;
+            int i;
+            convex_pair(&a, &b, &state);
+            one = convex_view(&a);
+            two = convex_view(&b);
+            size = convex_radius(&one) + convex_radius(&two);
+            since = seconds();
+            g = convex_brute(&one, &two);
+            time[0] += seconds() - since;
+            solid_from(&a, &p);
+            solid_from(&b, &q);
+            since = seconds();
+            gap = demi_solids_gap(&p, &q, n, &tells);
+            time[1] += seconds() - since;
+            since = seconds();
+            v = convex_mpr(&one, &two);
+            time[2] += seconds() - since;
+            error = fabs(gap - g.gap)/size;
+            for (i = 0; i < 7 && error >= pow(10, -16 + 2*i); i++) continue;
+            off[i]++;
+            worst = fmax(worst, error);
+            strange += !(gap > -1e300 && gap < 1e300) || fabs(convex_dot(n, n) - 1) > 1e-12;
+            if (fabs(g.gap) > 1e-12*size) other += (gap < 0) != (g.gap < 0) || v.touching != (g.gap < 0);
+            else near_miss++;
+            shallow += gap > g.gap + 1e-13*size;        /* a plane that parts them can do no more than the distance */
+            short_of += v.touching && v.depth < -g.gap - 1e-13*size;
+        }
+        if (getenv("GAPS_NUMBERS")) {
+            printf("%ld pairs, %ld nearer than 1e-12: %ld other verdicts, worst %.3g of the pair's size\n", pairs, near_miss, other,
+                   worst);
+            printf("off by < 1e-16 1e-14 1e-12 1e-10 1e-8 1e-6 1e-4, more: %ld %ld %ld %ld %ld %ld %ld %ld\n", off[0], off[1],
+                   off[2], off[3], off[4], off[5], off[6], off[7]);
+            printf("us a pair: brute force %.3g, GJK and EPA %.3g, MPR %.3g\n", 1e6*time[0]/(double)pairs,
+                   1e6*time[1]/(double)pairs, 1e6*time[2]/(double)pairs);
+        }
+        CHECK_EQ(strange, 0);
+        CHECK_EQ(other, 0);
+        CHECK_EQ(shallow, 0);
+        CHECK_EQ(short_of, 0);
+        CHECK(worst < 1e-6);
+    }
+
+    TEST("a gap is independent of the order and orientation of its two polyhedra, for parallel faces and edges too") {
+        const long pairs = getenv("PAIRS") ? atol(getenv("PAIRS")) : 400;
+        static convex_solid a, b;
+        static demi_solid p[2], q[2];
+        uint64_t state = 55;
+        double worst = 0;
+        long k, touching = 0;
+        for (k = 0; k < pairs; k++) {
+            const double small = 1/convex_power(&state, 1, 100);
+            convex_spot one, two;
+            convex_body body;
+            double way[3], size = 0, gap[4];
+            uint64_t same;
+            int i;
+            convex_shape(&a, &state, 1);
+            convex_shape(&b, &state, small);
+            for (i = 0; i < 3; i++) way[i] = 1e-5*(2*convex_random(&state) - 1);
+            one = convex_spot_of(&a, &state, CONVEX_CORNER);
+            two = convex_spot_of(&b, &state, CONVEX_CORNER);
+            convex_move(&b, one.at[0] - two.at[0] + way[0], one.at[1] - two.at[1] + way[1], one.at[2] - two.at[2] + way[2]);
+            for (i = 0; i < 2; i++) {
+                solid_from(&a, &p[i]);
+                solid_from(&b, &q[i]);
+                same = state;
+                convex_turn(&a, &same);
+                convex_turn(&b, &state);        /* by the same numbers */
+            }
+            body = convex_view(&a);
+            size += convex_radius(&body);
+            body = convex_view(&b);
+            size += convex_radius(&body);
+            for (i = 0; i < 4; i++) {
+                double n[3] = {0, 0, 0};
+                demi_simplex tells;
+                gap[i] = i & 1 ? demi_solids_gap(&q[i/2], &p[i/2], n, &tells) : demi_solids_gap(&p[i/2], &q[i/2], n, &tells);
+                worst = fmax(worst, fabs(gap[i] - gap[0])/size);
+            }
+            touching += gap[0] < 0;
+        }
+        if (getenv("GAPS_NUMBERS")) printf("%ld pairs, %ld touching: worst %.3g of the pair's size\n", pairs, touching, worst);
+        CHECK(touching > pairs/2);
+        CHECK(worst < 1e-9);
+    }
+
+    return test_end();
+}

@@ -1,0 +1,274 @@
+/* What contacts remember, from outside: seen, counted and set one by one (dem_contacts_each), bonds made (dem_bonds_make),
+   drawn as lines, up to 16 reals of it, on the whole road: sorting, new lists, checkpoints, slabs. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+static const int wide = sizeof(dem_real) == sizeof(double);
+static const double R = 1e-3, range = 4e-4;
+
+/* --- links: made at touch, broken at a gap of half the range; each event is counted by grain a --- */
+static void link_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const int there = memory[15] > 0;
+    const int will = c->overlap > 0 || (there && c->overlap > -DEM_R(0.5)*c->range);
+    if (c->overlap > 0) f->normal = 500*c->overlap;
+    if (!(c->dt > 0) || will == there) return;
+    memory[15] = (dem_real)will;
+    if (!c->wall) c->who.rate_a[will ? 0 : 1] += 1/c->dt;
+}
+/* A gas of spheres, or of spheres and ellipsoids, in a periodic box. */
+static dem_world *gas(int shaped, int threads) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    const dem_box room = box_of(0, 0, 0, 0.024, 0.02, 0.02);
+    dem_world *w;
+    dem_material m;
+    uint64_t seed = 5;
+    int i;
+    desc.law = link_law;
+    desc.law_memory = 16;
+    desc.law_memory_names = "a0 a1 a2 a3 a4 a5 a6 a7 a8 a9 a10 a11 a12 a13 a14 linked";
+    desc.law_stiffness = 500;
+    desc.law_range = (dem_real)range;
+    desc.law_who = 1;
+    desc.body_reals = "made broken";
+    desc.threads = threads;
+    desc.dt = DEM_R(1e-5);
+    desc.domain = room;
+    for (i = 0; i < 3; i++) desc.boundary[i] = DEM_BOUNDARY_PERIODIC;
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e6, 1, 0, 0);
+    if (shaped)
+        dem_bodies_fill(w, m, dem_shape_ellipsoid_add(w, at(1.2e-3, 9e-4, 8e-4)), dem_region_make(room), 120, 5);
+    dem_spheres_fill(w, m, (dem_real)R, dem_region_make(room), shaped ? 120 : 500, 7);
+    for (i = 0; i < dem_bodies_get(w).count; i++)
+        scene_move(w, dem_body_id_get(w, i), scene_at(&seed, 4, -2, 4, -2, 4, -2), at(0, 0, 0));
+    return w;
+}
+static void count_links(const dem_contact_info *c, dem_real *memory, void *user) {
+    if (!c->wall) *(int *)user += memory[15] > 0;
+}
+static int links(dem_world *w) {
+    int n = 0;
+    CHECK(dem_contacts_each(w, count_links, &n) >= 0);
+    return n;
+}
+/* Events so far. */
+static double events(const dem_world *w, int which) {
+    const dem_bodies all = dem_bodies_get(w);
+    double sum = 0;
+    int i;
+    for (i = 0; i < all.count; i++)
+        sum += (double)all.reals[2*i + which];
+    return sum;
+}
+
+/* --- sixteen reals that only the two grains know: whoever finds others counts an error --- */
+static void keeper(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const dem_contact_who *who = &c->who;
+    const uint32_t lower = DEMI_MIN(who->a.slot, who->b.slot), upper = DEMI_MAX(who->a.slot, who->b.slot);
+    const double sign = c->wall || who->a.slot < who->b.slot ? 1 : -1;
+    int k, wrong = 0, fresh = 1;
+    if (c->overlap > 0) f->normal = 500*c->overlap + DEM_R(0.02)*c->closing_speed;
+    for (k = 0; k < 16; k++) fresh &= !(memory[k] < 0) && !(memory[k] > 0);
+    for (k = 0; k < 16; k++) {              /* the first six: two vectors, which turn round with a and b */
+        const double x = (k < 6 ? sign : 1)*(1 + lower + 1000*k + 0.001*(c->wall ? 0 : upper));
+        if (fresh && c->dt > 0) memory[k] = (dem_real)x;
+        else wrong |= !fresh && (memory[k] < (dem_real)x || memory[k] > (dem_real)x);
+    }
+    if (!(c->dt > 0)) return;
+    who->rate_a[0] += (dem_real)wrong/c->dt;
+    who->rate_a[1] += (dem_real)fresh/c->dt;
+}
+static dem_world *heap(int threads) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    const dem_box room = box_of(0, 0, 0, 0.02, 0.012, 0.03);
+    dem_world *w;
+    dem_material m;
+    desc.law = keeper;
+    desc.law_memory = 16;
+    desc.law_vectors = 2;
+    desc.law_stiffness = 500;
+    desc.law_who = 1;
+    desc.law_range = DEM_R(2e-4);
+    desc.body_reals = "wrong fresh";
+    desc.threads = threads;
+    desc.dt = DEM_R(1e-5);
+    desc.gravity = at(3, 0, -9.81);
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e6, 0.5, 0, 0);
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(1, 0, 0));
+    dem_wall_plane_add(w, m, at(0.02, 0, 0), at(-1, 0, 0));
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 1, 0));
+    dem_wall_plane_add(w, m, at(0, 0.012, 0), at(0, -1, 0));
+    dem_bodies_fill(w, m, dem_shape_ellipsoid_add(w, at(1.2e-3, 9e-4, 8e-4)), dem_region_make(room), 40, 5);
+    dem_spheres_fill(w, m, (dem_real)R, dem_region_make(room), 160, 7);
+    return w;
+}
+static double all_of(const dem_world *w, int which) {
+    const dem_bodies all = dem_bodies_get(w);
+    double sum = 0;
+    int i;
+    for (i = 0; i < all.count; i++) sum += (double)all.reals[2*i + which];
+    return sum;
+}
+
+/* --- a law with friction's spring, to be set from outside --- */
+static void stretch(const dem_contact_info *c, dem_real *memory, void *user) {
+    (void)c;
+    memory[0] = *(dem_real *)user;
+    memory[1] = memory[2] = 0;
+}
+static void tally(const dem_contact_info *c, dem_real *memory, void *user) {
+    int *n = (int *)user;
+    (void)memory;
+    n[c->wall ? 1 : 0]++;
+}
+static void join(const dem_contact_info *c, dem_real *memory, void *user) {
+    (void)c; (void)user;
+    memory[15] = 1;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+    TEST("over 10,000 links form and break in a gas: formed less broken is the number in force at any time") {
+        int shaped, part;
+        for (shaped = 0; shaped < 2; shaped++) {
+            dem_world *w = gas(shaped, 1), *other;
+            dem_slabs_desc cut = DEM_SLABS_DESC;
+            dem_slabs *slabs;
+            const int steps = shaped ? 1500 : 2500;
+            for (part = 0; part < 3; part++) {
+                CHECK_EQ(scene_step(w, steps), DEM_OK);
+                CHECK_NEAR(events(w, 0) - events(w, 1), links(w), wide ? 1e-6 : 0.05);
+            }
+            other = gas(shaped, 1);
+            CHECK_EQ(dem_checkpoint_write(w, "build/tmp/links.dem"), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(other, "build/tmp/links.dem"), DEM_OK);
+            remove("build/tmp/links.dem");
+            CHECK_EQ(links(other), links(w));
+            CHECK_EQ(scene_step(other, steps), DEM_OK);
+            CHECK_NEAR(events(other, 0) - events(other, 1), links(other), wide ? 1e-6 : 0.05);
+            cut.count = 3;
+            slabs = dem_slabs_create(other, &cut);
+            for (part = 0; part < 3; part++) {
+                CHECK_EQ(dem_slabs_step(slabs, steps), DEM_OK);
+                CHECK_EQ(dem_slabs_collect(slabs, w), DEM_OK);
+                CHECK_NEAR(events(w, 0) - events(w, 1), links(w), wide ? 1e-6 : 0.05);
+            }
+            dem_slabs_destroy(slabs);
+            CHECK(events(w, 1) > (shaped ? 1000 : 10000));
+            if (getenv("TEST_TABLES")) printf("%g made, %g broken, %d hold\n", events(w, 0), events(w, 1), links(w));
+            dem_world_destroy(w);
+            dem_world_destroy(other);
+        }
+    }
+    TEST("sixteen reals per contact, two vectors among them, survive sorting, rebuilt lists, threads, checkpoints and "
+         "slabs") {
+        dem_world *w = heap(1), *other = heap(3);
+        dem_slabs_desc cut = DEM_SLABS_DESC;
+        dem_slabs *slabs;
+        CHECK_EQ(scene_step(w, 6000), DEM_OK);
+        CHECK_EQ(scene_step(other, 6000), DEM_OK);
+        CHECK(dem_world_hash_get(w) == dem_world_hash_get(other));
+        CHECK(all_of(w, 1) > 1000);
+        CHECK_NEAR(all_of(w, 0), 0, 0);
+        CHECK_EQ(dem_checkpoint_write(w, "build/tmp/keeper.dem"), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(other, "build/tmp/keeper.dem"), DEM_OK);
+        remove("build/tmp/keeper.dem");
+        CHECK_EQ(scene_step(other, 2000), DEM_OK);
+        CHECK_NEAR(all_of(other, 0), 0, 0);
+        cut.count = 3;
+        slabs = dem_slabs_create(other, &cut);
+        CHECK_EQ(dem_slabs_step(slabs, 4000), DEM_OK);
+        CHECK_EQ(dem_slabs_collect(slabs, other), DEM_OK);
+        CHECK_EQ(scene_step(other, 1000), DEM_OK);
+        CHECK_NEAR(all_of(other, 0), 0, 0);
+        CHECK(all_of(other, 1) > all_of(w, 1) + 100);
+        dem_slabs_destroy(slabs);
+        dem_world_destroy(w);
+        dem_world_destroy(other);
+    }
+    TEST("dem_contacts_each visits every contact; a friction spring set by it acts with kt times its length; visiting "
+         "changes no bit") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *w[2];
+        int k, n[2] = {0, 0};
+        for (k = 0; k < 2; k++) {
+            dem_material m;
+            desc.gravity = at(0, 0, -9.81);
+            desc.dt = DEM_R(1e-5);
+            w[k] = dem_world_create(&desc);
+            m = scene_material(w[k], 1e6, 0.5, 0.5, 0);
+            dem_wall_plane_add(w[k], m, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_cylinder_add(w[k], m, at(0.005, 0.005, 0), at(0, 0, 1), DEM_R(7.2e-3), 1);
+            dem_spheres_fill(w[k], m, (dem_real)R, dem_region_make(box_of(0, 0, 0, 0.01, 0.01, 0.03)), 200, 3);
+            CHECK_EQ(scene_step(w[k], 9000), DEM_OK);
+        }
+        k = dem_contacts_each(w[0], tally, n);
+        CHECK_EQ(k, n[0] + n[1]);
+        CHECK_EQ(dem_contacts_get(w[0], 0, 0), n[0] + n[1]);
+        if (getenv("TEST_TABLES")) printf("%d contacts, %d at walls\n", n[0], n[1]);
+        CHECK(n[0] > 60 && n[1] > 60);
+        for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 100), DEM_OK);
+        CHECK(dem_world_hash_get(w[0]) == dem_world_hash_get(w[1]));
+        for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
+        { /* one grain on a plane: 1 um of spring along x */
+            dem_real along = DEM_R(1e-6);
+            dem_pair pair;
+            dem_body body;
+            dem_material m;
+            double G, kt;
+            desc.gravity = at(0, 0, 0);
+            w[0] = dem_world_create(&desc);
+            m = scene_material(w[0], 1e6, 1, 10, 0);
+            dem_wall_plane_add(w[0], m, at(0, 0, 0), at(0, 0, 1));
+            body = dem_sphere_add(w[0], m, (dem_real)R, at(0, 0, 0.99*R));
+            CHECK_EQ(dem_contacts_each(w[0], stretch, &along), 1);
+            dem_pair_get(w[0], m, m, &pair);
+            G = (double)pair.shear_eff;
+            kt = 8*G*sqrt(R*0.01*R);
+            dem_candidates_rebuild(w[0]);
+            CHECK(dem_contacts_each(w[0], tally, n) == 1);
+            CHECK_REL(fabs((double)scene_state(w[0], body).force.x), kt*1e-6, wide ? 1e-6 : 1e-3);
+            dem_world_destroy(w[0]);
+        }
+    }
+    TEST("dem_bonds_make bonds all grains nearer than the gap, fails beyond the range, and files draw bonds as named "
+         "lines") {
+        dem_world *w = gas(0, 1);
+        const dem_bodies all = dem_bodies_get(w);
+        int i, j, k, near = 0;
+        FILE *file;
+        static char text[4000];
+        for (i = 0; i < all.count; i++)
+            for (j = 0; j < i; j++) {
+                double d[3], length[3] = {0.024, 0.02, 0.02}, far = 0;
+                for (k = 0; k < 3; k++) {
+                    d[k] = (double)(all.positions[4*i + k] - all.positions[4*j + k]);
+                    d[k] -= length[k]*floor(d[k]/length[k] + 0.5);
+                    far += d[k]*d[k];
+                }
+                near += sqrt(far) - 2*R < 3e-4;
+            }
+        CHECK_EQ(dem_bonds_make(w, DEM_R(3e-4), join, 0), near);
+        CHECK(near > 100);
+        CHECK_EQ(links(w), near);
+        CHECK_EQ(dem_bonds_make(w, DEM_R(5e-4), join, 0), -1);
+        CHECK_STR(dem_world_error_get(w), "at most 0.0004 m");
+        CHECK_EQ(dem_contacts_each(w, 0, 0), -1);
+        CHECK_EQ(dem_contacts_vtp_write(w, "build/tmp/links.vtp"), DEM_OK);
+        file = fopen("build/tmp/links.vtp", "rb");
+        CHECK(file != 0);
+        if (file) {
+            CHECK(fread(text, 1, sizeof text - 1, file) > 1000);
+            fclose(file);
+        }
+        CHECK_STR(text, "Name=\"linked\"");
+        CHECK_STR(text, "NumberOfPolys=\"0\"");
+        CHECK(!strstr(text, "NumberOfLines=\"0\""));
+        dem_world_destroy(w);
+    }
+    return test_end();
+}

@@ -1,0 +1,278 @@
+/* The same bits for any number of threads, for laws worked out at once and one after the other, and
+   however many steps are asked for at a time. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+/* Everything a result could differ in. */
+typedef struct outcome {
+    uint64_t hash;
+    dem_ledger ledger;
+    dem_wall_loads floor;
+    int domains;
+} outcome;
+
+/* About 6000 grains, mixed, with friction and rolling friction, on a plane and in a turning mesh.
+   */
+static dem_world *bed_world(int threads, dem_wall *plane) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material glass;
+    dem_motion motion = DEM_MOTION;
+    dem_wall wall;
+    desc.threads = threads;
+    desc.gravity = at(0, 0, -9.81);
+    desc.dt = DEM_R(4e-6);
+    desc.ledger = 1;
+    desc.rolling_law = DEM_ROLLING_EPSD;
+    desc.skin = DEM_R(2e-4);
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.7, 0.3, 0.1);
+    scene_block(world, glass, 19, 18, 18, 1e-3, 1, 2, 7);
+    *plane = dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    wall = scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 12, 12);
+    motion.kind = DEM_MOTION_ROTATING;
+    motion.axis = at(0, 0, 1);
+    motion.point = at(0.018, 0.018, 0);
+    motion.speed = 100;
+    dem_wall_motion_set(world, wall, &motion);
+    return world;
+}
+static outcome bed(int threads, int steps, int at_once) {
+    dem_wall plane;
+    dem_world *world = bed_world(threads, &plane);
+    outcome out;
+    int done;
+    for (done = 0; done < steps; done += at_once) CHECK_EQ(scene_step(world, at_once), DEM_OK);
+    memset(&out, 0, sizeof out);
+    out.hash = dem_world_hash_get(world);
+    out.ledger = dem_ledger_get(world);
+    dem_wall_loads_get(world, plane, &out.floor);
+    out.domains = dem_counters_get(world).domains;
+    CHECK(dem_counters_get(world).contacts > 6000);
+    CHECK(dem_counters_get(world).wall_contacts > 300);
+    CHECK(dem_counters_get(world).rebuilds > 1);
+    dem_world_destroy(world);
+    return out;
+}
+static void check_same(const outcome *a, const outcome *b) {
+    CHECK_EQ(a->hash, b->hash);
+    CHECK(memcmp(&a->ledger, &b->ledger, sizeof a->ledger) == 0);
+    CHECK(memcmp(&a->floor.force, &b->floor.force, sizeof a->floor.force) == 0);
+    CHECK(memcmp(a->floor.impulse, b->floor.impulse, sizeof a->floor.impulse) == 0);
+    CHECK(memcmp(&a->floor.work, &b->floor.work, sizeof a->floor.work) == 0);
+}
+
+static int block_species;                       /* of the last block: how many kinds of spheres */
+/* A block of grains between planes or in a periodic box, law by law or all laws at once: its hash. They
+   are of so many materials, all with the same properties; of 2, the second is that of `seconds` grains. */
+static uint64_t block(int friction, int rolling, int ledger, int mixed, int periodic, int composed,
+                      int materials, int seconds, int *whole) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material glass;
+    uint64_t hash;
+    int k;
+    desc.threads = 1;
+    desc.ledger = ledger;
+    desc.dt = DEM_R(2e-6);
+    desc.allow_large_dt = 1;
+    desc.skin = DEM_R(1.5e-3);                 /* wide: one list for the run, after the first */
+    for (k = 0; k < 3 && periodic; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    desc.domain = box_of(0, 0, 0, 7*1.97e-3, 7*1.97e-3, 7*1.97e-3);
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
+    if (!periodic) dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    for (k = 1; k < materials; k++) scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
+    scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 5);
+    for (k = 0; k < world->bodies.count && materials > 1; k++)
+        world->bodies.material[k] = 1 + (materials == 2 ? k < seconds : k%materials);
+    world->composed = composed;
+    CHECK_EQ(scene_step(world, 100), DEM_OK);
+    *whole = demi_whole_stage(world, world->effects.uniform) != 0;
+    block_species = world->effects.species_count;
+    CHECK_EQ(dem_counters_get(world).rebuilds, 1);
+    hash = dem_world_hash_get(world);
+    if (ledger) {
+        const dem_ledger book = dem_ledger_get(world);
+        hash = demi_hash(hash, &book, sizeof book);
+    }
+    dem_world_destroy(world);
+    return hash;
+}
+
+/* Up and down by 2 mm at 400 Hz, from its lowest, where it rests. */
+static void kicking(double time, dem_pose *pose, void *user) {
+    const double w = 2*3.14159265358979*400;
+    (void)user;
+    pose->position.z = (dem_real)(2e-3*(1 - cos(w*time)));
+    pose->velocity.z = (dem_real)(2e-3*w*sin(w*time));
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("a bed of 6000 grains has one hash, ledger and wall force for 1, 2, 3, 4 and 8 threads") {
+        static const int threads[] = {2, 3, 4, 8};
+        const outcome one = bed(1, 40, 40);
+        size_t i;
+        CHECK_EQ(one.domains, 4);
+        for (i = 0; i < 4; i++) {
+            const outcome many = bed(threads[i], 40, 40);
+            check_same(&one, &many);
+        }
+    }
+    TEST("threads, an intermediate checkpoint and a second world give one hash") {
+        static const int threads[] = {1, 2, 3, 4, 8};
+        static const char path[] = "build/tmp/threads.ckpt";
+        const outcome one = bed(1, 40, 40);
+        size_t i;
+        for (i = 0; i < 5; i++) {
+            dem_wall plane;
+            dem_world *first = bed_world(threads[i], &plane), *second;
+            int k;
+            CHECK_EQ(scene_step(first, 20), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(first, path), DEM_OK);
+            second = bed_world(threads[4 - i], &plane);     /* goes on with other threads */
+            CHECK_EQ(dem_checkpoint_read(second, path), DEM_OK);
+            for (k = 0; k < 20; k++) {                      /* step by step, side by side */
+                CHECK_EQ(scene_step(first, 1), DEM_OK);
+                CHECK_EQ(scene_step(second, 1), DEM_OK);
+            }
+            CHECK_EQ(dem_world_hash_get(first), one.hash);
+            CHECK_EQ(dem_world_hash_get(second), one.hash);
+            dem_world_destroy(first);
+            dem_world_destroy(second);
+        }
+        remove(path);
+    }
+    TEST("forty-two steps in one call, singly or in sevens are the same") {
+        const outcome a = bed(2, 42, 42), b = bed(2, 42, 1), c = bed(2, 42, 7);
+        check_same(&a, &b);
+        check_same(&a, &c);
+    }
+    TEST("the common laws computed in one stage give the bits of law by law") {
+        static const struct { int friction, rolling, ledger; } sets[] = {
+            {0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {1, 1, 0}, {1, 1, 1}};
+        size_t i;
+        int mixed, periodic, at_once, by_law;
+        for (i = 0; i < sizeof sets/sizeof *sets; i++)
+            for (mixed = 0; mixed < 2; mixed++)
+                for (periodic = 0; periodic < 2; periodic++) {
+                    CHECK_EQ(block(sets[i].friction, sets[i].rolling, sets[i].ledger, mixed, periodic,
+                                   0, 1, 0, &at_once),
+                             block(sets[i].friction, sets[i].rolling, sets[i].ledger, mixed, periodic,
+                                   1, 1, 0, &by_law));
+                    CHECK_EQ(at_once, 1);
+                    CHECK_EQ(by_law, 0);
+                }
+    }
+    TEST("coefficients shared by all pairs, from a table, or per pair give the same bits") {
+        static const struct { int materials, seconds, species; } sets[] = {
+            {2, 1, 2}, {2, 150, 2}, {7, 0, 7}, {40, 0, DEMI_SPECIES + 1}};
+        size_t i;
+        int rolling, ledger, composed, whole;
+        CHECK(DEMI_SPECIES < 40);
+        for (rolling = 0; rolling < 2; rolling++)
+            for (ledger = 0; ledger < 2; ledger++)
+                for (composed = 0; composed < 2; composed++) {
+                    const uint64_t alike = block(1, rolling, ledger, 0, 1, composed, 1, 0, &whole);
+                    for (i = 0; i < sizeof sets/sizeof *sets; i++) {
+                        CHECK_EQ(block(1, rolling, ledger, 0, 1, composed, sets[i].materials,
+                                       sets[i].seconds, &whole), alike);
+                        CHECK_EQ(block_species, sets[i].species);
+                    }
+                }
+    }
+    TEST("a short tile of one coefficient row reads nothing of the tile before") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material one;
+        demi_run run[2];
+        demi_tile *tile = (demi_tile *)calloc(1, sizeof *tile);
+        demi_span span;
+        int32_t row[DEMI_TILE];
+        int k, q, wrong = 0;
+        desc.threads = 1;
+        world = dem_world_create(&desc);
+        one = scene_material(world, 1e7, 0.8, 0.3, 0);
+        scene_material(world, 4e7, 0.5, 0.1, 0);
+        scene_block(world, one, 4, 4, 4, 1e-3, 0, 1, 5);
+        for (k = 0; k < world->bodies.count; k++) world->bodies.material[k] = 1 + k%2;
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        CHECK_EQ(world->effects.species_count, 2);
+        memset(&span, 0, sizeof span);
+        span.row = row;
+        run[0] = demi_run_of(world, DEM_R(1e-6), 0);
+        run[1] = demi_run_of(world, DEM_R(1e-6), 1);
+        demi_tile_begin(world, 0, tile);
+        for (k = 0; k < 3; k++) {              /* mixed; short, all of row 3; long, all of row 3 */
+            const int full = k == 1 ? DEMI_LANES : DEMI_TILE;
+            for (q = 0; q < DEMI_TILE; q++) row[q] = k ? 3 : q%4;
+            span.count = full;
+            CHECK(demi_tile_coefs(world, &span, full, tile, run) == run + (k > 0));
+            for (q = 0; q < full; q++) {
+                dem_real coef[DEMI_PAIR_COLUMNS];
+                demi_span_coefs(world, &span, q, coef);
+                wrong += memcmp(&coef[DEMI_KN], &tile->coef[DEMI_KN][q], sizeof(dem_real)) != 0;
+                wrong += memcmp(&coef[DEMI_MU], &tile->coef[DEMI_MU][q], sizeof(dem_real)) != 0;
+            }
+        }
+        CHECK_EQ(wrong, 0);
+        free(tile);
+        dem_world_destroy(world);
+    }
+    TEST("a grain of a new material joins an existing list only if its coefficients already distinguish materials") {
+        int materials;
+        for (materials = 1; materials <= 2; materials++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material one;
+            int k;
+            desc.threads = 1;
+            world = dem_world_create(&desc);
+            one = scene_material(world, 1e7, 0.8, 0.1, 0);
+            scene_material(world, 1e7, 0.8, 0.9, 0);
+            scene_block(world, one, 4, 4, 4, 1e-3, 1, 0.1, 5);
+            for (k = 0; k < world->bodies.count && materials == 2; k++) world->bodies.material[k] = 1 + k%2;
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            CHECK_EQ(world->effects.species_count, DEMI_SPECIES + 1);
+            CHECK_EQ(demi_join_possible(world, 0, DEM_R(1.1e-3)), 1);      /* another radius: yes */
+            CHECK_EQ(demi_join_possible(world, 1, DEM_R(1e-3)), materials == 2);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("a newly chosen time step starts on the same step for any division into calls") {
+        uint64_t hash[3] = {0, 0, 0};
+        int k;
+        for (k = 0; k < 3; k++) {              /* a wall at 5 m/s kicks grains that were slow */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material glass;
+            dem_motion motion = DEM_MOTION;
+            dem_wall wall;
+            dem_real first;
+            int i;
+            desc.threads = 1;
+            desc.skin = DEM_R(2e-4);
+            world = dem_world_create(&desc);
+            glass = scene_material(world, 1e7, 1, 0.3, 0);
+            scene_block(world, glass, 4, 4, 4, 1e-3, 1, 0.01, 2);
+            wall = scene_floor(world, glass, -0.01, -0.01, 0.02, 0.02, 1, 1);
+            motion.kind = DEM_MOTION_USER;      /* nobody knows how fast it will be */
+            motion.function = kicking;
+            dem_wall_motion_set(world, wall, &motion);
+            scene_step(world, 1);
+            first = dem_counters_get(world).dt;
+            if (k == 0) CHECK_EQ(scene_step(world, 400), DEM_OK);
+            else for (i = 0; i < 400; i += 4*k - 3) CHECK_EQ(scene_step(world, 4*k - 3), DEM_OK);
+            CHECK((double)dem_counters_get(world).dt < 0.9*(double)first);
+            hash[k] = dem_world_hash_get(world);
+            dem_world_destroy(world);
+        }
+        CHECK_EQ(hash[1], hash[0]);
+        CHECK_EQ(hash[2], hash[0]);
+    }
+    return test_end();
+}
