@@ -55,7 +55,7 @@ int main(int argc, char **argv) {
             snprintf(name, sizeof name, "height of rebound %d [m]", bounces);
             lesson_row(name, bottom, 0, expected, 1);
         }
-        if (state.velocity.z > 0.02) last_rise = dem_world_time_get(world);     /* slower than 0.02 m/s: it rests */
+        if (state.velocity.z > 0.02) last_rise = dem_world_time_get(world);     /* m/s; a slower ball is at rest */
         last_speed = state.velocity.z;
     }
     lesson_row("time until the ball lies still [s]", last_rise, 0, rest, 2);

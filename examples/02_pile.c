@@ -28,7 +28,7 @@ static dem_world *yard(double friction, double rolling, dem_material *wood) {
     dem_wall_plane_add(world, *wood, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
     return world;
 }
-/* Returns the slope (degrees) of the heap that a column becomes when its side walls move up; -1: the run failed. */
+/* Returns the slope (degrees) of the heap that remains of a column when its side walls move up; -1: the run failed. */
 static double slope(double rolling, int seed, int record, double *overlap) {
     const double R = 0.005, half = 0.03;                            /* m, of a disc; half the width of the column */
     dem_material wood;
@@ -108,11 +108,11 @@ int main(int argc, char **argv) {
               The lower logs touch but are about to part, so they exert no force on each other. Then
                   horizontally, lower log: T + T cos 30 = N sin 30, so T/N = tan 15 degrees = 0.268 <= mu
                   vertically: N = W/2 between two logs, and 3/2 W on the floor below each lower log
-   Output:    slopes (mean and standard error of three runs): the second exceeds the first by 2 degrees, the third the
-              second by 1, or more; the smallest mu (within 3 %), by bisection: its +- is half of the last interval
+   Output:    slopes (mean and standard error of three runs): the second at least 2 degrees above the first, the third
+              at least 1 above the second; the smallest mu (within 3 %), by bisection: +- half of the last interval
    Exercises: check an answer with ./02_pile --check N VALUE
    1  The logs do not slide on each other. How much friction must the floor have for three logs to stay?
-   2  Between the lower logs is a gap of one radius. How much friction between logs holds the upper one now? */
+   2  A gap of one radius is between the lower logs. How much friction between logs holds the upper one now? */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     return exercise == 1 ? tan(3.14159265/12)/3 : tan(asin(3.0/4)/2);

@@ -103,8 +103,8 @@ int main(int argc, char **argv) {
               tests 14 properties of a law, among them: finite forces; the same force from both sides and in rotated
               coordinates; no creation of energy; stability at the largest step that dem.h allows. `hasty` unloads
               from D along k2 d, above the loading line, and so returns more work than it took.
-   Output:    the exam of both laws (`hasty` fails some lines, those on energy among them), and e for four ratios at two
-              speeds (within 0.2 %)
+   Output:    the exam of both laws, one line for each property (`hasty` fails some, those on energy among them), and e
+              for four ratios at two speeds (within 0.2 %)
    Exercises: check an answer with ./04_own_law --check N VALUE
    1  Which k2/k1 gives a restitution of 0.3?
    2  A law has e = 0.6. What fraction of the largest overlap remains as a dent?

@@ -109,8 +109,8 @@ int main(int argc, char **argv) {
               along the wall, so the tube moves up slowly during the whole run.
    Output:    loads on the floor at four heights, within 12 % of the formula with one fitted K between 0.3 and 1
    Exercises: check an answer with ./05_silo --check N VALUE
-   1  Wheat: D = 1 m, rho_b = 800 kg/m3, K = 0.5, mu doubled from 0.3 to 0.6: what is W of an endless column, in N?
-   2  At which H/D does the floor carry half of the weight, if mu = 0.4 and K = 0.5? */
+   1  A very high column of wheat: D = 1 m, rho_b = 800 kg/m3, K = 0.5, mu = 0.6. What does the floor carry, in N?
+   2  At which H/D does the floor carry half of the weight of the column, if mu = 0.4 and K = 0.5? */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     double s = 1;                                                   /* H/lambda: (1 - exp(-s))/s = 1/2 */

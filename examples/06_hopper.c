@@ -102,8 +102,8 @@ int main(int argc, char **argv) {
 
 /* STOP: answer the question before you read on.
    Theory:    Beverloo 1961. Grains fall freely below an arch over the hole, independent of the load above. In a plane
-              a hole of width B then passes a flow proportional to B sqrt(g B). Grains of diameter d cannot use a rim
-              of width k d in all, k about 1.4:
+              a hole of width B then passes a flow proportional to B sqrt(g B). Grains of diameter d cannot use its
+              rims, which together are k d wide, with k about 1.4:
                   W = C rho_b sqrt(g) (B - k d)^(3/2)       per depth; rho_b: bulk density
               For a round hole in three dimensions the exponent is 5/2, and C is about 0.58.
    Output:    flows through three holes. With k = 1.4 the exponent is 1.5 within 15 %, and C of discs is 0.7 to 1.2. A

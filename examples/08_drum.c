@@ -1,7 +1,7 @@
 /* 08_drum.c - lesson 8: a rotating drum. You learn: torque and power; how to test a simulation by a theorem.
 
    Build:     cc -O2 -o 08_drum 08_drum.c ../dem.c -lm      (in the folder examples)
-   Run:       ./08_drum or, with a replay at Fr = 0.05 and both torques, ./08_drum --replay
+   Run:       ./08_drum or, with a replay at the Froude number Fr = w^2 R/g = 0.05, ./08_drum --replay
    Question:  Does friction determine the torque of a drum? Does a steeper charge need more torque? Above which speed
               do grains stay on the shell and never fall? Write down three answers, then run. */
 #include "../dem.h"
@@ -105,7 +105,7 @@ int main(int argc, char **argv) {
 /* STOP: answer the question before you read on.
    Theory:    In the steady state the angular momentum of the charge is constant. The torque of the shell therefore
               equals that of the weight, M g x with the horizontal position x of the centre of mass, for any friction.
-              The Froude number Fr = w^2 R/g describes the speed. At low Fr the charge rolls down a flat slope at
+              Fr is the acceleration at the shell over g. At low Fr the charge rolls down a flat slope at
               its angle of repose; above about 0.1 it cascades; at Fr = 1 gravity at the top provides just the
               centripetal acceleration, and grains that rotate with the shell stay on it (centrifuging).
    Output:    torque = M g x (3 %); slope 20 to 40 degrees at low Fr, more at Fr = 0.3; half above the axis at Fr = 3

@@ -107,8 +107,8 @@ int main(int argc, char **argv) {
               when both surfaces move alike:
                   v = 2/7 V,   R w = 5/7 V   at t = 2 V/(7 mu g)
               The belt has then done the work 2/7 m V^2. Half of it is energy of the ball; the other half is heat.
-   Output:    speeds, work and heat within 1 %; a ledger without loss; the same path on triangles and on a plane, to
-              1e-9 m; a mesh with 26 open edges, those of its rim
+   Output:    speeds, work and heat within 1 %; an energy ledger that closes; the same path on triangles and on a plane
+              within 1e-9 m; a mesh with 26 open edges, those of its rim
    Exercises: check an answer with ./09_moving_wall --check N VALUE
    1  V = 2 m/s, mu = 0.25. How long does the ball slide, in s?
    2  V = 1.5 m/s. What is the final speed of a cylinder that lies across the belt (planar = 1, gravity along y), in

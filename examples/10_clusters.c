@@ -95,8 +95,8 @@ int main(int argc, char **argv) {
 
 /* STOP: answer the question before you read on.
    Theory:    Each sphere of mass m contributes 2/5 m r^2 about its own centre, plus m a^2 if its centre is a off the
-              axis. The centres are sqrt(3/2) r from the middle, and by symmetry a^2 is 2/3 of that squared: r^2. So
-                  I = (2/5 + 1) M r^2;   a ball of the same volume: 2/5 M (4^(1/3) r)^2 = 1.008 M r^2
+              axis. The centres are sqrt(3/2) r from the middle; by symmetry the mean a^2 is 2/3 of that squared, r^2.
+              So  I = (2/5 + 1) M r^2;   a ball of the same volume: 2/5 M (4^(1/3) r)^2 = 1.008 M r^2
               A cone of height H and radius L has the mean height H/4 and the mean distance L/2 from its axis.
    Output:    I/(M r^2) = 1.4 within 0.1 %; tetrahedra are steeper by 3 degrees or more (mean of two runs)
    Exercises: check an answer with ./10_clusters --check N VALUE

@@ -4,11 +4,11 @@
 
    The slope is that of the cone with the same centre of mass and the same mean distance from its axis:
        tan(slope) = H/R,   H = 4 (z_mean - z of the lowest layer),   R = 2 r_mean
-   At rest: the kinetic energy is below 1e-9 of the energy of the fall, and still is 0.2 s later.
+   A heap is at rest if its kinetic energy is below 1e-9 of the energy of the fall, also 0.2 s later.
 
-   Build:     make build/heap, or cc -O2 heap.c ../dem.c -lm
-   Run:       heap             five minutes on one core
-              heap --quick     with 500 grains of each kind: one minute
+   Build:     make build/heap, or cc -O2 -o heap heap.c ../dem.c -lm      (in the folder examples)
+   Run:       ./heap             five minutes on one core
+              ./heap --quick     with 500 grains of each kind: one minute
    Output:    slopes of about 20 degrees (tetrahedra) and 9 degrees (spheres); pictures heap_tetrahedra.svg and
               heap_spheres.svg; heap_*.vtp for ParaView */
 #include "../dem.h"
@@ -114,7 +114,7 @@ int main(int argc, char **argv) {
                                                                  dem_region_make(box), count, 1);
         if (placed < count) { puts(dem_world_error_get(world)); return 1; }
 
-        /* fall and come to rest; kinetic energy then and 0.2 s later */
+        /* the grains fall and come to rest; their kinetic energy then, and 0.2 s later */
         dem_world_check_print(world, stdout);
         const dem_totals before = dem_totals_get(world);
         const double fall = before.mass*9.81*before.centre[2];      /* J, energy of the fall to the floor */

@@ -10,10 +10,10 @@
 
    Question:  Eight times the weight presses each contact with eight times the force. How much more heat flows? (d is
               proportional to F^(2/3).) And through balls that are ten times as stiff?
-   Build:     cc -O2 heat.c ../dem.c -lm
-   Output:    8 g: 2.0 to 2.6 times the heat; the discs give the factor 2, new contacts the rest. 10 E: 0.40 to 0.50 times
-              (10^(-1/3) = 0.46). Floor and top agree within 1 %. heat.vtp is for ParaView: colour by temperature. About 10 s
-              on one core
+   Build:     cc -O2 -o heat heat.c ../dem.c -lm      (in the folder examples)
+   Output:    under 8 g 2.0 to 2.6 times the heat: larger discs give the factor 2, new contacts the rest. With ten times the
+              modulus 0.40 to 0.50 times the heat (10^(-1/3) = 0.46). The heat flows at floor and top agree within 1 %.
+              heat.vtp is for ParaView: colour by temperature. About 10 s on one core
    Exercises: Cool the floor to 300 K in the steady state. After which time has half of the excess heat left the bed? For which
               capacity do the temperatures oscillate from step to step, and why? (heat.h has the limit of Euler's step.) */
 #include "../dem.h"
@@ -29,8 +29,8 @@ static void follow(dem_real *reals, const dem_real *rates, const dem_body_state 
     if ((double)body->position.z < *height) reals[0] += rates[0]*dt;
 }
 
-/* Returns the heat flow (W) from the floor into a bed with this modulus (Pa) under g (m/s2), and writes that into the cooled
-   balls to *top. Returns -1 if the run failed. */
+/* Returns the heat flow (W) from the floor into a bed with this modulus (Pa) under g (m/s2), and writes the heat flow into the
+   cooled balls to *top. Returns -1 if the run failed. */
 static double heat_through(double young, double g, const char *picture, double *top) {
     static const dem_real conductivity[] = {16}, capacity[] = {DEM_R(0.02)};    /* W/(m K); J/(kg K): of steel 500 */
     heat steel_heat = {conductivity, capacity, 0, 0};

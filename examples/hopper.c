@@ -1,9 +1,9 @@
 /* hopper.c - a small project in one file: a hopper from an STL file, filled by a sieve curve and emptied through its
    mouth; discharge to a CSV file, a replay, checkpoints, and a restart after an interruption.
 
-   Build:  cc -O2 hopper.c ../dem.c -lm
-   Run:    in the folder of hopper.stl (examples/data). `hopper --resume` continues from the last checkpoint; hopper.csv then
-           has no line missing and none twice */
+   Build:  cc -O2 -o hopper hopper.c ../dem.c -lm           (in the folder examples)
+   Run:    cd data && ../hopper                             (the folder of hopper.stl)
+           ../hopper --resume continues from the last checkpoint. hopper.csv then has each line exactly once */
 #include "../dem.h"
 #include <string.h>
 
@@ -46,7 +46,7 @@ int main(int argc, char **argv) {
 
     dem_result well = resume ? dem_checkpoint_read(world, "hopper.ckpt")
                              : dem_world_settle(world, 2, 0, dem_progress_print, stderr);
-    if (well != DEM_OK) puts(dem_world_error_get(world));                   /* before another call fails */
+    if (well != DEM_OK) puts(dem_world_error_get(world));                   /* the message of this call, before another one fails */
     if (well == DEM_OK && !resume) dem_wall_remove(world, walls[1]);                      /* the gate opens */
     dem_replay_desc replay_desc = DEM_REPLAY_DESC;
     replay_desc.interval = 0.02;

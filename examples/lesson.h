@@ -1,5 +1,5 @@
-/* lesson.h - what the twelve lessons share: arguments, rows with measured and expected values, marking of exercises.
-   MIT licence. It contains no physics and calls no function of dem.h.
+/* lesson.h - functions that the twelve lessons share: arguments, rows with measured and expected values, marking of
+   exercises. MIT licence. It contains no physics and calls no function of dem.h.
 
        static double answer(int exercise);                              // exercise 1 or 2; at the end of the lesson
        int main(int argc, char **argv) {

@@ -6,12 +6,12 @@
    strength of the rock.
 
    Question:  How strong is a rock whose bonds are twice as strong? And one in which every second bond is missing?
-   Build:     cc -O2 rock.c ../dem.c -lm
-   Output:    bonds twice as strong: 1.7 to 2.1 times the strength; half of the bonds: 0.5 to 0.7 times. Most bonds hold when
+   Build:     cc -O2 -o rock rock.c ../dem.c -lm      (in the folder examples)
+   Output:    bonds twice as strong give 1.7 to 2.1 times the strength, half of the bonds 0.5 to 0.7 times. Most bonds hold when
               the rock breaks, because cracks run through the empty sites. rock.vtp (grains) and bonds.vtp (lines; `length` is
               negative for broken bonds) are for ParaView. 10 s on one core
-   Exercises: Pull instead of pressing. How many times weaker is the rock? (Real rocks: 10 to 20 times.) What does `beta`
-              change? And the speed of the plate, 1/600 of the speed of sound? */
+   Exercises: Pull instead of pressing. How many times weaker is the rock? (Real rocks: 10 to 20 times.) What changes with
+              `beta`, and with the speed of the plate, which is 1/600 of the speed of sound here? */
 #include "../dem.h"
 #include "laws/bond.h"
 
@@ -24,14 +24,14 @@ static int occupied(dem_vec3 centre, dem_real radius, void *user) {
     *seed = *seed*1664525u + 1013904223u;
     return (*seed >> 16)%7 != 0;
 }
-/* Makes one bond of every `every`. */
+/* Bonds one pair in every `every`. */
 typedef struct glue { dem_world *world; int every, count; } glue;
 static void glue_bond(const dem_contact_info *c, dem_real *memory, void *user) {
     glue *g = (glue *)user;
     if (g->count++%g->every == 0) bond_make(c, memory, g->world);
 }
 
-/* Returns the strength (Pa) of a block with bonds of `strength` (Pa), one of every `every`; -1: the run failed. bonds: receives
+/* Returns the strength (Pa) of a block with bonds of `strength` (Pa) on one pair in every `every`; -1: the run failed. `bonds` receives
    the numbers of intact and of broken bonds when the force has fallen to half of its maximum. */
 static double press(double strength, int every, int bonds[2], int pictures) {
     bond cement = {DEM_R(1e7), DEM_R(2.5), DEM_R(0.8e-3), 0, 0, DEM_R(0.1)};

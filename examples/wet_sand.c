@@ -6,12 +6,12 @@
 
    Question:  In contact the force of a bridge does not depend on its volume. Is a castle with a hundred times as much water in
               every bridge stronger? Can a castle be made of gravel? (The force is proportional to R, the weight to R^3.)
-   Build:     cc -O2 wet_sand.c ../dem.c -lm
-   Output:    dry sand, and gravel with the most water, keep less than 0.3 of their height. Sand keeps the more the more water
-              it has, with 0.01 R^3 per bridge above 0.7: a bridge that extends farther takes more work to break. wet.vtp is
-              for ParaView. About 17 s on one core
+   Build:     cc -O2 -o wet_sand wet_sand.c ../dem.c -lm      (in the folder examples)
+   Output:    dry sand, and gravel with the most water, keep less than 0.3 of their height. The more water sand has, the more
+              it keeps: above 0.7 with 0.01 R^3 per bridge. A bridge that extends farther takes more work to break. wet.vtp
+              is for ParaView. About 17 s on one core
    Exercises: Which of surface tension, angle and volume makes a castle of 4 mm gravel possible? Up to which R does water hold
-              one? */
+              a castle? */
 #include "../dem.h"
 #include "laws/capillary.h"
 

@@ -1,6 +1,6 @@
 /* NAME.c - grains fall on a floor. Change it as you like.
 
-   tcc -I. dem.c -run NAME.c                                   starts at once; the run takes 20 times as long
+   tcc -I. dem.c -run NAME.c                                   starts at once, but the run takes 20 times as long
    cc -O2 -I. -o NAME NAME.c dem.c -lm && ./NAME               fast; add -fopenmp for threads
    Then open NAME.html in a browser. The beginning of dem.h is the manual; docs/how_to.md has short recipes. */
 #include "dem.h"
