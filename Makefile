@@ -1,7 +1,7 @@
-# dem.h needs no build of its own. `make run` grinds, `make test` tests, `make help` lists the rest.
-# GNU make. Everything it makes lands in build/.
+# dem.h itself needs no build. `make run` runs the tumbling mill, `make test` the tests, `make help` lists all targets.
+# GNU make. It writes everything into build/.
 
-# ---- yours to set: make CC=clang, make CFLAGS=-O1, make OMP= (no threads), make JOBS=1 ----
+# ---- variables that you may set: make CC=clang, make CFLAGS=-O1, make OMP= (no threads), make JOBS=1 ----
 CC           ?= cc
 CFLAGS       ?= $(CFLAGS_FOUND)
 OMP          ?= $(OMP_FOUND)
@@ -18,7 +18,7 @@ PREFIX       ?= /usr/local
 DESTDIR      ?=
 JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
-# ---- what there is ----
+# ---- lists of sources and programs ----
 ROOMS    := src/dem.h $(wildcard src/*/*.h)
 FOLDERS  := $(filter-out api,$(shell sed -n 's/^\#include "\([a-z]*\)\/.*/\1/p' src/dem.h | uniq))
 HARD     := $(patsubst tests/hard/%.c,build/%,$(wildcard tests/hard/hard_*.c))
@@ -35,7 +35,7 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 
 hash := \#
 
-# ---- what the compiler can do; asked only when something is to be compiled ----
+# ---- options that the compiler knows; tested only if something is to be compiled ----
 ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
@@ -47,7 +47,7 @@ OMP_FOUND := $(shell printf '%s\n' '$(hash)include <omp.h>' 'int main(void) { re
         $(CC) build/probe.c -o build/probe $$f >build/probe.log 2>&1 && echo "$$f" && break; done)
 $(if $(OMP_FOUND),,$(info OpenMP not found: running on one thread))
 endif
-# `make run` is waited for: all cores compile its one program together, at the link, to the same bits
+# somebody waits for `make run`: all cores compile its program together when it is linked; the bits are the same
 ifeq ($(MAKECMDGOALS),run)
 LTO := $(shell f=-flto=$(JOBS); echo 'int main(void) { return 0; }' > build/probe.c; \
     $(CC) $(CFLAGS_FOUND) $$f build/probe.c -o build/probe >build/probe.log 2>&1 && test ! -s build/probe.log && echo $$f)
@@ -55,7 +55,7 @@ endif
 COMPILE = $(CC) $(CFLAGS) $(CPPFLAGS) -I.
 LINK = $(OMP) $(LDFLAGS) $(LDLIBS)
 DEM_O := $(if $(LTO),build/dem_run.o,build/dem.o)
-# build/flags changes when the compiler or its flags do, and everything is built anew
+# build/flags changes with the compiler and its flags; then everything is built again
 $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(LINK)' > build/flags)
 MAKEFLAGS += -j$(JOBS)
 endif
@@ -63,59 +63,59 @@ endif
 .PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
-help: ## this list
+help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
 
-run: build/mill ## the tumbling mill: a replay for the browser, pictures and figures in build/out/mill
+run: build/mill ## run the tumbling mill: a replay for the browser, pictures and figures in build/out/mill
 	@mkdir -p build/out/mill
 	GOMP_SPINCOUNT=1000 build/mill --replay --out build/out/mill
 
-new: ## NAME=my puts a small program with comments into my.c, and says how to build it
+new: ## NAME=my: write a small program with comments to my.c; its first lines show how to build it
 	@test -n "$(NAME)" || { echo "make new NAME=my: give the program a name"; exit 1; }
 	@test ! -e "$(NAME).c" || { echo "make new: $(NAME).c is there already; give another NAME"; exit 1; }
 	@sed 's#NAME#$(notdir $(NAME))#g' examples/new/program.c > "$(NAME).c"
 	@echo "$(NAME).c: its first lines say how to build it"
 
-install: ## dem.h, a library of dem.c, and files for pkg-config and CMake into PREFIX (/usr/local)
+install: ## copy dem.h, a library of dem.c, and files for pkg-config and CMake into PREFIX (/usr/local)
 	@sh tests/install.sh "$(DESTDIR)$(PREFIX)" "$(PREFIX)" "$(CC)" "$(OMP)"
 
-dem.h: $(ROOMS) src/join.awk ## join the rooms in src/ to dem.h, in the order of src/dem.h, if they compile
+dem.h: $(ROOMS) src/join.awk ## join the files in src/ to dem.h, in the order of src/dem.h, if they compile
 	@mkdir -p build
 	@if test -f build/joined.h && test -f $@ && ! cmp -s build/joined.h $@; then awk -f src/join.awk src/dem.h | cmp -s - $@ || { \
-	    echo "dem.h was changed itself: make rooms puts the change into src/; rm build/joined.h gives it up"; exit 1; }; fi
+	    echo "dem.h was edited: make rooms copies the change into src/; rm build/joined.h discards it"; exit 1; }; fi
 	@! command -v $(CC) >/dev/null || $(CC) $(CPPFLAGS) -DDEM_IMPLEMENTATION -x c -fsyntax-only src/dem.h
 	@awk -f src/join.awk src/dem.h > build/joined.new && mv build/joined.new build/joined.h
 	@cmp -s build/joined.h $@ || cp build/joined.h $@; touch $@
 
-rooms: ## put a change that was made in dem.h itself into the rooms in src/
+rooms: ## copy a change that was made in dem.h itself into the files in src/
 	@awk -v to=src -f src/split.awk src/dem.h dem.h
 
-test: $(TESTS) ## build and run all tests; FILTER=words runs the sentences that contain them, OF=contact those in tests/contact
+test: $(TESTS) ## build and run all tests; FILTER=words: only those whose names contain the words; OF=contact: only those in tests/contact
 	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(if $(OF),$(patsubst %.c,build/%,$(notdir $(wildcard tests/$(OF)/*.c))),$(TESTS))
 
-hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## the long form of the hard cases, over an hour: counts cases and impacts; FILTER=words as in test
+hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## run the hard cases in their long form, over an hour, and count cases and impacts; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $^ > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
 
-law: $(if $(LAW),build/dem.o,build/exam) ## the exam of a contact law, LAW=path/to/my_law.h, with a page of its curves; without LAW of the built-in ones
+law: $(if $(LAW),build/dem.o,build/exam) ## LAW=path/to/my_law.h: examine a contact law and draw its curves on a page; without LAW the built-in laws
 	@mkdir -p build/out/exam
 	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
 	    else build/exam; fi
 
-lessons: $(LESSONS) ## the twelve lessons: build, run, record replays in build/out/NAME, mark right and wrong answers to their exercises
+lessons: $(LESSONS) ## build and run the twelve lessons, record replays in build/out/NAME, check that they mark answers correctly
 	@JOBS=$(JOBS) sh tests/lessons.sh $(LESSONS)
 
-examples: lessons $(SHOWS) snippets ## the lessons, the other examples that check themselves, the snippets of the manual
+examples: lessons $(SHOWS) snippets ## run the lessons, the other examples that check themselves, and the programs in the manual and the pages
 	@failed=; for e in $(SHOWS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; cp examples/data/hopper.stl build/out/$$n; \
 	    (cd build/out/$$n && ../../$$n) || failed="$$failed $$n"; done; \
 	(cd build/out/hopper && cp hopper.csv whole.csv && ../../hopper --resume > resumed.txt && cmp hopper.csv whole.csv) || failed="$$failed resumed"; \
 	if test -n "$$failed"; then echo "examples failed:$$failed"; exit 1; fi; echo "all examples as expected"
 
-studies: $(STUDIES) ## build the studies into build/: each takes --help
+studies: $(STUDIES) ## build the studies into build/; each has an option --help
 
-studies-check: build/mill build/screener build/ellipsoids build/separator ## run every command of these four that README.md and docs/ name, in its short form; LONG=1: as it is written, in an hour
+studies-check: build/mill build/screener build/ellipsoids build/separator ## run every command of the four studies in README.md and docs/ in a short form; LONG=1: as written, in an hour
 	@JOBS=$(JOBS) sh tests/studies.sh $(if $(LONG),long)
 
-mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, where mpicc and its headers are found
+mpi: build/dem.o ## build the programs in examples/mpi and run them on 1, 2 and 3 processes, if mpicc is installed
 	@printf '%s\n' '$(hash)include <mpi.h>' 'int main(void) { return MPI_Finalize(); }' > build/probe.c; \
 	if ! command -v $(MPICC) >/dev/null; then \
 	    echo "SKIP: $(MPICC) not found (Debian package libopenmpi-dev)"; \
@@ -132,41 +132,41 @@ mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, whe
 
 all: $(STUDIES) $(LESSONS) $(SHOWS) $(TESTS) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
 
-check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
+check: ## test with all compilers, standards, precisions, warnings and sanitizers found, over an hour; report what was skipped
 	@JOBS=$(JOBS) sh tests/check.sh
 
-# threads stay on cores of their own
+# each thread stays on its own core
 BIND := OMP_PROC_BIND=true OMP_PLACES=cores
-bench: $(BENCHES) $(BENCH_ALSO) ## the quick form of all benches, in under 3 minutes; each takes --help
+bench: $(BENCHES) $(BENCH_ALSO) ## run all benches in their quick form, in under 3 minutes; each has an option --help
 	@$(BIND) build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed && \
 	    $(BIND) build/parallel --short --threads 2 --settle 0 && STEPS=60 ROUNDS=3 CORES=1 SCENES="bed drum gas" sh bench/peers.sh
 
-bench-compile: build/flags ## processor time that compiling dem.h takes, by compiler and level
+bench-compile: build/flags ## measure the processor time of compiling dem.h, for each compiler and level
 	@sh bench/compile.sh
 
-bench-effects: build/bench ## what each effect costs, present and absent
+bench-effects: build/bench ## measure the cost of each effect, present and absent
 	@build/bench --scene effects --threads 1
 
-bench-parallel: build/parallel ## threads, sizes, searches beside published figures, in minutes
+bench-parallel: build/parallel ## measure threads, sizes and searches beside published figures, in minutes
 	@$(BIND) build/parallel
 
-bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS, LIGGGHTS and YADE, where those are installed
+bench-peers: $(BENCHES) $(BENCH_ALSO) ## run the same scenes in dem.h and in LAMMPS, LIGGGHTS and YADE, as far as they are installed
 	@sh bench/peers.sh
 
-bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ## measure anew what docs/ tells of speed; PAGES=roofline: one page
+bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ## measure the speeds in docs/ again and write them; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
 
-# figures that need no quiet machine: they have the same bits on a busy one
+# figures that need no quiet machine: a busy one gives the same bits
 pages: $(LESSONS) build/readme_program ## write the figures that lessons and the README's program print into the pages
 	@JOBS=$(JOBS) sh bench/pages.sh lessons heap files
 
-pages-check: ## which measured figures of README.md and docs/ are older than their code; STRICT=1: older ones are an error
+pages-check: ## list the measured figures in README.md and docs/ that are older than their code; STRICT=1: fail if there are any
 	@STRICT=$(STRICT) sh tests/pages.sh
 
-fuzz: ## FUZZ_SECONDS (600) per reader, and for programs of calls, under clang's fuzzer and sanitizers
+fuzz: ## run clang's fuzzer with sanitizers on each file reader and on random calls, FUZZ_SECONDS (600) each
 	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-docs: ## check that links in README and docs lead somewhere, and that cited keys exist
+docs: ## check that the links in README and docs lead somewhere, and that cited keys exist
 	@awk -f tests/links.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md
 
 readers: build/write_files ## write every file format and open it with VTK and ASE
@@ -174,24 +174,24 @@ readers: build/write_files ## write every file format and open it with VTK and A
 	@$(PYTHON) tests/read_vtk.py build/out/readers
 	@$(PYTHON) tests/read_xyz.py build/out/readers
 
-tags: ## dem.h is what src/ says; every part of its contents is in its place; parts and functions keep their limits
+tags: ## check that dem.h is joined from src/, that its parts agree with its contents, and that parts, functions and lines keep their limits
 	@awk -f src/join.awk src/dem.h | cmp - dem.h
 	@awk -f tests/tags.awk dem.h
 	@$(MAKE) --no-print-directory english
 
-english: ## sentences of pages, public comments, error messages and test names that need a second reading
+english: ## list sentences of pages, public comments, error messages and test names that need a second reading
 	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/hard/*.c
 
-web: ## the browser lesson: build/web/lesson.html, dem.h in WebAssembly with sliders, and the same as a program
+web: ## build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77
 
-viewer: ## put examples/replay/viewer.html into src/replay/viewer.h
+viewer: ## copy examples/replay/viewer.html into src/replay/viewer.h
 	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html src/replay/viewer.h > build/viewer.h && cp build/viewer.h src/replay/viewer.h
 
 browser: build/write_replays ## play replays in a headless chromium: frames, pixels, no errors
 	@sh tests/browser.sh
 
-recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use what they add
+recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use the result
 	@CC="$(CC)" sh tests/recipes.sh
 
 snippets: build/dem.o ## compile the programs in dem.h's manual and in the pages; run those of docs/how_to*.md and compare what they print
@@ -253,11 +253,11 @@ build/readme_program: README.md tests/snippets.awk $(DEM_O)
 	@rm -rf build/readme && mkdir -p build/readme && awk -v out=build/readme -f tests/snippets.awk README.md
 	sed '/DEM_IMPLEMENTATION/d' build/readme/README_md_1_program.c > build/readme/heap.c
 	$(COMPILE) -o $@ build/readme/heap.c $(DEM_O) $(LINK)
-# benches say how they were built; bench.c also in single precision, and as plain as can be
+# benches print how they were built; bench.c is also built in single precision and with plain -O2
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
 build/bench_single: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
 	$(COMPILE) -DDEM_REAL=float -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP)) -DDEM_REAL=float"' -o $@ $< $(LINK)
-# what single precision, and the same bits for any number of threads, cost: see bench/accuracy.c
+# the cost of single precision, and of equal bits for any number of threads: see bench/accuracy.c
 build/accuracy_single: OTHER = -DDEM_REAL=float -DBENCH_VARIANT='"single"'
 build/accuracy_one_domain: OTHER = -DDEM_DOMAIN_BODIES=100000000 -DBENCH_VARIANT='"one_domain"'
 $(ACCURACY_ALSO): bench/accuracy.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
