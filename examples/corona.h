@@ -1,15 +1,15 @@
 /* corona.h - grains in a corona electrostatic separator: field, charges, forces. MIT licence. Include it after dem.h.
 
-   A rotor at 0 V turns about z through the origin; an electrode at `voltage` lies parallel to it; ions from a corona
-   rain on part of the rotor. Grains carry two charges, numbers of their own (desc.body_reals = CORONA_REALS):
+   A rotor at 0 V rotates about z through the origin. An electrode at `voltage` is parallel to it. Ions from a corona hit a
+   part of the rotor. Each grain carries three numbers (desc.body_reals = CORONA_REALS):
 
-       induced   C, of what conducts: comes and goes through the rotor, while they touch
-       corona    C, of what does not: ions that have stuck to it; leaks into rotor and brush
-       landing   m, x where the grain went down through the plane y = bins; 0: not yet
+       induced   C, charge of conductors; flows to and from the rotor while they touch it
+       corona    C, charge of insulators: ions that stick to them; leaks into rotor and brush
+       landing   m, x at which the grain passed the plane y = bins on its way down; 0: not yet
 
-   and are pulled and dragged by a body force. Both are functions of the grain alone, so that threads and restarts do
-   not matter; the third part, what near grains do to each other, needs corona_near_update between two steps: it notes who is
-   near whom, and how they move. The force is that at the places where they then are, of second order in the step.
+   A body force adds electric forces and drag. Charges and body force depend on the grain alone, so threads and restarts do
+   not matter. Forces between near grains need corona_near_update between two steps: it lists near pairs with their
+   positions and velocities. The force is that at the positions of each step, of second order in the step.
 
        corona c = corona_make();
        c.field = corona_field_make(0.160, 0.019, 0.267, CORONA_PI/6, 30e3);
@@ -21,8 +21,8 @@
    simulation of granular flows in electrostatic separation processes (2014), whose equations are cited; [FEL66] Felici,
    Rev. Gen. Elec. 75 (1966) 1145; [PAU32] Pauthenier & Moreau-Hanot, J. Phys. Radium 3 (1932) 590; [PEE29] Peek,
    Dielectric Phenomena in High Voltage Engineering (1929); [SN33] Schiller & Naumann, Z. VDI 77 (1933) 318.
-   Where we differ from [CRI14]: see each function. Limits: the field is that of two cylinders without end and
-   without the grains' own charge and that of the ions between them (`strength` and the window stand for the latter). */
+   Each function states how we differ from [CRI14]. Limits: the field is that of two infinite cylinders. It contains neither
+   the charge of the grains nor that of the ions between the cylinders, which `strength` and the window represent. */
 #ifndef CORONA_H
 #define CORONA_H
 #include <math.h>
@@ -37,7 +37,8 @@ enum { CORONA_KINDS = 65, CORONA_SHAPES = 33 };
 
 /* ---- field ---- */
 
-/* Two parallel cylinders, in closed form: a pair of line charges at +-c from where the two have equal power. */
+/* The field of two parallel cylinders in closed form: a pair of line charges at a distance c from the radical plane, on
+   either side of it. */
 typedef struct corona_field {
     double rotor, electrode, distance;       /* m: radii, between the axes */
     double angle, voltage;                   /* rad, of the electrode above +x; V */
@@ -62,13 +63,14 @@ static inline corona_field corona_field_make(double rotor, double electrode, dou
     f.sine = sin(angle);
     return f;
 }
-/* V at a place, which is to be outside both cylinders. */
+/* Returns the potential (V) at a point, which must be outside both cylinders. */
 static inline double corona_potential(const corona_field *f, double x, double y) {
     const double X = x*f->cosine + y*f->sine - f->h1, Y = y*f->cosine - x*f->sine;
     const double a2 = (X + f->c)*(X + f->c) + Y*Y, b2 = (X - f->c)*(X - f->c) + Y*Y;
     return f->scale*(log(a2/b2)/2 - f->offset);
 }
-/* V/m: minus its gradient, turned back into x and y, which the program of [CRI14] forgets; 0 inside the rotor. */
+/* Returns the field (V/m), minus the gradient of the potential, rotated back into x and y (which the program of [CRI14]
+   omits); 0 inside the rotor. */
 static inline void corona_field_at(const corona_field *f, double x, double y, double E[2]) {
     const double X = x*f->cosine + y*f->sine - f->h1, Y = y*f->cosine - x*f->sine;
     const double a2 = (X + f->c)*(X + f->c) + Y*Y, b2 = (X - f->c)*(X - f->c) + Y*Y;
@@ -77,12 +79,12 @@ static inline void corona_field_at(const corona_field *f, double x, double y, do
     E[0] = inside ? 0 : along*f->cosine - across*f->sine;
     E[1] = inside ? 0 : along*f->sine + across*f->cosine;
 }
-/* V/m at which the surface of a wire of this radius (m) begins to glow [PEE29]; air: density over that of 1 atm and
-   25 C; roughness 0.6 to 0.9 (1: polished). */
+/* Returns the field (V/m) at the surface of a wire of this radius (m) at which the corona begins [PEE29]. air: its density
+   over that at 1 atm and 25 C; roughness 0.6 to 0.9 (1: polished). */
 static inline double corona_peek(double radius, double air, double roughness) {
     return 3.0e6*air*roughness*(1 + 0.030/sqrt(air*radius));
 }
-/* V between a rotor and a wire (radii, distance of axes: m) from which on the wire glows. */
+/* Returns the voltage (V) between a rotor and a wire (radii, distance of axes: m) at which the corona begins. */
 static inline double corona_onset(double rotor, double wire, double distance, double air, double roughness) {
     const corona_field f = corona_field_make(rotor, wire, distance, 0, 1);
     double E[2];
@@ -92,18 +94,18 @@ static inline double corona_onset(double rotor, double wire, double distance, do
 
 /* ---- charges; radius: m, of the sphere of equal volume; E: V/m ---- */
 
-/* C on a conducting sphere that touches a plane electrode [FEL66], eq 11. Its epsilon_r is the air's, 1. */
+/* Returns the charge (C) of a conducting sphere that touches a plane electrode [FEL66], eq 11, with the epsilon_r of air, 1. */
 static inline double corona_induced(double radius, double E) {
     return 2*CORONA_PI*CORONA_PI*CORONA_PI/3*CORONA_EPS0*radius*radius*E;
 }
-/* C that ions bring to an insulating sphere at most [PAU32], eq 13. */
+/* Returns the largest charge (C) that ions give to an insulating sphere [PAU32], eq 13. */
 static inline double corona_saturation(double radius, double E, double permittivity) {
     return 12*CORONA_PI*CORONA_EPS0*radius*radius*E*permittivity/(permittivity + 2);
 }
-/* s, half way there: of ions that bring `current` A/m2. */
+/* Returns the time (s) to half of that charge in a current of ions of `current` (A/m2). */
 static inline double corona_time(double E, double current) { return 4*CORONA_EPS0*fabs(E)/current; }
-/* C after dt (s) of ions. [PAU32]'s Qs t/(t + tau) solves dQ/dt = Qs/tau (1 - Q/Qs)^2, the exact step of which this is,
-   from any charge; above saturation nothing more arrives. tau 0: at once, as [CRI14] has it. */
+/* Returns the charge (C) after dt (s) of ions. Qs t/(t + tau) of [PAU32] solves dQ/dt = Qs/tau (1 - Q/Qs)^2; this is its
+   exact step from any charge. Above saturation no more ions arrive. tau 0: at once, as in [CRI14]. */
 static inline double corona_charged(double charge, double saturation, double tau, double dt) {
     const double left = saturation > 0 || saturation < 0 ? 1 - charge/saturation : 0;
     if (!(left > 0)) return charge;
@@ -112,13 +114,13 @@ static inline double corona_charged(double charge, double saturation, double tau
 
 /* ---- forces ---- */
 
-/* N, towards a conducting plane at this distance (m), eq 12 with d = r. */
+/* Returns the attraction (N) to a conducting plane at this distance (m), eq 12 with d = r. */
 static inline double corona_image(double charge, double distance) {
     return charge*charge/(16*CORONA_PI*CORONA_EPS0*distance*distance);
 }
 typedef enum corona_drag { CORONA_DRAG_NONE, CORONA_DRAG_STOKES, CORONA_DRAG_SCHILLER } corona_drag;
-/* N s/m: drag over the speed (m/s) at which the air passes. [CRI14] has Stokes's; at 0.5 mm and 1 m/s Re is 67, and
-   Schiller and Naumann's (to Re = 1000, 0.44 above) is 3.7 times that. */
+/* Returns drag over relative speed (N s/m) at this relative speed (m/s). [CRI14] uses Stokes's law. At 0.5 mm and 1 m/s Re is
+   67, and the law of Schiller and Naumann (up to Re = 1000; above, a coefficient of 0.44) gives 3.7 times that. */
 static inline double corona_drag_over_speed(corona_drag law, double radius, double speed, double density,
                                             double viscosity) {
     const double stokes = 6*CORONA_PI*viscosity*radius, re = 2*radius*speed*density/viscosity;
@@ -130,36 +132,36 @@ static inline double corona_drag_over_speed(corona_drag law, double radius, doub
 /* ---- grains ---- */
 
 typedef struct corona_kind {                 /* of each material */
-    double metal;                            /* 0 .. 1, share that conducts: what is between is [CRI14]'s weighted
-                                                average */
+    double metal;                            /* 0 to 1, fraction that conducts; between 0 and 1: the weighted
+                                                average of [CRI14] */
     double permittivity;                     /* of the rest, relative */
     double density;                          /* kg/m3 */
 } corona_kind;
-/* Where a body that is no sphere can touch: spheres (of radius 0: corners) about the centre of mass, in the frame the
-   shape was given in; `radius` as in dem_shape_info. */
+/* The points at which a body that is not a sphere can touch: spheres (corners if their radius is 0) about the centre of
+   mass, in the frame in which the shape was given; `radius` as in dem_shape_info. */
 typedef struct corona_shape {
     int count;
     const dem_real *points, *radii;
     dem_real radius;
     dem_vec3 centre;
 } corona_shape;
-/* Round the rotor, clockwise from its top: rad; as far as `depth` m above it. */
+/* A window: angles (rad) clockwise from the top of the rotor, up to `depth` (m) above it. */
 typedef struct corona_window { double begin, end, depth; } corona_window;
 
 typedef struct corona {
     corona_field field;
-    double speed;                            /* rad/s, the rotor, clockwise; carries air (swirl) */
+    double speed;                            /* rad/s, of the rotor, clockwise; it carries air along (swirl) */
     corona_window ions, brush;
     double strength;                         /* V/m at the grain, with the ions' own field; 0: that of `field` */
     double current;                          /* A/m2 of ions; 0: they charge at once */
     double onset;                            /* V, no ions below */
-    double contact_time, leak_time;          /* s: conductors, insulators that touch the rotor; 0: at once, never */
-    double brush_time;                       /* s: in the brush charges leak and grains are stopped; 0: no brush */
+    double contact_time, leak_time;          /* s: time constants of conductors and insulators on the rotor; 0: at once; never */
+    double brush_time;                       /* s: time constant in which the brush discharges and stops grains; 0: no brush */
     double scatter;                          /* charge of each grain: 1 - scatter times 0 .. 1, by its id */
-    double touch;                            /* m, gap to the rotor up to which a grain touches it; impulses leave
-                                                (v dt)^2/(2 R) on a rotor of radius R */
+    double touch;                            /* m, largest gap that counts as contact with the rotor; impulses leave
+                                                gaps of (v dt)^2/(2 R) on a rotor of radius R */
     double at_contact;                       /* share of Q E that lifts a conductor off the rotor, eq 10: 0.832 */
-    int image, pull;                         /* 1: image force; Q E on ions' charge, which [CRI14] leaves out */
+    int image, pull;                         /* 1: image force; 1: force Q E on the charge of ions, not in [CRI14] */
     corona_drag drag;
     double air_density, air_viscosity;       /* kg/m3, Pa s */
     double wind[2], swirl;                   /* m/s; share of the rotor's surface speed, falls with 1/r */
@@ -171,7 +173,7 @@ typedef struct corona {
     struct corona_place *order;              /* charged grains along x */
     int *at, *partner;                       /* by slot: 1 + its place in order, 0: none; in order, of all in turn */
     uint32_t near_count, order_count, partner_count;
-    double near_time;                        /* s, at which they were looked at */
+    double near_time;                        /* s, at which the pairs were listed */
 } corona;
 
 /* A conductor and a plane, in air; nothing else is switched on. */
@@ -188,16 +190,16 @@ static inline corona corona_make(void) {
     return c;
 }
 
-/* 0 <= number < 1, of a grain. */
+/* Returns a pseudorandom number of a grain, 0 <= number < 1. */
 static inline double corona_chance(dem_body id) {
     uint64_t z = ((uint64_t)id.slot << 32 | id.generation) + UINT64_C(0x9E3779B97F4A7C15);
     z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
     z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
     return (double)((z ^ (z >> 31)) >> 11)/9007199254740992.0;
 }
-/* m, from the rotor to the nearest part of a grain; where even its bounding sphere is farther than its own radius away,
-   to that. Corners stand for faces, which between two at distance l come nearer to a rotor of radius R by l^2/(8 R):
-   that of the widest face counts as nearer. */
+/* Returns the gap (m) between the rotor and a grain; if the gap to its bounding sphere is larger than the radius of that
+   sphere, this gap. The corners represent the faces. Between two corners at a distance l, a face is nearer to a rotor of
+   radius R by l^2/(8 R); the value of the widest face is subtracted. */
 static inline double corona_gap(const corona *c, const dem_body_state *body) {
     const double x = (double)body->position.x, y = (double)body->position.y;
     const double bound = sqrt(x*x + y*y) - c->field.rotor - (double)body->radius;
@@ -216,7 +218,7 @@ static inline double corona_gap(const corona *c, const dem_body_state *body) {
     }
     return s->radii ? least : least - (double)(body->radius*body->radius)/(2*c->field.rotor);
 }
-/* What forces and charges ask of a grain. */
+/* The quantities of a grain that forces and charges need. */
 typedef struct corona_grain {
     const corona_kind *kind;
     double radius, height, angle;            /* m: of equal volume; of the centre above the rotor; rad from the top */
@@ -246,17 +248,17 @@ typedef struct corona_place {
     uint32_t slot;
     int first, last;                         /* of its partners */
 } corona_place;
-/* Adds to `force` what a charge product (C2) at this distance vector (m) pushes with, N; nearer than `least` it grows no
-   more. */
+/* Adds to `force` the Coulomb force (N) of a product of charges (C2) at this distance vector (m). Below the distance `least`
+   the force does not grow. */
 static inline void corona_coulomb(double product, const double *way, double least, double *force) {
     const double d2 = way[0]*way[0] + way[1]*way[1] + way[2]*way[2], d = sqrt(d2) > least ? sqrt(d2) : least;
     const double f = product/(4*CORONA_PI*CORONA_EPS0*d*d*d);
     int k;
     for (k = 0; k < 3; k++) force[k] += f*way[k];
 }
-/* Adds what the grain's partners and their images do to it, N. An image is beyond the rotor's surface as far as its grain
-   is before it, of opposite charge, so that near the rotor the force falls with 1/d^4. Partners are where velocity and
-   force have taken them since corona_near_update: one step later just where velocity Verlet puts them. */
+/* Adds the forces (N) of the grain's partners and of their images. An image has the opposite charge and is as far behind the
+   rotor's surface as its grain is in front of it; near the rotor the force therefore falls with 1/d^4. Partners are moved by
+   their velocity and force since corona_near_update: after one step exactly to the positions of velocity Verlet. */
 static inline void corona_near_force(const corona *c, const dem_body_state *body, dem_body id, double time, double *force) {
     const int me = id.slot <= c->near_count ? c->at[id.slot - 1] - 1 : -1;
     const double t = time - c->near_time, R2 = c->field.rotor*c->field.rotor;
@@ -276,9 +278,9 @@ static inline void corona_near_force(const corona *c, const dem_body_state *body
         corona_coulomb(-charge, image, least, force);
     }
 }
-/* Force and charges of one grain: a dem_body_force_fn; user is the corona.
-   A conductor is lifted by 0.832 Q E while it touches and pulled by Q E in flight (eq 10 keeps the factor); ions'
-   charge is held by its image and by Q E, which [CRI14] leaves out though it is as large. */
+/* Computes the force on one grain: a dem_body_force_fn; user is the corona.
+   0.832 Q E lifts a conductor while it touches, and Q E attracts it in flight (eq 10 keeps the factor there). Its image and
+   Q E hold the charge of ions on the rotor; [CRI14] omits this Q E, although it is as large as the image force. */
 static inline void corona_force(const dem_body_state *body, dem_body id, double time, dem_vec3 *force, dem_vec3 *torque,
                                 void *user) {
     const corona *c = (const corona *)user;
@@ -296,7 +298,7 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
     F[0] = charge*g.E[0] - held*g.out[0] + drag*wx;
     F[1] = charge*g.E[1] - held*g.out[1] + drag*wy;
     F[2] = drag*wz;
-    if (c->brush_time > 0 && corona_inside(&c->brush, &g)) {    /* bristles stop what they reach */
+    if (c->brush_time > 0 && corona_inside(&c->brush, &g)) {    /* bristles stop the grains that they reach */
         const double stop = (double)body->mass/c->brush_time;
         F[0] -= stop*(double)body->velocity.x;
         F[1] -= stop*(double)body->velocity.y;
@@ -306,13 +308,13 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
     *force = dem_vec3_make((dem_real)F[0], (dem_real)F[1], (dem_real)F[2]);
 }
 
-/* What a charge becomes that relaxes to `to` within `time` s. */
+/* Returns a charge that relaxes to `to` with the time constant `time` (s). */
 static inline double corona_relaxed(double charge, double to, double time, double dt) {
     return time > 0 ? to + (charge - to)*exp(-dt/time) : to;
 }
-/* Charges of one grain over one step: a dem_reals_fn; user is the corona. [CRI14] charges plastic when it comes before
-   the rotor and metal wherever it is in front of it; here metal is charged while it touches and keeps what it has in
-   flight, plastic is charged in the window and leaks while it touches. */
+/* Updates the charges of one grain over a step: a dem_reals_fn; user is the corona. [CRI14] charges plastic and metal as soon
+   as they are in front of the rotor. Here metal is charged while it touches the rotor and keeps its charge in flight; plastic
+   is charged in the window and loses charge while it touches. */
 static inline void corona_reals(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id,
                                 double time, dem_real dt, void *user) {
     const corona *c = (const corona *)user;
@@ -351,7 +353,7 @@ static inline int corona_place_before(const void *a, const void *b) {
     if (p->x[0] < q->x[0] || p->x[0] > q->x[0]) return p->x[0] < q->x[0] ? -1 : 1;
     return p->slot < q->slot ? -1 : p->slot > q->slot;
 }
-/* Room for `count` items at *array, of which there is room for *room. 0: memory ran out. */
+/* Enlarges *array, which has room for *room items, to `count` items. Returns 0 if memory runs out. */
 static inline int corona_grow(void **array, uint32_t *room, uint32_t count, size_t size) {
     void *more = *array;
     if (count <= *room) return 1;
@@ -361,8 +363,9 @@ static inline int corona_grow(void **array, uint32_t *room, uint32_t count, size
     *room = 2*count;
     return 1;
 }
-/* Notes which charged grains are nearer than `range` to each other, where they are and how they move: call it before each
-   step, or as often as grains keep their speeds, from one thread. Answers 0 when memory runs out. Free with corona_end. */
+/* Lists the pairs of charged grains that are nearer than `range`, with positions and velocities. Call it from one thread
+   before each step, or less often as long as grains hardly change their velocities. Returns 0 if memory runs out. corona_end
+   frees the memory. */
 static inline int corona_near_update(corona *c, const dem_world *world) {
     const dem_bodies b = dem_bodies_get(world);
     const dem_world_desc desc = dem_world_desc_get(world);

@@ -1,15 +1,16 @@
 /* drum.h - a drum lined with grains: the wall of particles of the tumbling mill in [MIL], for
    dem_wall_grains_add. MIT licence. Include it after dem.h.
 
-       count = drum_grains(R, L, r, 0, 0);                   how many
+       count = drum_grains(R, L, r, 0, 0);                   their number
        at = (dem_real *)malloc(3*(size_t)count*sizeof *at);
-       drum_grains(R, L, r, 0, at);                          where
+       drum_grains(R, L, r, 0, at);                          their centres
        wall = dem_wall_grains_add(world, material, count, at, r, 1);
 
    The shell is [MIL] Algorithm 5.2: circles of touching spheres at R - r, in layers r sqrt(3) apart
-   along z, every other one turned by half a place. The ends are Algorithm 5.3: hexagonal sheets
-   over both of them, spheres that show at least in part. Printed: layers from
-   z = -L/2 + r(1 + z sqrt 3) with z itself stepping by r sqrt 3; we step the layer's number.
+   along z. Every other layer is rotated by half the distance of its spheres. The ends are Algorithm
+   5.3: hexagonal sheets of the spheres of which at least a part is inside the drum's radius. [MIL]
+   prints layers at z = -L/2 + r(1 + z sqrt 3), where z itself grows by r sqrt 3; here the number of
+   the layer takes the place of that z.
    Tests: tests/api/test_refusals.c. Used by examples/mill.c. */
 #ifndef DRUM_H
 #define DRUM_H
@@ -17,7 +18,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Sheet over the end at z; counts on from `count`. */
+/* Adds the sheet over the end at z after the first `count` spheres; returns the new number. */
 static inline size_t drum_end(double R, double r, double z, size_t count, dem_real *out) {
     const double root3 = sqrt(3.0);
     const int rows = (int)(R/(r*root3)) + 2, columns = (int)(R/(2*r)) + 2;
@@ -35,10 +36,10 @@ static inline size_t drum_end(double R, double r, double z, size_t count, dem_re
         }
     return count;
 }
-/* Centres (m, count x 3, written to out, which may be null) of the spheres of this radius (m, > 0)
-   that line a drum of drum_radius (m, more than 2 radii) about z, from z = -length/2 to length/2
-   (m, > 0). ends: 1: with sheets outside both ends, 0: the shell alone. Returns count; 0 if the
-   sizes are out of their ranges or not finite, or if it would take more than 5e8 spheres. */
+/* Returns the number of spheres of this radius (m, > 0) that line a drum of drum_radius (m, more than
+   2 radii) about z, from z = -length/2 to length/2 (m, > 0), and writes their centres (m, count x 3)
+   to out, if it is not null. ends: 1 adds sheets outside both ends, 0 gives the shell only. Returns 0
+   if a size is out of its range or not finite, or if more than 5e8 spheres were needed. */
 static inline int drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends,
                               dem_real *out) {
     const double R = (double)drum_radius, L = (double)length, r = (double)radius;

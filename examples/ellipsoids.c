@@ -1,22 +1,22 @@
 /* ellipsoids.c - a gas of ellipsoids that cools as they collide.
 
-   The gas is that of [RUB15], a granular gas of ellipsoids on a GPU, section 4: frictionless prolate
-   ellipsoids of elongation xi = a/b in a periodic cube of which they take up .058, 4096 of them in
-   2 m, 2000 kg/m3, k = 1e8 N/m, restitution .90, .95, .98, time step t_c/50, cubic start, Gaussian
-   velocities and spins, a run-in without damping. What differs, and why:
-     - axes follow from xi and the volume fraction; Table 1 gives them in sixteenths of a metre (as
-       metres they would not fit into the cube), and its row xi = 1.25 repeats the a of the row
-       above, .527 for .557;
-     - initial speeds are not told there: here a typical collision (root mean square of the speed of
-       approach) overlaps by --overlap of the radius of the sphere of equal volume, .003; it lasts
-       .003 of the time between two, so that few collisions overlap each other;
-     - restitution is the one set, whatever the bodies' inertia at the contact: the damping of [RUB15]
-       takes the reduced mass m/2 where the mass that counts is 1/(n.K n), less by 1 + D for bodies
-       that may turn, so that its ellipsoids lose more than e_n says. --damping reduced is its law and
-       its overlap;
-     - by default 512 ellipsoids, at the same volume fraction: --count 4096 is the whole gas.
-   Hard bodies have no time of their own, so --hold doubles all energies whenever half is lost, and
-   counts time and temperature as if it had not: a step is as good in a cold gas as in a hot one.
+   The gas is that of [RUB15] section 4, a granular gas of ellipsoids on a GPU: 4096 frictionless
+   prolate ellipsoids of elongation xi = a/b fill 0.058 of a periodic cube of 2 m. 2000 kg/m3,
+   k = 1e8 N/m, restitution 0.90, 0.95, 0.98, time step t_c/50 (t_c: duration of a contact), a cubic
+   lattice with Gaussian velocities and spins at the start, a run-in without damping. Differences:
+     - Axes follow from xi and the volume fraction. Table 1 gives them in sixteenths of a metre (as
+       metres they would not fit into the cube), and its row xi = 1.25 repeats the a of the row above,
+       0.527 instead of 0.557.
+     - [RUB15] does not give the initial speeds. Here a typical collision (root mean square of the
+       speed of approach) overlaps by --overlap, 0.003 of the radius of the sphere of equal volume. It
+       lasts 0.003 of the time between two collisions, so few collisions overlap in time.
+     - The restitution is the given one for any inertia of the bodies at the contact. The damping of
+       [RUB15] uses the reduced mass m/2. The mass that counts is 1/(n.K n), smaller by 1 + D for
+       bodies that can rotate, so the ellipsoids of [RUB15] lose more energy than e_n states.
+       --damping reduced uses that damping and that overlap.
+     - By default there are 512 ellipsoids at the same volume fraction; --count 4096 is the whole gas.
+   Hard bodies have no time scale. Therefore --hold doubles all energies whenever half is lost, and
+   scales time and temperature back: a step is as accurate in a cold gas as in a hot one.
 
    build:  cc -O3 -march=native -std=c99 examples/ellipsoids.c dem.c -o build/ellipsoids -lm
    run:    build/ellipsoids, build/ellipsoids --quick, --xi 2 --restitution 0.9 --count 4096,
@@ -26,11 +26,11 @@
    h = sqrt(n.Mn), M = R diag(b2, b2, a2) R^T; the contact point is at Mn/h; the curvature of h is
    A = M/h - (Mn)(Mn)^T/h^3 across n; the density of contacts is det(A1 + A2). With x = n.axis, in
    the frame of axis and n: A = diag(a2 b2/h^3, b2/h), D = (m/2I)(g1^2/h1^2 + g2^2/h2^2) with
-   g = (a2 - b2) x sqrt(1 - x^2): 1 + D is by how much turning eases a push. The mean over the angle
-   between the two frames is exact: det -> p1 q1 + p2 q2 + (p1 + q1)(p2 + q2)/2.
+   g = (a2 - b2) x sqrt(1 - x^2). Rotation reduces the effective mass of a collision by 1 + D. The mean
+   over the angle between the two frames is exact: det -> p1 q1 + p2 q2 + (p1 + q1)(p2 + q2)/2.
      S_c = 4 pi <det>, area of the surface of centres at contact (spheres: 4 pi d^2)
-     <D>_c, <sqrt(1 + D)>_c: means over contacts. What [RUB15] (28) calls <D>_c is the second: only
-     so is its rate that of spheres at xi = 1
+     <D>_c, <sqrt(1 + D)>_c: means over contacts. [RUB15] (28) calls the second one <D>_c: only then
+     its rate is that of spheres at xi = 1
      a body's collisions: n g S_c <sqrt(1 + D theta)>_c sqrt(T_tr/(pi m)) a second, theta =
      T_rot/T_tr; each changes the energy of translation by
      -2(1+e) T_tr/(1+D) + (1+e)^2 (T_tr + D T_rot)/(1+D)^2, that of rotation likewise; both taken
@@ -40,16 +40,16 @@
      R once its xi before the logarithm is squared
      g: [SON90], whose fourth virial coefficient is set to 18, so that spheres have Carnahan and
      Starling's (1 - phi/2)/(1 - phi)^3
-   Gaussian velocities and spins that know nothing of each other are assumed; good to about 1 %.
+   The theory assumes Gaussian velocities and spins that are not correlated; its error is about 1 %.
 
    Results of a case, such as xi2.00.e0.90.T_ratio:
-     T_ratio, T_ratio_error   T_tr/T_rot once it no longer drifts; standard error from 8
-                              blocks, wider where they are shorter than its memory
+     T_ratio, T_ratio_error   T_tr/T_rot when it no longer drifts; standard error from 8
+                              blocks, increased if these are shorter than its correlation
      zeta_star, _error        cooling rate over the same time
      T_ratio_theory, zeta_star_theory
      haff_rms                 root mean square of ln(T_tot/T_haff), T_haff = T(0)/(1 + tau)^2, tau =
                               alpha Gamma_0 t, alpha = (1 - e^2)/10 (spheres: 6), Gamma_0 of (28)
-     mean_field_rms           the same of ln(T_tr) against the theory's own course from the start
+     mean_field_rms           the same for ln(T_tr) against the theory integrated from the start
      cooled_to, tau_end       T_tot at the end over the first; tau there
      kurtosis                 <c^4>/3 - 1 of one component, c over its root mean square: 0: Gaussian
      overlap_max              of the run, over the radius dem.h takes
@@ -170,7 +170,8 @@ static void theory_make(double xi, theory *t) {
     t->alpha = radius*surface/(4*PI*xi);
 }
 
-/* Of the damping of [RUB15]: that of e for the reduced mass, at a contact of a mass less by 1 + D. */
+/* Returns the restitution under the damping of [RUB15], which is that of e for the reduced mass, at a contact whose mass
+   is smaller by 1 + D. */
 static double restitution_at(double e, double d, int reduced_damping) {
     const double l = log(e), beta = -l/sqrt(PI*PI + l*l)*sqrt(1 + d);
     if (!reduced_damping) return e;
@@ -195,7 +196,7 @@ static void theory_rates(const theory *t, double theta, double e, int reduced_da
     *rotation = -rot/sum/2/theta;
 }
 
-/* theta = T_rot/T_tr that stays, and the rate at which both then fall. Spheres: 1. */
+/* Finds the stationary theta = T_rot/T_tr and the rate at which both then fall. Spheres: 1. */
 static void theory_state(const theory *t, double e, int reduced_damping, double *theta, double *zeta) {
     double lo = 0.01, hi = 1000, rotation;
     int i;
@@ -231,7 +232,7 @@ typedef struct gas {
     theory t;
     dem_world *world;
     dem_material material;
-    double scale, time, s;                    /* speeds are so many times too high; s; 1 */
+    double scale, time, s;                    /* factor by which speeds are too high; s; 1 */
     uint64_t random, steps;
     int sample_count, sample_room;
     sample *samples;
@@ -258,7 +259,7 @@ static void gas_destroy(gas *g) {
     g->samples = 0;
 }
 
-/* The damping of [RUB15]: gamma = sqrt(4 k m12/(1 + (pi/ln e)^2)), whatever the inertia. */
+/* The damping of [RUB15]: gamma = sqrt(4 k m12/(1 + (pi/ln e)^2)), for any inertia. */
 static double seed_gamma;                     /* N s/m; 0 while running in */
 static void seed_law(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
     (void)memory;
@@ -312,9 +313,9 @@ static int gas_create(gas *g, double xi, double e, int count) {
     return g->material.id ? 0 : refused(g->world, DEM_ERROR_ARGUMENT);
 }
 
-/* A simple cubic lattice, or anywhere (for speeds: collisions from the first step on; or where a
-   lattice has no room for all orientations); any orientation; velocities, and spins across the
-   axis, of one temperature (J). */
+/* Places the bodies on a simple cubic lattice or at random. They are at random for --speeds, so that
+   collisions begin at the first step, and where a lattice has no room for all orientations.
+   Orientations are random; velocities, and spins across the axis, have one temperature (J). */
 static int gas_fill(gas *g, double temperature, int anywhere) {
     const size_t n = (size_t)g->count;
     const double pitch = g->cube/g->side, speed = sqrt(temperature/g->mass);
@@ -351,7 +352,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
         energy += g->mass*v[i]*v[i]/2;
         turning += g->inertia*w[i]*w[i]/2;
     }
-    for (i = 0; i < 3*g->count; i++) { /* exactly the temperature asked for */
+    for (i = 0; i < 3*g->count; i++) { /* sets exactly the given temperature */
         v[i] *= sqrt(1.5*(g->count - 1)*temperature/energy);
         w[i] *= sqrt(g->count*temperature/turning);
     }
@@ -388,7 +389,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
     return bad;
 }
 
-/* Temperatures (J) of the gas as it would be without `scale`. */
+/* Returns the temperatures (J) of the gas without the factor `scale`. */
 static sample gas_look(const gas *g) {
     const dem_totals totals = dem_totals_get(g->world);
     sample now;
@@ -473,8 +474,8 @@ static int gas_run(gas *g, const char *what, double span, int window) {
     return 0;
 }
 
-/* The theory's course from T_rot = T_tr on, in s: how long until theta is within 1 % of where it
-   goes. */
+/* Returns the time, in s, after which theta is within 1 % of its stationary value, from T_rot = T_tr
+   on, by the theory. */
 static double settling(const gas *g, int reduced_damping, double theta_end) {
     double theta = 1, s = 0, translation, rotation;
     const double step = 0.05;
@@ -489,7 +490,7 @@ static double settling(const gas *g, int reduced_damping, double theta_end) {
     return s;
 }
 
-/* How long T_rot/T_tr takes to forget that it strayed, in s: near xi = 1 several collisions a body. */
+/* Returns the correlation time of T_rot/T_tr, in s: near xi = 1 several collisions per body. */
 static double relaxation(const theory *t, double theta, double e, int reduced_damping) {
     const double step = 0.01;
     double tr[2], rot[2];
@@ -505,9 +506,10 @@ static void tell(const gas *g, const char *what, double value, const char *unit)
     study_result(name, value, unit);
 }
 
-/* Ratio and cooling rate over the samples from `from` on, in blocks of equal s. Blocks no longer than
-   T_rot/T_tr remembers, r, stray together: neighbours are correlated by c = exp(-block/r), and the
-   error of the mean of many is sqrt((1 + c)/(1 - c)) times what independent ones have. */
+/* Computes ratio and cooling rate over the samples from `from` on, in blocks of equal s. Blocks that
+   are not longer than the correlation time r of T_rot/T_tr are correlated: neighbours by
+   c = exp(-block/r). The error of the mean is then sqrt((1 + c)/(1 - c)) times that of independent
+   blocks. */
 static void gas_measure(gas *g, int from, int reduced_damping) {
     double ratio[BLOCKS], zeta[BLOCKS], mean[2] = {0, 0}, spread[2] = {0, 0};
     const double s0 = g->samples[from].s, s1 = g->samples[g->sample_count - 1].s;
@@ -549,7 +551,7 @@ static void gas_measure(gas *g, int from, int reduced_damping) {
     tell(g, "zeta_star_theory", g->zeta_theory, "");
 }
 
-/* Haff's law as [RUB15] has it, and the theory's own course, against the samples. */
+/* Compares the samples with Haff's law as in [RUB15], and with the integrated theory. */
 static double total_of(const gas *g, const sample *a) { /* (26); spheres: T_tr */
     return g->spheres ? a->tr : 0.6*a->tr + 0.4*a->rot;
 }
@@ -641,11 +643,12 @@ static int gas_case(gas *g, double xi, double e) {
     return 0;
 }
 
-/* ---- the theory without its assumptions on velocities: collisions drawn at random ---- */
+/* ---- the theory without its assumptions on velocities: random collisions ---- */
 
 /* A body is a velocity, a spin and the axis across it; b = m = 1. Pairs and normals are drawn at
-   random and accepted in proportion to det(A1 + A2) times the speed of approach; between two
-   collisions a body turns about its spin by any angle. Dilute, homogeneous: no places. */
+   random and accepted in proportion to det(A1 + A2) times the speed of approach. Between two
+   collisions a body rotates about its spin by a random angle. Positions are not needed, because the
+   gas is dilute and homogeneous. */
 typedef struct draw { double v[3], w[3], u[3]; } draw;
 
 static double dot3(const double *a, const double *b) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
@@ -660,13 +663,13 @@ static void unit3(double *a) {
     for (k = 0; k < 3; k++) a[k] /= l;
 }
 
-/* What one body brings to a meeting at n (outward): arm x n, p, q, and its axis across n. */
+/* The quantities of one body in a collision with outward normal n: arm x n, p, q, and its axis across n. */
 typedef struct side { double moment_arm[3], p, q, e[3], speed; } side;
 static void side_of(gas *g, draw *d, const double *n, double sign, side *o) {
     const double more = g->xi*g->xi - 1, spin = sqrt(dot3(d->w, d->w));
     double turned[3], x, h, l = 0;
     int k;
-    if (spin > 0) { /* the axis to anywhere on its circle */
+    if (spin > 0) { /* moves the axis to a random point of its circle */
         const double angle = 2*PI*uniform(g), c = cos(angle), s = sin(angle)/spin;
         cross3(d->w, d->u, turned);
         for (k = 0; k < 3; k++) d->u[k] = c*d->u[k] + s*turned[k];
@@ -766,7 +769,7 @@ static void direct_case(double xi, double e) {
     tell(&g, "zeta_star_theory", zeta, "");
 }
 
-/* ---- what is told ---- */
+/* ---- results ---- */
 
 static void theory_tell(void) {
     static const double more[] = {0.5, 1, 1.15, 1.25, 1.5, 1.75, 2, 2.25, 2.5, 2.82, 3, 5};
@@ -908,7 +911,7 @@ static void velocities_draw(const gas *g) {
     study_figure_write(&f, "fig11_velocities.svg");
 }
 
-/* Elongations and restitutions asked for. */
+/* The elongations and restitutions that the options select. */
 typedef struct choice { const double *xi, *e; int rows, pairs; } choice;
 static choice chosen(void) {
     static const double few[4] = {1, 1.5, 2, 3};
@@ -961,7 +964,8 @@ static void cases_run(void) {
     for (i = 0; i < count; i++) gas_destroy(&gases[i]);
 }
 
-/* One thread: of the processor, so that other programs do not count; more: of the wall. */
+/* Returns s of processor time for one thread, so that other programs do not count; s of wall time for
+   more. */
 static double seconds_spent(void) {
     return options.threads == 1 ? (double)clock()/CLOCKS_PER_SEC : study_clock();
 }
@@ -1016,7 +1020,7 @@ int main(int argc, char **argv) {
     const char *about = "A granular gas of ellipsoids that cools.";
     const int count = (int)(sizeof table/sizeof *table);
     study_options(argc, argv, about, table, count);
-    if (options.quick) { /* what was asked for by name stays */
+    if (options.quick) { /* options given by name keep their values */
         options.xi = 2;
         options.restitution = 0.9;
         options.collisions = 15;

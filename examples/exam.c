@@ -7,11 +7,12 @@
 
        #define LAW {"my law", my_law, 0, 3, 1, 1e5}     // name, function, c->user, reals, vectors, N/m
 
-   The last five are law, law_user, law_memory, law_vectors and law_stiffness of the world desc. Further fields, all
-   optional: the built-in law that supplies the coefficients (DEM_NORMAL_HERTZ); -1; law_range in m; 1 if the law needs
-   law_who (its grains then carry eight numbers, all zero); the function that makes a bond (dem_contact_fn, its user is
-   the world), with which paths begin bonded, in contact. docs/laws.md explains the lines of the exam and the curves.
-   The exit code is 1 if a line is not passed; for built-in laws, except a line that is known to fail. */
+   The last five are law, law_user, law_memory, law_vectors and law_stiffness of the world desc. Five more fields are
+   optional: the built-in law that supplies the coefficients (DEM_NORMAL_HERTZ); -1 (only the built-in laws below use this
+   field); law_range in m; 1 if the law needs law_who (its grains then carry eight numbers, all zero); and the function that
+   makes a bond (dem_contact_fn, its user is the world). With it paths begin bonded, in contact. docs/laws.md explains the
+   lines of the exam and the curves. The exit code is 1 if a law fails a line. Two failures do not count: that of the line
+   `quick`, and that of the line that a built-in law is known to fail. */
 #include "../dem.h"
 #include "study.h"
 #include "exam.h"
@@ -20,7 +21,7 @@
 #include LAW_FILE
 #endif
 
-/* An examined law. known: the line that it is known to fail, or -1. */
+/* An examined law. known: the line that a built-in law is known to fail, or -1. */
 typedef struct examinee {
     const char *name;
     dem_law_fn law;

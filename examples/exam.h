@@ -1,14 +1,14 @@
-/* exam.h - an exam for contact laws: is a law finite, the same from both sides and in every frame, free of energy
-   from nothing, stable at the advised step? MIT licence. Include it after dem.h.
+/* exam.h - an exam for contact laws: is the force finite, the same from both sides and in every frame? Does the law create
+   no energy, and is it stable at the advised step? MIT licence. Include it after dem.h.
 
        exam e = exam_of("my law", my_law, 0, 3, 1, 1e5);   // user data, reals of memory, vectors, N/m
        exam_sheet sheet;
        exam_take(&e, &sheet);
-       exam_print(&sheet, stdout);                         // a line each: passed, or what was found
+       exam_print(&sheet, stdout);                         // one line per property: passed, or the mistake found
 
-   A law is moved by hand along paths of overlap, slip and rolling (exam_begin, exam_move), and in worlds of two grains
-   that collide. exam.c draws its portrait as a page; tests/examples/test_exam.c has a wrong law for every line. What a law that
-   fails a line does to a scene: docs/laws.md. */
+   The exam moves a contact along paths of overlap, slip and rolling (exam_begin, exam_move), and it runs worlds of two
+   grains that collide. exam.c draws the curves of a law as a page; tests/examples/test_exam.c has a wrong law for every line.
+   docs/laws.md explains what a law that fails a line does to a scene. */
 #ifndef EXAM_H
 #define EXAM_H
 #include <math.h>
@@ -16,7 +16,8 @@
 #include <string.h>
 #include <time.h>
 
-/* A law and what it is examined with. exam_of fills it in; change what you like before exam_take. */
+/* A law and the conditions of its exam; comments give the defaults after a colon. exam_of fills it in; change what you like
+   before exam_take. */
 typedef struct exam {
     const char *name;
     dem_law_fn law;
@@ -25,7 +26,7 @@ typedef struct exam {
     double stiffness;            /* N/m, as law_stiffness; 0: built-in                        */
     double range;                /* m, as law_range: 0                                        */
     int who;                     /* as law_who; the grains then carry eight numbers, zeros: 0 */
-    dem_contact_fn made;         /* for laws of bonds: makes one, as for dem_bonds_make, whose user is its world: null */
+    dem_contact_fn made;         /* for laws of bonds: makes a bond, as for dem_bonds_make, with the world as user: null */
     double radius;               /* m, of both grains: 1e-3                                   */
     double deep;                 /* largest overlap of the paths, of the radius: 0.02         */
     double speed;                /* m/s, of impacts: 0.1                                      */
@@ -38,13 +39,13 @@ typedef struct exam {
 enum { EXAM_FINITE, EXAM_PURE, EXAM_ASKED, EXAM_SWAP, EXAM_FRAME, EXAM_ENDS, EXAM_PRESS, EXAM_SHEAR, EXAM_ROLL,
        EXAM_MIXED, EXAM_IMPACT, EXAM_STEP, EXAM_ORDER, EXAM_COST, EXAM_LINES };
 typedef struct exam_line {
-    const char *asks;            /* what the line asks for                                    */
+    const char *asks;            /* the property that the line checks                         */
     int passed;
-    char found[280];             /* the figure, or what was found and where to look           */
+    char found[280];             /* the figure, or the mistake and where to look for it       */
 } exam_line;
 typedef struct exam_sheet {
     const char *name;
-    int passed;                  /* how many lines                                            */
+    int passed;                  /* number of lines passed                                    */
     exam_line line[EXAM_LINES];
 } exam_sheet;
 
@@ -68,13 +69,13 @@ static inline exam exam_of(const char *name, dem_law_fn law, void *user, int mem
 
 /* ---- worlds of two grains ---- */
 
-/* How two grains meet. */
+/* The impact of two grains. */
 typedef struct exam_impact {
     double speed, angle;         /* m/s, relative; rad, from the line of centres              */
-    double step;                 /* of the advised step; below 0: of the largest allowed one  */
+    double step;                 /* time step over the advised one; < 0: over the largest allowed */
     double early;                /* steps before they touch                                   */
-    /* what becomes of it */
-    double energy;               /* after, over before; below 0: the run broke                */
+    /* results */
+    double energy;               /* after, over before; below 0: the run failed               */
     double normal, slip, spin;   /* m/s, relative, as they part; m/s, radius times spin       */
     char error[160];
 } exam_impact;
@@ -96,7 +97,7 @@ static inline dem_world *exam_world(const exam *e, dem_law_fn law, void *user, d
     desc.allow_large_dt = 1;
     return dem_world_create(&desc);
 }
-/* m, between the surfaces of two grains. */
+/* Returns the gap between two grains, m. */
 static inline double exam_gap(const dem_world *world, dem_body one, dem_body other, double radius) {
     dem_body_state a, b;
     double x, y, z;
@@ -106,7 +107,7 @@ static inline double exam_gap(const dem_world *world, dem_body one, dem_body oth
     z = (double)(b.position.z - a.position.z);
     return sqrt(x*x + y*y + z*z) - 2*radius;
 }
-/* Makes the bond of a world of two, and keeps a copy of what it remembers. */
+/* Makes the bond of two grains, and keeps a copy of its history. */
 typedef struct exam_bond { const exam *e; dem_world *world; dem_real memory[DEM_LAW_MEMORY]; } exam_bond;
 static inline void exam_make(const dem_contact_info *c, dem_real *memory, void *user) {
     exam_bond *b = (exam_bond *)user;
@@ -119,7 +120,7 @@ static inline int exam_join(const exam *e, dem_world *world, exam_bond *b) {
     b->world = world;
     return dem_bonds_make(world, (dem_real)(0.5*e->range), exam_make, b) == 1;
 }
-/* One impact, run to its end; of two that are bonded: 20 contact times, of which nobody parts. */
+/* Runs one impact to its end. Bonded grains, which do not separate, run for 20 contact times. */
 static inline void exam_collide(const exam *e, exam_impact *m) {
     dem_advice advice;
     dem_totals before, after;
@@ -133,7 +134,7 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     m->energy = -1;
     m->error[0] = 0;
     advice.contact_time = 0;
-    for (pass = 0; pass < 2; pass++) {           /* the second with its step */
+    for (pass = 0; pass < 2; pass++) {           /* the second pass has the step that the first one found */
         const double apart = e->made ? 0 : 0.5*e->range;
         const double early = pass && !e->made ? 0.5*m->speed*m->early*dt*cos(m->angle) : 0;
         const double x = e->radius + apart + early, y = apart*tan(m->angle);    /* over the range to the line of centres */
@@ -156,13 +157,13 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     before = dem_totals_get(world);
     if (e->made && !exam_join(e, world, &bond))
         snprintf(m->error, sizeof m->error, "dem_bonds_make makes no bond: %.100s", dem_world_error_get(world));
-    /* through the range and back, more slowly than they come */
+    /* time for the way through the range and back, at a lower speed than before the impact */
     most = e->made ? (long)floor(20*(double)advice.contact_time/dt + 0.5)
         : (long)((40*(double)advice.contact_time + 6*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
     for (k = 0; k < most; k++) {
         const dem_result result = dem_world_step(world, 1);
         const int near_by = exam_gap(world, one, other, e->radius) < e->range;
-        met |= near_by;                          /* the law is called: a liquid film or a charge may part them before they touch */
+        met |= near_by;                          /* the law is called; it may separate the grains before they touch */
         if (result != DEM_OK || (met && !near_by && !e->made)) break;
     }
     after = dem_totals_get(world);
@@ -178,12 +179,12 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
                                     : "they did not come within %g m of each other", e->range);
     dem_world_destroy(world);
 }
-/* A law that only looks: how a contact comes out of a world. */
+/* A law without force that copies the contact as a world passes it. */
 static inline void exam_look(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory; (void)f;
     *(dem_contact *)c->user = *c;
 }
-/* What the grains of paths carry, zeros, and what a law says that they gain, which nobody asks for. */
+/* The numbers of the grains on paths, which are zeros, and their rates, which are not used. */
 static inline dem_real *exam_reals(void) {
     static dem_real reals[2*DEM_BODY_REALS];
     return reals;
@@ -214,25 +215,25 @@ static inline int exam_contact(exam *e) {
     e->contact.who.rate_a = e->contact.who.rate_b = exam_reals() + DEM_BODY_REALS;
     return joined && e->contact.overlap > 0;
 }
-/* m, the overlap at which paths begin: of the range, and of touch for a bond; and the one to which they go out: a bond
-   is pulled, but not torn. */
+/* The overlap (m) at which paths begin: at the range, for a bond at touch; and the overlap at which they end: a bond is
+   stretched, but does not break. */
 static inline double exam_first(const exam *e) { return e->made ? 0 : -e->range; }
 static inline double exam_last(const exam *e) { return e->made ? -0.25*e->range : -e->range; }
 
-/* ---- paths: the law is moved by hand ---- */
+/* ---- paths: the exam moves the contact ---- */
 
 enum { EXAM_CANARY = 8 };        /* reals behind the law's memory, which it must not touch     */
 typedef struct exam_path {
     const exam *e;
     dem_contact c;
-    dem_contact_force f;         /* the last answer; zeros while the two are apart            */
+    dem_contact_force f;         /* the last force; zeros while the two are apart             */
     dem_real memory[DEM_LAW_MEMORY + EXAM_CANARY];
     dem_quat frame;              /* the path's frame in the world's                           */
-    int swapped;                 /* a and b have changed places                               */
+    int swapped;                 /* 1: a and b are exchanged                                  */
     double work, largest;        /* J, done on the contact since exam_begin; N, largest |force| */
 } exam_path;
-/* One step along a path, in its frame (normal z): to this overlap (m), at that slip (m/s), spin (rad/s), turn of the
-   normal (1/s) and of the plane about it (rad/s). */
+/* One step along a path, in its frame (normal z): the overlap at its end (m), slip (m/s), spin (rad/s), rotation of the
+   normal (1/s) and of the contact plane about it (rad/s). */
 typedef struct exam_go { double overlap, slip[2], spin[3], rate[2], twist; } exam_go;
 
 static inline void exam_begin(exam_path *p, const exam *e) {
@@ -250,7 +251,7 @@ static inline dem_vec3 exam_turned(const exam_path *p, double x, double y, doubl
     const double s = p->swapped ? -1 : 1;
     return dem_quat_rotate(p->frame, dem_vec3_make((dem_real)(s*x), (dem_real)(s*y), (dem_real)(s*z)));
 }
-/* The law is asked, for dt (s); 0: asked only. Memory goes on, the path's overlap does not. */
+/* Calls the law for a step of dt (s); 0: for the force only. Updates the history, but not the overlap of the path. */
 static inline dem_contact_force exam_ask(exam_path *p, const exam_go *to, double dt, double closing) {
     dem_contact_force f;
     dem_contact *c = &p->c;
@@ -282,8 +283,8 @@ static inline void exam_move(exam_path *p, const exam_go *to, double dt) {
                      exam_dot(was.moment, spin))*dt);
     p->largest = fmax(p->largest, fmax(fabs((double)p->f.normal), sqrt(exam_dot(p->f.tangent, p->f.tangent))));
 }
-/* In `steps` equal steps to that overlap, slipping x, y (m) and rolling by angles (rad) on the way, at `speed` (m/s) of
-   whatever is longest. */
+/* Moves to this overlap in `steps` equal steps, with slip x, y (m) and rolling by these angles (rad) on the way. `speed` (m/s)
+   is that of the longest of these motions. */
 static inline void exam_go_on(exam_path *p, double overlap, double x, double y, double roll, double spin, int steps,
                               double speed) {
     const double from = (double)p->c.overlap, r = p->e->radius;
@@ -304,7 +305,7 @@ static inline double exam_random(unsigned *seed) {       /* -1 .. 1 */
     *seed = *seed*1664525u + 1013904223u;
     return (*seed >> 8)/8388608.0 - 1;
 }
-/* Step k of a path at random: pressed and let go, slid, rolled, turned. */
+/* Step k of a random path: loading and unloading, slip, rolling, rotation. */
 static inline exam_go exam_stray(const exam *e, int k, unsigned *seed) {
     const double v = e->speed, w = v/e->radius;
     exam_go to;
@@ -321,7 +322,7 @@ static inline double exam_apart(dem_vec3 a, dem_vec3 b) {
     return sqrt(exam_dot(d, d));
 }
 
-/* ---- the lines: each answers 1 when it is passed, and says what it found ---- */
+/* ---- the lines: each function returns 1 if the law passes, and writes the figure or the mistake ---- */
 
 #define EXAM_SAY(...) snprintf(found, 280, __VA_ARGS__)
 static inline int exam_sound(double x) { return x > -1e300 && x < 1e300 && (sizeof(dem_real) > 4 || fabs(x) < 3e38); }
@@ -358,7 +359,7 @@ static inline int exam_is_finite(const exam *e, char *found) {
     EXAM_SAY("%d inputs", count);
     return 1;
 }
-/* The same contact, once by itself and once with another one in between. */
+/* The same contact, once alone and once with another contact in between. */
 static inline int exam_is_pure(const exam *e, char *found) {
     exam_path alone, one, other;
     unsigned seed = 1, again = 1, elsewhere = 2;
@@ -413,7 +414,8 @@ static inline int exam_is_asked(const exam *e, char *found) {
     EXAM_SAY("%d reals, written only in a step", e->memory);
     return 1;
 }
-/* Two paths side by side, the second seen otherwise; answers the largest difference of forces, of the largest force. */
+/* Follows two equal paths, the second with a and b exchanged or in another frame. Returns the largest difference of forces
+   over the largest force. */
 static inline double exam_beside(const exam *e, exam_path *p, exam_path *q, int first, int last, unsigned *seed, int back) {
     double apart = 0;
     int k;
@@ -444,7 +446,7 @@ static inline int exam_is_swapped(const exam *e, char *found) {
                  "directions of the world?", apart);
         return 0;
     }
-    q = p;                                       /* turned round under way, as lists do it */
+    q = p;                                       /* a and b are exchanged during the contact, as lists do it */
     q.swapped = 1;
     for (k = 0; k < 3*e->vectors; k++) q.memory[k] = -q.memory[k];
     apart = exam_beside(e, &p, &q, 100, 200, &seed, 0);
@@ -474,7 +476,7 @@ static inline int exam_is_turned(const exam *e, char *found) {
              "only normal, slip, spin and their products may be", worst);
     return 0;
 }
-/* Slowly in and out, over the range, too: does the force begin and end at 0, without a jump between? */
+/* Slow loading and unloading, through the range: does the force begin and end at 0, without a jump? */
 static inline int exam_is_smooth(const exam *e, char *found) {
     const double deep = e->deep*e->radius, slow = 1e-6*e->speed;
     const char *where = "";
@@ -512,7 +514,7 @@ static inline int exam_is_smooth(const exam *e, char *found) {
              "step resolves a jump", jump/p.largest, where, at/e->radius);
     return 0;
 }
-/* A loop that ends where it began must not give energy. Answers the worst, of the energy that went in. */
+/* A closed loop must not create energy. exam_gain returns its gain over the energy put in. */
 static inline double exam_gain(const exam_path *p, double before, double in) { return (before - p->work)/(in + 1e-300); }
 static inline int exam_gains(const char *what, double gain, const char *look, char *found) {
     EXAM_SAY("%s create %.1g of the energy put in", what, gain > 0 ? gain : 0);
@@ -531,7 +533,7 @@ static inline int exam_is_pressed(const exam *e, char *found) {
         exam_begin(&p, e);
         exam_go_on(&p, deep, 0, 0, 0, 0, 4000, speed);
         in = fabs(p.work);
-        for (k = 0; k < 4; k++) {                /* partly out and in again */
+        for (k = 0; k < 4; k++) {                /* unload partly and load again */
             before = p.work;
             exam_go_on(&p, deep*(0.2 + 0.2*k), 0, 0, 0, 0, 400, speed);
             exam_go_on(&p, deep, 0, 0, 0, 0, 400, speed);
@@ -566,7 +568,7 @@ static inline int exam_is_sheared(const exam *e, char *found) {
                     exam_go_on(&p, deep, u, 0, 0, 0, 200, speed);
                 }
                 in = sqrt(exam_dot(p.f.tangent, p.f.tangent))*u + fabs(p.work - before) + 1e-6*p.largest*u;
-                /* the first loop leaves the spring stretched where it slid: what it holds is not lost */
+                /* the first loop leaves the spring stretched where it slid: its energy is stored, not lost */
                 if (k) worst = fmax(worst, exam_gain(&p, before, in));
             }
         }
@@ -597,7 +599,7 @@ static inline int exam_is_rolled(const exam *e, char *found) {
     return exam_gains("loops of rolling and twisting", worst, "the moment must act against the spin (moment is that on a, spin "
                       "that of a)", found);
 }
-/* Pressed while sheared, in either order: a spring whose stiffness follows the overlap may make energy. */
+/* Pressing while sheared, in either order: a spring whose stiffness follows the overlap may create energy. */
 static inline int exam_is_mixed(const exam *e, char *found) {
     const double deep = e->deep*e->radius, u = 0.05*deep, speed = 1e-5*e->speed;
     double worst = 0;
@@ -616,7 +618,7 @@ static inline int exam_is_mixed(const exam *e, char *found) {
             exam_go_on(&p, then, 0, 0, 0, 0, 200, speed);
             exam_go_on(&p, then, -u, 0, 0, 0, 200, speed);
             exam_go_on(&p, first, 0, 0, 0, 0, 200, speed);
-            in = fmax(in, fabs(stretched) + 1e-6*p.largest*u);   /* a law that knows no shear: not round-off alone */
+            in = fmax(in, fabs(stretched) + 1e-6*p.largest*u);   /* for a law without shear: not only round-off */
             worst = fmax(worst, exam_gain(&p, before, in));
         }
     }
@@ -651,7 +653,7 @@ static inline int exam_is_bounced(const exam *e, char *found) {
              "apart with more work than they were pushed together", most_speed, most_angle*57.29578, 1 + worst);
     return 0;
 }
-/* What impacts gain at so many of the largest allowed step. */
+/* Returns the energy that impacts gain at this multiple of the largest allowed step. */
 static inline double exam_gain_at(const exam *e, double step) {
     double worst = 0;
     int k;
@@ -676,7 +678,7 @@ static inline int exam_is_stable(const exam *e, char *found) {
                   "the stiffest the law gets", step, e->stiffness);
     return 0;
 }
-/* Of an impact: its outcome at dt/2, dt/4 .. beside that at dt/64, in the mean of 8 phases. */
+/* Compares the outcome of an impact at dt/2, dt/4 and so on with that at dt/64, as a mean over 8 phases. */
 static inline int exam_is_ordered(const exam *e, char *found) {
     double error[4] = {0, 0, 0, 0}, order;
     int phase, h;
@@ -731,8 +733,8 @@ static inline int exam_is_quick(const exam *e, char *found) {
     return 0;
 }
 
-/* All lines, one after the other. DEM_ERROR_ARGUMENT when the law is null or its memory out of limits; the sheet then
-   says so in its first line. */
+/* Checks all lines in order. DEM_ERROR_ARGUMENT if the law is null or its memory out of limits; the first line of the sheet
+   then has the message. */
 static inline dem_result exam_take(exam *e, exam_sheet *sheet) {
     static const struct { const char *asks; int (*answer)(const exam *e, char *found); } row[EXAM_LINES] = {
         {"finite, whatever comes", exam_is_finite}, {"nothing remembered beside its memory", exam_is_pure},

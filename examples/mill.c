@@ -1,24 +1,25 @@
 /* mill.c - a tumbling mill: glass beads in a rotating drum with lifters.
 
    The machine is that of [MIL], a thesis on tumbling mills on a GPU: a drum of 300 mm with glass
-   beads of 3 mm (its Fig 5.24). So that the default run ends soon, it differs from the thesis:
-     - a thin slice, periodic along the axis, with as many beads per length as in the thesis, which has
-       303156 in 270 mm: 7635, a charge of 37.4 % of the volume;
-     - softer beads: --soften F lowers every Young's modulus above that of glass over F to that
-       value; --stiffness true simulates the glass of the thesis;
-     - half a turn to settle, half a turn measured: there it was three, and one or more.
-   The lifters of the thesis are printed as a picture only, of 259 points and 259 lines. Our
-   examples/data/mill_300mm.profile has as many of each, with 12 trapezoidal lifters of our own
-   choice: 9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
+   beads of 3 mm (its Fig 5.24). The default run differs from the thesis so that it ends soon:
+     - It simulates a thin slice, periodic along the axis, with as many beads per length as in the
+       thesis, which has 303156 in 270 mm. These are 7635 beads, a charge of 37.4 % of the volume.
+     - Beads are softer. --soften F lowers every Young's modulus that exceeds that of glass over F
+       to this value; --stiffness true simulates the glass of the thesis.
+     - The mill settles for half a revolution and is measured for half a revolution. In the thesis
+       it was three, and one or more.
+   The thesis shows its lifters only as a picture of 259 points and 259 lines. Our
+   examples/data/mill_300mm.profile has the same numbers of both, with 12 trapezoidal lifters that
+   we chose: 9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
 
-   build:  cc -O2 -std=c99 -fopenmp examples/mill.c dem.c -o build/mill -lm    (-fopenmp if you like)
+   build:  cc -O2 -std=c99 -fopenmp examples/mill.c dem.c -o build/mill -lm    (-fopenmp is optional)
    run:    build/mill, build/mill --quick, build/mill --help
            over MPI: examples/mpi/mill.c
 
-   The axis is z, gravity points to -y, the mill turns about +z: with x to the right it turns to
-   the left, and carries the charge up on the right. Critical speed is that of the thesis:
-   42.3/sqrt(D) turns a minute. What is measured, over the last --revolutions:
-     rate                 particle-steps per second of wall time
+   The axis is z, gravity points to -y, and the mill rotates about +z: seen with x to the right it
+   rotates anticlockwise and carries the charge up on the right. The critical speed is that of the
+   thesis, 42.3/sqrt(D) revolutions per minute. Results, measured over the last --revolutions:
+     rate                 grains times steps per second of wall time
      solidicity_bulk      mean solid fraction of the cells (64 x 64) in which it is above 0.4
      shell_speed_ratio    speed of the grains whose centre is within 1.5 diameters of the shell,
                           from 20 degrees after the toe to 20 before the shoulder, over omega
@@ -26,19 +27,19 @@
      overlap_max          largest overlap of the whole run, over the radius
      torque_mean          N m, of the mill on the charge of the slice
      torque_balance_error |T - M g x|/(M g x), x: mean horizontal offset of the charge's centre
-     momentum_balance_error  the same, less what the charge's angular momentum grew by: an
-                          identity, exact but for the sampling of x
+     momentum_balance_error  the same, less the growth of the charge's angular momentum: an
+                          identity that is exact except for the sampling of x
      power_balance_error  |T omega - D|/(T omega), D: rate of dissipation and of growth of the
                           energy stored, elevation included. The ledger sums the dissipation
                           contact by contact
-     ledger_residual      energy that the ledger cannot account for, over all that was put
-                          through, whole run; falls with the third power of the step
-     toe, shoulder        degrees from straight down, positive the way the mill turns: where, on
-                          a ring at 0.84 to 0.92 of the shell's radius (inside the lifters),
-                          solidicity falls below half the bulk's
+     ledger_residual      energy that the ledger cannot account for, over the energy put through,
+                          of the whole run; falls with the third power of the step
+     toe, shoulder        the two angles at which the solid fraction falls below half of the bulk's,
+                          on a ring at 0.84 to 0.92 of the shell's radius (inside the lifters). In
+                          degrees from straight down, positive in the direction of rotation
      steady_after         revolutions after which the torque, averaged over half a turn, stays
                           within 5 % of its mean
-     grains_missing       inserted - present + those found outside the shell
+     grains_missing       grains inserted less grains present, plus grains outside the shell
      hash                 of the final state: the same for any number of threads
    --replay: a replay of the whole run. Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
    torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
@@ -133,13 +134,13 @@ typedef struct mill {
 } mill;
 
 static const char *program_path; /* argv[0]: the data lie relative to it */
-/* which of how many processes this is, and how they talk: set by examples/mpi/mill.c */
+/* the rank of this process, the number of processes, and their transport: set by examples/mpi/mill.c */
 static int mill_rank, mill_ranks = 1;
 static dem_transport mill_transport;
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
 
-static int place_of(const char *word, const char *list) { /* in "one|another"; it is there */
+static int place_of(const char *word, const char *list) { /* index of a word in "one|another", which contains it */
     int place = 0;
     const char *at = strstr(list, word);
     while (at > list) place += *--at == '|';
@@ -164,8 +165,9 @@ static void mill_destroy(mill *m) {
     m->world = 0;
 }
 
-/* Fig 5.24 of [MIL]. What it says of beads against the mill ("ps") is set for the pair, with moduli
-   mixed by Hertz. A lining of beads is of glass, as in its 5.2.1: one set of coefficients only. */
+/* Materials of Fig 5.24 of [MIL]. Its coefficients for beads against the mill ("ps") are set for the
+   pair, with moduli mixed by Hertz. A lining of beads is of glass, as in its section 5.2.1, with the
+   coefficients of bead on bead. */
 static int materials_add(mill *m) {
     static const double density[2] = {2500, 950}, poisson[2] = {0.23, 0.42};
     static const double shear[2] = {26e9, 0.31e9};
@@ -219,7 +221,8 @@ static int profile_write(const char *path) {
     return 0;
 }
 
-/* Ours is looked for here, then beside the program's folder, and scaled to the drum. */
+/* Reads our profile, from the present folder or from beside the program's folder, and scales it to the
+   drum. */
 static int profile_load(mill *m) {
     static const char *const place = "examples/data/mill_300mm.profile";
     char path[1024];
@@ -237,8 +240,8 @@ static int profile_load(mill *m) {
     return 0;
 }
 
-/* Is a disc at (x, y) inside the shell and clear of it? Its centre is inside when a ray to the
-   right crosses the profile an odd number of times. */
+/* Returns 1 if a disc at (x, y) is inside the shell and does not touch it. Its centre is inside if a
+   ray to the right crosses the profile an odd number of times. */
 static int has_room(const mill *m, double x, double y, double radius) {
     const dem_profile *p = &m->profile;
     int i, inside = 0;
@@ -298,16 +301,16 @@ static int is_site(dem_vec3 c, dem_real radius, void *user) {
     const mill *m = (const mill *)user;
     return fabs(c.z) + 1.02*radius <= m->o.length/2 && has_room(m, c.x, c.y, 1.02*radius);
 }
-/* Which is deeper below a surface that rises by 30 degrees to the right? */
+/* Sorts places by depth below a surface that rises by 30 degrees to the right. */
 static int site_lower(const void *a, const void *b) {
     const dem_real *p = (const dem_real *)a, *q = (const dem_real *)b;
     double high = (p[1] - q[1])*cos(PI/6) - (p[0] - q[0])*sin(PI/6);
     return high < 0 ? -1 : high > 0 ? 1 : p[2] < q[2] ? -1 : p[2] > q[2];
 }
 
-/* The mill is packed hexagonally, with some padding, in a world of its own; the lowest places get a
-   grain that turns with the mill. Each is shoved about within the padding, without which rows stay
-   rows for long. */
+/* Packs the mill hexagonally, with some padding, in a separate world. The lowest places get a grain
+   that rotates with the mill. Each grain is moved at random within the padding; otherwise rows would
+   remain rows for long. */
 static int charge_add(mill *m) {
     double R = m->o.diameter/2, L = m->o.length, r = m->o.radius, padding = 0.05*r;
     dem_box box = dem_box_make(-R, -R, -L/2 + padding/2, R, R, L/2 - padding/2);
@@ -372,8 +375,8 @@ static int mill_create(mill *m, double dt) {
     return m->field.id ? 0 : refused(m->world, DEM_ERROR_ARGUMENT);
 }
 
-/* Chooses the time step so that samples fall on whole steps: the scene is built twice, first to ask
-   for advice. */
+/* Chooses the time step so that samples fall on whole steps. The scene is built twice: the first one
+   gives the advised step. */
 static int mill_begin(mill *m) {
     dem_advice advice;
     double wanted = m->o.dt, pair = 2*sqrt(3.0)*m->o.radius;
@@ -398,7 +401,7 @@ static int mill_begin(mill *m) {
     m->sample_steps = (int)ceil(m->period/SAMPLES/wanted);
     m->dt = m->o.dt > 0 ? m->o.dt : m->period/SAMPLES/m->sample_steps;
     if (mill_create(m, m->dt)) return 1;
-    dem_world_check_print(m->world, mill_rank ? 0 : stderr);             /* all look, so that all stay alike */
+    dem_world_check_print(m->world, mill_rank ? 0 : stderr);             /* every process checks, so that all stay alike */
     m->mass = dem_totals_get(m->world).mass;
     return 0;
 }
@@ -419,7 +422,7 @@ static void sample_take(const mill *m, sample *s) {
     }
 }
 
-/* Beside a checkpoint lie the samples so far, in FILE.samples. */
+/* The samples so far are beside the checkpoint, in FILE.samples. */
 static int samples_file(mill *m, const char *path, int writing, int *count) {
     char name[1024];
     FILE *file;
@@ -450,7 +453,7 @@ static void frame_write(mill *m, int number) {
     study.files += !refused(m->world, dem_walls_vtp_write(m->world, study_path(name), -z, z));
 }
 
-/* The drum dealt to slabs, this process's share of them; null: one world does it all. */
+/* Distributes the drum to slabs and returns those of this process; null: there is one world only. */
 static dem_slabs *slabs_begin(mill *m) {
     dem_slabs_desc desc = DEM_SLABS_DESC;
     dem_slabs *slabs;
@@ -462,7 +465,7 @@ static dem_slabs *slabs_begin(mill *m) {
     if (desc.count && !slabs) refused(m->world, DEM_ERROR_ARGUMENT);
     return slabs;
 }
-/* Goes on to the next sample, and has the whole state in the world. */
+/* Runs to the next sample; then the world has the whole state. */
 static int mill_step(mill *m, dem_slabs *slabs) {
     if (!slabs) return refused(m->world, dem_world_step(m->world, m->sample_steps));
     if (dem_slabs_step(slabs, m->sample_steps) == DEM_OK &&
@@ -484,7 +487,7 @@ static void mill_replay(const mill *m, study_replay *f, int k, int *since) {
     study_replay_frame(f);
     *since = k;
 }
-static int mill_turn(mill *m) { /* the run itself */
+static int mill_turn(mill *m) { /* runs the mill */
     dem_slabs *slabs;
     study_replay f;
     int bad = 0;
@@ -531,7 +534,7 @@ static int mill_turn(mill *m) { /* the run itself */
 
 /* ---- maps ---- */
 
-/* n x n cells; not a number where nothing was. */
+/* n x n cells; NaN where no grain was. */
 typedef struct map { int n; double *solid, *u, *v, *mass; } map;
 
 static map map_make(const dem_field_data *d, int n) { /* cells of the field summed to n x n */
@@ -577,7 +580,7 @@ static double map_ring(const mill *m, const map *a, double degrees) {
     }
     return sum;
 }
-static void map_toe_shoulder(mill *m, const map *a) { /* both ways from where the ring is fullest */
+static void map_toe_shoulder(mill *m, const map *a) { /* in both directions from the fullest point of the ring */
     double best = 0, edge = m->solidicity/2, at;
     for (at = -180; at < 180; at++) if (map_ring(m, a, at) > map_ring(m, a, best)) best = at;
     for (at = best; at > best - 360 && map_ring(m, a, at) > edge;) at -= 0.5;
@@ -647,7 +650,7 @@ static void maps_write(mill *m) {
         f.hi = i%2 ? fastest : 0.7;
         if (i%2) { f.u = maps[i/2].u; f.v = maps[i/2].v; }
         else f.value = maps[i/2].solid;
-        if (i%2) f.size = fmax(620, 4.84*n); /* room for the darts */
+        if (i%2) f.size = fmax(620, 4.84*n); /* room for the arrows */
         study_curve(&f, 0, STUDY_OUTLINE, 361, circle[0], circle[1]);
         for (k = 0; k < 2; k++) study_curve(&f, 0, STUDY_OUTLINE, 2, mark[k][0], mark[k][1]);
         snprintf(title, sizeof title, "%s at %.0f %% of critical, %d x %d cells", of,
@@ -704,7 +707,7 @@ static double window_torque(const sample *from, const sample *to) {
 static double dissipated(const sample *s) {
     return s->ledger.normal + s->ledger.slide + s->ledger.tangent + s->ledger.rolling;
 }
-static double stored(const sample *s) { /* elevation is the work of gravity, turned round */
+static double stored(const sample *s) { /* the elevation counts as the negative work of gravity */
     return s->ledger.kinetic + s->ledger.rotational + s->ledger.elastic - s->ledger.gravity;
 }
 
@@ -765,7 +768,7 @@ static void torque_write(mill *m) {
     for (c = 0; c < COLUMNS; c++) free(column[c]);
 }
 
-static void state_write(mill *m) { /* what the whole run left behind */
+static void state_write(mill *m) { /* results of the whole run */
     dem_ledger ledger = dem_ledger_get(m->world);
     dem_body_counts balance = dem_body_counts_get(m->world);
     dem_bodies b = dem_bodies_get(m->world);
@@ -841,11 +844,11 @@ static dem_body bead_add(mill *m, double y, double vx, double vy) {
     return bead;
 }
 
-/* Throws a bead of true stiffness onto a flat sheet: in the standard mode of the same glass. The thesis's mode is its
-   arithmetic: E* = E, R/2 and m/2 against walls; friction without memory; steps of 1e-6 s, in which its program moves
-   with the velocity just updated (its text says forward Euler, which gives .70 to .72). Its sheet has the coefficients
-   that Fig 5.23 prints for the mill (ps). Their damping is that of restitution .55 for half of the bead's mass; for the
-   whole mass it gives .658.
+/* Throws a bead of true stiffness onto a flat sheet. In the standard mode the sheet is of the same glass. The mode of the
+   thesis uses its arithmetic: E* = E, R/2 and m/2 against walls; friction without history; steps of 1e-6 s, in which its
+   program moves with the velocity just updated (its text says forward Euler, which gives 0.70 to 0.72). Its sheet has the
+   coefficients that Fig 5.23 gives for the mill (ps). Their damping is that of a restitution of 0.55 for half of the
+   bead's mass; for the whole mass it gives 0.658.
    log: time, height, vertical and horizontal velocity, spin. */
 typedef struct throw_of { const char *title; double height, vx, vy, time; } throw_of;
 enum { ROWS = 2000 };
@@ -993,7 +996,7 @@ int main(int argc, char **argv) {
     mill m;
     program_path = argv[0];
     study_options(argc, argv, about, table, count);
-    if (options.quick) { /* a smaller mill of fewer, softer beads; what was asked for by name stays */
+    if (options.quick) { /* a smaller mill of fewer, softer beads; options given by name keep their values */
         options.diameter = 0.12;
         options.fill = 0.3;
         options.soften = 1000;

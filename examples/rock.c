@@ -31,8 +31,8 @@ static void glue_bond(const dem_contact_info *c, dem_real *memory, void *user) {
     if (g->count++%g->every == 0) bond_make(c, memory, g->world);
 }
 
-/* Returns the strength (Pa) of a block with bonds of `strength` (Pa) on one pair in every `every`; -1: the run failed. `bonds` receives
-   the numbers of intact and of broken bonds when the force has fallen to half of its maximum. */
+/* Returns the strength (Pa) of a block with bonds of `strength` (Pa) on one pair in every `every`; -1: the run failed. `bonds`
+   receives the numbers of intact and of broken bonds when the force has fallen to half of its maximum. */
 static double press(double strength, int every, int bonds[2], int pictures) {
     bond cement = {DEM_R(1e7), DEM_R(2.5), DEM_R(0.8e-3), 0, 0, DEM_R(0.1)};
     glue tube = {0, every, 0};

@@ -1,44 +1,46 @@
 /* screener.c - a tumbling screening machine: five decks, four sieves, balls of five sizes.
 
-   The machine is that of [ALK07] (section 4.4), a thesis on contacts in a tumbling screening machine:
-   a barrel of radius 80 cm that tumbles at 50 turns a minute, plate inclined by 1 and .65 degrees,
-   sieves with square holes of half width w = 17, 15, 13, 11 mm and bars g = w between them, 3483
-   balls of radius 10 to 18 mm fed at 147 a second. Every deck lets its own size out at the rim; what
-   leaves with it and is smaller is gangue. --machine glass is its other example: R = 30 cm, one
-   sieve (w = 1.575 mm, g = .8 mm), glass balls of 3 and 4 mm.
+   The machine is that of [ALK07] (section 4.4), a thesis on contacts in a tumbling screening machine.
+   A barrel of radius 80 cm tumbles at 50 revolutions per minute on a plate inclined by 1 and 0.65
+   degrees. Its sieves have square holes of half width w = 17, 15, 13, 11 mm with bars of width g = w
+   between them. 3483 balls of radius 10 to 18 mm are fed at 147 a second. Every deck releases its own
+   size at the rim; smaller balls that leave with it are gangue. --machine glass is the other example
+   of the thesis: R = 30 cm, one sieve (w = 1.575 mm, g = 0.8 mm), glass balls of 3 and 4 mm.
 
-   What the thesis does not print is our choice, an option, and part of --study choices:
-     density 2500 kg/m3, stiffness and restitution (it prints none for this machine): a linear spring
-     and dashpot; softened, t_c is about 1.6 ms (large machine)
-     friction .2 between balls, .06 with the machine: the optimum of its friction study. Its friction
-     on a sieve (eq 4.27 to 4.30) looks at the ball's velocity without its spin: balls slide. On
-     reduced holes, which are a plane, a rolling friction of 1 does that here; free balls would roll,
-     and a ball that rolls on a turning plate is not flung out but runs in circles. Wires and plates
-     brake rolling by themselves
-     decks .15 m (.03 m) apart; all of the rim is open (--open, --openings and --vane: a rim with
-     openings, and deflectors that lead to them)
-     eccentricity 40 mm where the figure does not say (all but 4.20), u = e = 0
-     fed from a disc of .1 m in the middle, above the first sieve
+   The thesis does not print these quantities. We chose them; each is an option and part of --study
+   choices:
+     density 2500 kg/m3, stiffness and restitution of a linear spring and dashpot, softened: contacts
+     last about 1.6 ms (large machine)
+     friction 0.2 between balls, and 0.06 with the machine, the optimum of its friction study. Friction
+     on a sieve uses the velocity of a ball without its spin there (eq 4.27 to 4.30), so balls slide.
+     On reduced holes, which are a plane, a rolling friction of 1 has this effect here. Free balls
+     would roll, and a ball that rolls on a rotating plate is not flung out but runs in circles. Wires
+     and plates brake rolling without rolling friction
+     decks 0.15 m apart (other machines: 0.03 m); all of the rim is open (--open, --openings and --vane
+     give a rim with openings and deflectors that lead to them)
+     eccentricity 40 mm where a figure does not give it (all but 4.20), u = e = 0
+     a feed from a disc of 0.1 m in the middle, above the uppermost sieve
 
    build:  cc -O2 -std=c99 examples/screener.c dem.c -o build/screener -lm
    run:    build/screener, build/screener --study speed, build/screener --help
 
-   --machine small is no machine of the thesis: R = 15 cm, three decks, fed without end; --study hour
-   runs it for an hour of machine time and counts balls of each size at every step.
+   --machine small is not in the thesis: R = 15 cm, three decks, and a feed without end. --study hour
+   runs it for an hour of machine time and counts the balls of each size at every step.
 
-   Results, of one run (a sweep prints one such block per value, prefixed: rpm50.efficiency_number;
-   with --repeats also blocks rpm50.seed2 and so on, and mean and spread over all of them):
+   Results of one run. A sweep prints one such block per value, with a prefix: rpm50.efficiency_number.
+   With --repeats it also prints blocks rpm50.seed2 and so on, and the mean and spread over all of them.
      efficiency_number, efficiency_mass   %, eq 4.33 and 4.35: mean over decks of sorted/all that left
      deckN.sorted, deckN.gangue           balls that left deck N, 1 the lowest
      deckN.rate                           kg/s that left it, eq 4.40
      gangue_number, gangue_mass           %, of all that left, eq 4.41
      fed, present, left, missing          balls; missing = fed - present - left is 0
      rate                                 balls/s that left, over the last third
-     blinded                              stuck in holes at the end (never with reduced holes)
-     overlap                              largest over radius
-     dt                                   s, at the end: of --steps, or smaller (screener_step)
+     blinded                              balls stuck in holes at the end (none with reduced holes)
+     overlap                              largest overlap over radius
+     dt                                   s, at the end: that of --steps, or smaller (screener_step)
      compute                              s of wall time
-     steps, unbalanced_steps              of --study hour: those at which a size was not in balance */
+     steps, unbalanced_steps              --study hour: all steps; steps at which the balance of a size
+                                          was wrong */
 #include "../dem.h"
 #include "sorting.h"
 #include "study.h"
@@ -123,7 +125,7 @@ static int refused(dem_world *world, dem_result result) {
     return result != DEM_OK;
 }
 
-/* Fills in what the machine chosen prints, and our choices for the rest. */
+/* Fills in the values that the thesis gives for the chosen machine, and our choices for the rest. */
 static void screener_settle(screener *s) {
     static const double radius[5] = {0.010, 0.012, 0.014, 0.016, 0.018};
     static const double number[5] = {1210, 832, 611, 467, 363}, w[4] = {0.011, 0.013, 0.015, 0.017};
@@ -148,7 +150,7 @@ static void screener_settle(screener *s) {
     if (o->beta < 0) o->beta = large ? 0.65 : 0.5;
     if (o->zeta < 0) o->zeta = large ? 0.8 : 0.6;
     if (!(o->rate > 0)) o->rate = large ? 147 : glass ? 357 : 60;
-    if (o->brief) o->rate *= 5;                 /* in so short a time as many lie on each other as later on */
+    if (o->brief) o->rate *= 5;                 /* in a short time as many balls lie on each other as later in a long run */
     if (!(o->seconds > 0)) o->seconds = large ? 25 : 20;
     if (!(o->spacing > 0)) o->spacing = large ? 0.15 : 0.03;
     if (!(o->stiffness > 0)) o->stiffness = large ? 2e4 : glass ? 200 : 2000;
@@ -179,9 +181,9 @@ static int part_move(screener *s, int part, dem_wall wall, double z) {
     return refused(s->world, dem_wall_motion_set(s->world, wall, &motion));
 }
 
-/* The rim: 96 segments, those of the openings left out; a vane at the end of each opening that a
-   turning machine comes to first, which reaches inwards and leads balls out. One profile serves all
-   decks of a uniform barrel; a stepped one is a mesh, with a ledge where it narrows and no vanes. */
+/* Adds the rim: 96 segments without those of the openings. Each opening has a vane at the end that
+   leads in the direction of rotation; it reaches inwards and leads balls out. One profile serves all
+   decks of a uniform barrel. A stepped barrel is a mesh, with a ledge where it narrows and no vanes. */
 static int rim_add(screener *s, dem_material stuff) {
     enum { N = 96 };
     dem_real xy[2*(N + 24)], *xyz;
@@ -294,7 +296,7 @@ static int outlets_add(screener *s) {
     return 0;
 }
 
-/* A funnel over the machine, standing still: 24 sides, an orifice, a shaft above. */
+/* Adds a funnel at rest above the machine: 24 sides, an orifice, and a shaft above. */
 static int hopper_add(screener *s, dem_material stuff, double z, double wide, double high) {
     enum { N = 24 };
     dem_real xyz[9*N];
@@ -402,8 +404,8 @@ static void sample_take(screener *s) {
     for (k = 0; k < s->levels; k++) s->mass[i][k] = let_out(s, k).total_mass;
     s->samples++;
 }
-/* Balls/s that left, over the last third of the samples; kg/s that left one deck (from 0), over all
-   of the time, eq 4.40. */
+/* rate_late returns the balls/s that left over the last third of the samples; deck_rate the kg/s that
+   left one deck (from 0) over the whole time, eq 4.40. */
 static double rate_late(const screener *s) {
     const int last = s->samples - 1, late = 2*s->samples/3;
     return last > late ? (s->left[last] - s->left[late])/(s->time[last] - s->time[late]) : 0;
@@ -412,8 +414,8 @@ static double deck_rate(const screener *s, int deck) {
     const int last = s->samples - 1;
     return last > 0 ? s->mass[last][deck]/s->time[last] : 0;
 }
-/* 1 when of each size as many balls were fed as are here and have left, and all sizes together are
-   the world's balance. */
+/* Returns 1 if for each size the balls fed are those present and those that left, and if the sum over
+   the sizes agrees with the world's counts. */
 static int screener_balanced(const screener *s) {
     const dem_bodies b = dem_bodies_get(s->world);
     const dem_body_counts balance = dem_body_counts_get(s->world);
@@ -439,8 +441,8 @@ static void frame_write(screener *s, int frame) {
     refused(s->world, dem_vtp_write(s->world, study_path(name)));
 }
 
-/* Balls coloured by radius, as they are: from the side with the decks, or those above the highest
-   sieve from above. */
+/* Draws the present balls, coloured by radius: from the side with the decks, or from above those that
+   are above the highest sieve. */
 static void picture_draw(screener *s, int above, const char *title, const char *file) {
     enum { RIM = 97 };
     const dem_bodies b = dem_bodies_get(s->world);
@@ -491,8 +493,8 @@ static void picture_draw(screener *s, int above, const char *title, const char *
     for (k = 0; k < 4; k++) free(v[k]);
 }
 
-/* Takes so many steps. --steps is the number of steps of one contact alone. A ball that many contacts press at once may
-   need more: then the step becomes smaller by a tenth, as dem.h makes a step smaller that it chose. */
+/* Takes this number of steps. --steps is the number of steps in a single contact. A ball pressed by many contacts may need
+   more. Then the step becomes smaller by a tenth, in the way in which dem.h reduces a step that it chose itself. */
 static int screener_step(screener *s, int steps) {
     const double least = 0.3*s->dt_first;
     dem_result result = dem_world_step(s->world, steps);
@@ -504,7 +506,7 @@ static int screener_step(screener *s, int steps) {
     return refused(s->world, result);
 }
 
-/* One machine, run to its end; 0 when it went well. */
+/* Runs one machine to its end; returns 0 if it succeeds. */
 static int screener_run(screener *s, const struct screener_options *o, const char *name) {
     dem_advice advice;
     const int counting = is(o->study, "hour");      /* balls, at every step */
@@ -601,7 +603,7 @@ typedef struct sweep {
     const char *name, *label;          /* of the part; of the axis */
     int count;
     double value[12];
-    double thesis[12];                 /* its efficiency, < 0: not printed */
+    double thesis[12];                 /* efficiency in the thesis; < 0: not printed there */
     void (*set)(struct screener_options *o, double value);
 } sweep;
 static void set_rpm(struct screener_options *o, double v) { o->rpm = v; }
@@ -629,7 +631,7 @@ static const sweep sweeps[] = {
      set_friction},
 };
 
-/* What a sweep keeps of each value: its columns in the CSV file. */
+/* The results of a sweep: one row per value, columns as in the CSV file. */
 enum { VALUE, NUMBER, MASS, GANGUE, RATE, SPREAD, GANGUE_SPREAD, DECK_RATE,
        COLUMNS = DECK_RATE + LEVELS };
 static const char sweep_heading[] = "value,efficiency_number,efficiency_mass,gangue_mass,rate,"
@@ -642,7 +644,7 @@ typedef struct sweep_result {
     char name[12][32];
 } sweep_result;
 
-/* All runs of one value: the mean over seeds, and their spread (standard deviation of one). */
+/* Runs all seeds of one value: the mean over seeds, and the spread (standard deviation of one seed). */
 static int value_run(const struct screener_options *base, const char *tag, sweep_result *r) {
     static screener s;
     double sum[COLUMNS] = {0}, square[2] = {0, 0};
@@ -692,8 +694,8 @@ static int value_run(const struct screener_options *base, const char *tag, sweep
     return 0;
 }
 
-/* Runs one sweep. Pictures: efficiency and gangue against its value beside the thesis, the rate of
-   each deck against its value, and both over time. */
+/* Runs one sweep. Its pictures: efficiency and gangue against the value, beside the thesis; the rate of
+   each deck against the value; efficiency and gangue over time. */
 static void sweep_run(const sweep *w, const struct screener_options *base, const char *tag) {
     static sweep_result r;
     static const char *const what[4] = {"", "_time", "_gangue", "_rates"};
@@ -756,7 +758,7 @@ static const sweep *sweep_of(const char *name) {
     for (i = 0; i < sizeof sweeps/sizeof *sweeps; i++) if (is(sweeps[i].name, name)) return &sweeps[i];
     return 0;
 }
-/* One run more, under a name of its own. */
+/* Makes another run, with its name as the prefix of its results. */
 static void also(const struct screener_options *o, const char *name) {
     static screener s;
     snprintf(study.prefix, sizeof study.prefix, "%s.", name);
@@ -770,7 +772,7 @@ int main(int argc, char **argv) {
     int i;
     study_options(argc, argv, "A tumbling screening machine after [ALK07] section 4.4.", table,
                   (int)(sizeof table/sizeof *table));
-    if (options.quick) { /* what was asked for by name stays */
+    if (options.quick) { /* options given by name keep their values */
         options.share = 0.6;
         options.seconds = 15;
         study_options(argc, argv, "", table, (int)(sizeof table/sizeof *table));
@@ -845,7 +847,7 @@ int main(int argc, char **argv) {
         o.machine = "small";
         if (!(o.seconds > 0)) o.seconds = 3600;
         also(&o, "hour");
-    } else {                                    /* check: a small part of it all, for trying */
+    } else {                                    /* check: a small part of each study */
         o.share = 0.05;
         o.seconds = 3;
         also(&o, "model2");

@@ -1,32 +1,32 @@
 /* separator.c - a corona electrostatic separator: metal and plastic fall into different bins.
 
-   After [CRI14] and its sibling on GPUs (Critelli, Tasora, Degiorgi, Colledani, Mazhar 2014): grains of a few
-   millimetres, shredded from circuit boards, go down a plate onto a rotor at 0 V that turns under an electrode at 30
-   kV. Ions from a corona charge what does not conduct, which sticks to the rotor and leaves late or at a brush; what
-   conducts takes charge from the rotor by touching it and is thrown off early. Where who lands is the result: mass
-   over the bins, purity and recovery of metal against the place of a splitter. The physics is examples/corona.h, the
-   machine examples/separator.h; both use dem.h's public functions only.
+   After [CRI14] and a second paper, on GPUs (Critelli, Tasora, Colledani, Mazhar 2014). Grains of a few millimetres,
+   shredded from circuit boards, slide down a plate onto a rotor at 0 V that rotates under an electrode at 30 kV. Ions
+   from a corona charge the grains that do not conduct: they stick to the rotor and leave it late or at a brush. Grains
+   that conduct take charge from the rotor by touching it and are thrown off early. The results are the mass that lands
+   in each bin, and purity and recovery of metal against the position of a splitter. examples/corona.h has the physics,
+   examples/separator.h the machine; both use public functions of dem.h only.
 
-   --setting ours     Coulomb's cones, warm starts, a tolerance, steps of .25 ms, of fragments .05 ms (default)
-             seeds    the papers': convex cones, steps of 1 ms, 100 sweeps that start cold
+   --setting ours     impulses: Coulomb's cones, warm starts, a tolerance, steps of 0.25 ms, of fragments 0.05 ms (default)
+             seeds    impulses as in the papers: convex cones, steps of 1 ms, 100 sweeps with cold starts
              springs  softened Hertz contacts, steps chosen from the contact time
-   What the papers do not print is our choice and an option; docs/separator.md says what was tried.
+   Quantities that the papers do not print are our choice and have options; docs/separator.md compares some of them.
 
    build:  cc -O2 -std=c99 examples/separator.c dem.c -o build/separator -lm
    run:    build/separator, build/separator --study feed --repeats 4, build/separator --help
 
-   Results, of one run (a sweep prints one such block per value and seed, prefixed, and means with standard errors):
-     metal.x_mean, metal.x_sd         m from the rotor's axis in the plane of the bins, by mass; also plastic, middling,
-                                      and where one stuff is fed in two forms each of them: metal.sphere.x_mean
-     metal.landed, metal.brushed      grains; share of mass that the brush took (x < -R/2)
-     splitterNN.purity, .recovery     %, of metal beyond splitter NN: metal in what lies there, of the metal fed that
-                                      landed; NN = 00 .. 59 from --splitter-from over 200 mm
-     best_splitter, best_quality      m; %, where purity + recovery - 100 is largest
+   Results of one run. A sweep prints one such block per value and seed, with a prefix, and means with standard errors.
+     metal.x_mean, metal.x_sd         m from the rotor's axis in the plane of the bins, by mass; also for plastic and
+                                      middling. If a stuff is fed in two forms, also for each: metal.sphere.x_mean
+     metal.landed, metal.brushed      grains; fraction of the mass that the brush took (x < -R/2)
+     splitterNN.purity, .recovery     %: metal in the mass beyond splitter NN; mass of metal beyond it in all metal that
+                                      landed; NN = 00 to 59, from --splitter-from over 200 mm
+     best_splitter, best_quality      m; %: the splitter at which purity + recovery - 100 is largest, and this value
      fed, binned, present, missing    grains; missing = fed - binned - present is 0
-     unbalanced_steps                 steps at which a class or material was not in balance: 0
-     sweeps_mean, residual_max        per step; m/s (impulses)
-     unsolved_steps, overlap_max      steps that did not reach their tolerance; over the radius
-     steps, compute, grain_steps      s of wall time; grains times steps per second of it */
+     unbalanced_steps                 steps at which the balance of a class or material was wrong: 0
+     sweeps_mean, residual_max        sweeps per step; m/s (impulses)
+     unsolved_steps, overlap_max      steps that did not reach their tolerance; largest overlap over the radius
+     steps, compute, grain_steps      steps; s of wall time; grains times steps per second of wall time */
 #include "../dem.h"
 #include "corona.h"
 #include "separator.h"
@@ -69,7 +69,7 @@ static const study_option table[] = {
     {"feed-width", STUDY_REAL, &options.feed_width, 0.008, 3, "m", "of the whole machine, for the rate"},
     {"rate", STUDY_REAL, &options.rate, 1, 1e6, "1/s", "grains fed to the whole machine"},
     {"seconds", STUDY_REAL, &options.seconds, 0.05, 1e5, "s", "of feeding"},
-    {"drain", STUDY_REAL, &options.drain, 0, 100, "s", "after it, at most, until all have landed"},
+    {"drain", STUDY_REAL, &options.drain, 0, 100, "s", "longest time after feeding until all have landed"},
     {"feeder-speed", STUDY_REAL, &options.feeder_speed, 0, 3, "m/s", "of grains that come onto the plate"},
     {"feeder-angle", STUDY_REAL, &options.feeder_angle, 0, 60, "deg", "of the plate below the horizontal"},
     {"feeder-length", STUDY_REAL, &options.feeder_length, 0.045, 1, "m", "of the plate"},
@@ -86,7 +86,7 @@ static const study_option table[] = {
     {"metal-form", STUDY_CHOICE, &options.metal_form, 0, 0, "sphere|flake|shaving|fragment", "shape"},
     {"plastic-form", STUDY_CHOICE, &options.plastic_form, 0, 0, "sphere|flake|shaving|fragment",
         "shape, of middlings too"},
-    {"mixed", STUDY_REAL, &options.mixed, 0, 1, "", "share of metal and plastic that are spheres all the same"},
+    {"mixed", STUDY_REAL, &options.mixed, 0, 1, "", "share of metal and plastic that stay spheres"},
     {"density-metal", STUDY_REAL, &options.density_metal, 1, 3e4, "kg/m3", ""},
     {"density-plastic", STUDY_REAL, &options.density_plastic, 1, 3e4, "kg/m3", ""},
     {"permittivity", STUDY_REAL, &options.permittivity, 1, 1000, "", "of plastic, relative"},
@@ -101,19 +101,21 @@ static const study_option table[] = {
     {"wire", STUDY_REAL, &options.wire, 1e-3, 10, "mm", "radius of the corona's wire, for its onset"},
     {"wire-distance", STUDY_REAL, &options.wire_distance, 0.03, 2, "m", "of the wire from the rotor's axis"},
     {"roughness", STUDY_REAL, &options.roughness, 0.1, 1, "", "of the wire, Peek's m"},
-    {"ions-begin", STUDY_REAL, &options.ions_begin, -170, 180, "deg", "of the corona's window, after the top"},
-    {"ions-end", STUDY_REAL, &options.ions_end, -170, 180, "deg", "of it"},
+    {"ions-begin", STUDY_REAL, &options.ions_begin, -170, 180, "deg",
+        "where the corona's window begins, clockwise from the top"},
+    {"ions-end", STUDY_REAL, &options.ions_end, -170, 180, "deg", "where it ends"},
     {"layer", STUDY_REAL, &options.layer, 0, 1000, "mm", "depth above the rotor of corona and brush"},
     {"contact-time", STUDY_REAL, &options.contact_time, 0, 10, "s",
         "in which metal on the rotor takes its charge; 0: at once"},
     {"leak-time", STUDY_REAL, &options.leak_time, 0, 1e6, "s",
         "in which plastic on the rotor loses its charge; 0: never"},
     {"brush-time", STUDY_REAL, &options.brush_time, 0, 1, "s", "in which the brush stops and discharges; 0: no brush"},
-    {"brush", STUDY_REAL, &options.brush_middle, 90, 330, "deg", "its middle, after the top"},
+    {"brush", STUDY_REAL, &options.brush_middle, 90, 330, "deg", "its middle, clockwise from the top"},
     {"brush-half", STUDY_REAL, &options.brush_half, 1, 80, "deg", "half its angle"},
-    {"scatter", STUDY_REAL, &options.scatter, 0, 1, "", "charges are 1 - scatter times 0 .. 1"},
+    {"scatter", STUDY_REAL, &options.scatter, 0, 1, "",
+        "charges are multiplied by 1 - scatter times a random 0 to 1"},
     {"coulomb", STUDY_REAL, &options.coulomb, 0, 100, "mm", "range of forces between charged grains; 0: none"},
-    {"near-interval", STUDY_REAL, &options.near_interval, 1e-3, 10, "ms", "from one sum of these forces to the next"},
+    {"near-interval", STUDY_REAL, &options.near_interval, 1e-3, 10, "ms", "from one list of pairs to the next"},
     {"touch", STUDY_REAL, &options.touch, 1e-3, 1000, "um", "gap up to which a grain touches the rotor"},
     {"at-contact", STUDY_REAL, &options.at_contact, 0, 1, "", "share of Q E that lifts metal off the rotor"},
     {"image", STUDY_INT, &options.image, 0, 1, "", "1: image force"},
@@ -123,9 +125,10 @@ static const study_option table[] = {
     {"air-viscosity", STUDY_REAL, &options.air_viscosity, 1e-9, 1, "Pa s", ""},
     {"wind-x", STUDY_REAL, &options.wind_x, -30, 30, "m/s", "of the air"},
     {"wind-y", STUDY_REAL, &options.wind_y, -30, 30, "m/s", "of the air"},
-    {"swirl", STUDY_REAL, &options.swirl, 0, 1, "", "air the rotor takes along, share of its speed"},
+    {"swirl", STUDY_REAL, &options.swirl, 0, 1, "",
+        "speed of the air at the rotor over that of its surface"},
     {"bins", STUDY_REAL, &options.bins, -3, -0.17, "m", "height of the plane of the bins"},
-    {"splitter-from", STUDY_REAL, &options.splitter_from, -1, 1, "m", "first of the 60 places of the splitter"},
+    {"splitter-from", STUDY_REAL, &options.splitter_from, -1, 1, "m", "first of the 60 positions of the splitter"},
     {"setting", STUDY_CHOICE, &options.setting, 0, 0, "ours|seeds|springs", "how contacts are solved"},
     {"dt", STUDY_REAL, &options.dt, 0, 1e-2, "s", "step; 0: of the setting"},
     {"sweeps", STUDY_INT, &options.sweeps, 0, 100000, "", "at most, in a step; 0: of the setting"},
@@ -138,7 +141,7 @@ static const study_option table[] = {
     {"young", STUDY_REAL, &options.young, 1e4, 1e12, "Pa", "of springs"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
     {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the feed"},
-    {"repeats", STUDY_INT, &options.repeats, 1, REPEATS, "", "of each run, with seeds on from that"},
+    {"repeats", STUDY_INT, &options.repeats, 1, REPEATS, "", "runs of each value, with the seeds that follow"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "less time, under 20 s"},
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
     {"check", STUDY_FLAG, &options.check, 0, 0, "", "equal bits for 1, 2, 3, 4, 8 threads and after a restart"},
@@ -151,7 +154,7 @@ enum { OPTIONS = sizeof table/sizeof *table };
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
 
-/* ---- options into the machine ---- */
+/* ---- the machine that the options describe ---- */
 
 static separator_form form_of(const char *word) {
     return is(word, "flake") ? SEPARATOR_FLAKE : is(word, "shaving") ? SEPARATOR_SHAVING
@@ -166,7 +169,7 @@ static void part_add(separator_desc *d, separator_stuff stuff, separator_form fo
     p->stuff = stuff; p->form = form; p->share = share;
     d->part_count++;
 }
-/* What is fed; 0 where it makes no sense, which has been said. */
+/* Sets the mixture that is fed. Returns 0, after a message, if the options contradict each other. */
 static int mixture_set(separator_desc *d, const struct separator_options *o) {
     const double plastic = 1 - o->metal - o->middling;
     const separator_form metal_form = form_of(o->metal_form), plastic_form = form_of(o->plastic_form);
@@ -227,9 +230,9 @@ static void charging_set(separator_desc *d, const struct separator_options *o) {
 static int fragments_fed(const struct separator_options *o) {
     return is(o->metal_form, "fragment") || is(o->plastic_form, "fragment");
 }
-/* Contacts: the setting, and what was asked for besides. A fragment on the rotor spins at up to 1200 rad/s, and a step
-   does not see a corner that comes in during it: the overlap is the corner's speed times dt, up to 0.9 of the half width
-   in 0.25 ms. */
+/* Sets how contacts are solved: by the setting, then by further options. A fragment on the rotor spins at up to 1200 rad/s,
+   and a step does not detect a corner that arrives during it. The overlap is then the corner's speed times dt, up to 0.9
+   of the half width in 0.25 ms. */
 static void setting_set(separator_desc *d, const struct separator_options *o) {
     const int seeds = is(o->setting, "seeds"), springs = is(o->setting, "springs");
     const int convex = *o->cone ? is(o->cone, "convex") : seeds;
@@ -282,10 +285,10 @@ static int desc_of(separator_desc *d, const struct separator_options *o) {
     return mixture_set(d, o) && sizes_set(d, o);
 }
 
-/* ---- what came of it ---- */
+/* ---- results of a run ---- */
 
 typedef struct outcome {
-    char name[GROUPS][32];             /* of groups that there are: the stuffs, then parts of stuffs in two forms */
+    char name[GROUPS][32];             /* names of the groups: the stuffs, then the parts of stuffs that have two forms */
     double count[GROUPS], mass[GROUPS], mean[GROUPS], sd[GROUPS], brushed[GROUPS], bins[GROUPS][BINS];
     double purity[SPLITTERS], recovery[SPLITTERS], best, quality;    /* shares; m */
     double sweeps, residual, unsolved, overlap, steps, compute, grain_steps, fed, binned, present, unbalanced;
@@ -298,7 +301,7 @@ static const char *const form_names[4] = {"sphere", "flake", "shaving", "fragmen
 static double splitter_place(const struct separator_options *o, int i) {
     return o->splitter_from + 0.2*i/(SPLITTERS - 1);
 }
-/* Share of a part's mass that is metal. */
+/* Returns the fraction of a part's mass that is metal. */
 static double metal_share(const separator_desc *d, separator_stuff stuff) {
     const double f = d->middling*d->density[SEPARATOR_METAL];
     return stuff == SEPARATOR_METAL ? 1 : stuff == SEPARATOR_PLASTIC ? 0
@@ -335,7 +338,7 @@ static void splitters_take(const separator *s, const struct separator_options *o
             beyond += l->mass;
             metal += of_metal;
         }
-        r->purity[k] = beyond > 0 ? metal/beyond : 1;        /* nothing there: nothing impure */
+        r->purity[k] = beyond > 0 ? metal/beyond : 1;        /* an empty bin counts as pure */
         r->recovery[k] = all > 0 ? metal/all : 0;
         if (r->purity[k] + r->recovery[k] - 1 > r->quality) {
             r->quality = r->purity[k] + r->recovery[k] - 1;
@@ -419,7 +422,7 @@ static double grain_charge(const dem_world *world, dem_body body, void *user) {
     if (dem_body_get(world, body, &s) != DEM_OK || !s.reals) return 0;
     return 1e12*((double)s.reals[CORONA_INDUCED] + (double)s.reals[CORONA_IONS]);
 }
-/* Grains as they are, coloured by charge, with rotor, electrode and plate. */
+/* Draws the present grains, coloured by charge, with rotor, electrode and plate. */
 static void picture_draw(const separator *s, const char *file) {
     enum { RIM = 121 };
     const dem_bodies b = dem_bodies_get(s->world);
@@ -433,7 +436,7 @@ static void picture_draw(const separator *s, const char *file) {
         if ((double)x[1] < s->desc.bins) continue;
         v[0][n] = (double)x[0];
         v[1][n] = (double)x[1];
-        v[2][n] = 2.5*(double)x[3];                /* or nobody would see them */
+        v[2][n] = 2.5*(double)x[3];                /* enlarged, so that they can be seen */
         v[3][n++] = 1e12*((double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS]);
     }
     for (i = 0; i < RIM; i++) {
@@ -462,7 +465,7 @@ static void picture_draw(const separator *s, const char *file) {
     study_figure_write(&f, file);
     for (k = 0; k < 4; k++) free(v[k]);
 }
-/* Feeds, drains, counts. picture: drawn half way through. Answers 0 when it went well; s is left open. */
+/* Makes one run: feeds, lets grains land, counts. picture: drawn half way. Returns 0 on success; the caller ends s. */
 static int separator_run(separator *s, const struct separator_options *o, const char *name, outcome *r,
     const char *picture) {
     separator_desc d;
@@ -504,7 +507,7 @@ static int separator_run(separator *s, const struct separator_options *o, const 
 
 /* ---- pictures ---- */
 
-/* Steps of a histogram, % of the group's mass per bin. */
+/* Draws a histogram as steps: % of the group's mass per bin. */
 static void steps_draw(const double *bins, double mass, double *x, double *y) {
     int i;
     for (i = 0; i < BINS; i++) {
@@ -513,7 +516,7 @@ static void steps_draw(const double *bins, double mass, double *x, double *y) {
         y[2*i] = y[2*i + 1] = mass > 0 ? 100*bins[i]/mass : 0;
     }
 }
-/* The figure's range: where there is anything. */
+/* Sets the range of the figure to the bins that are not empty. */
 static void range_widen(study_figure *f, const outcome *r, int g) {
     int i;
     for (i = 0; i < BINS && r->mass[g] > 0; i++) {
@@ -571,7 +574,7 @@ typedef struct sweep {
     const char *name, *title, *label;
     int count;
     double value[VALUES];
-    const char *words[VALUES];         /* in place of numbers: the values are 0, 1, 2 ... */
+    const char *words[VALUES];         /* names instead of numbers; the values are then 0, 1, 2 ... */
     void (*set)(struct separator_options *o, double value);
 } sweep;
 static void set_rate(struct separator_options *o, double v) { o->rate = v; }
@@ -623,7 +626,7 @@ static void spread_tell(const char *group, const char *what, spread s, const cha
     study_result(text, s.error, unit);
 }
 
-/* What a sweep keeps: of each value the mean outcome and its standard errors. */
+/* The results of a sweep: for each value means and standard errors. */
 typedef struct swept { outcome mean; spread x[3], sd[3], quality, compute; char name[32]; } swept;
 static outcome trials[REPEATS];
 static swept kept[VALUES];
@@ -661,7 +664,7 @@ static void value_tell(swept *v, int repeats) {
     for (i = 0; i < repeats; i++) number[i] = trials[i].compute;
     spread_tell("", "compute", v->compute = spread_of(number, repeats), "s");
 }
-/* All seeds of one value; 0 when they went well. */
+/* Runs all seeds of one value; returns 0 on success. */
 static int value_run(const struct separator_options *base, const char *name, swept *v) {
     static separator s;
     int i, bad = 0;
@@ -811,7 +814,7 @@ static uint64_t bits_run(separator *s, const struct separator_options *o, int th
     if (s->unbalanced) study_fail("%.0f steps at which a class was not in balance", (double)s->unbalanced);
     return hash;
 }
-/* A slice so wide that threads share it (more than one domain of 2048 grains), of spheres and some middlings. */
+/* Runs a slice of spheres and some middlings that is wide enough for several threads (more than 2048 grains). */
 static void check_run(const struct separator_options *base) {
     static const int threads[5] = {1, 2, 3, 4, 8};
     static separator s;
@@ -857,7 +860,7 @@ int main(int argc, char **argv) {
     size_t i;
     study_options(argc, argv, "A corona electrostatic separator after Critelli, Tasora and others (2014).", table,
         OPTIONS);
-    if (options.quick) {                       /* what was asked for by name stays */
+    if (options.quick) {                       /* options given by name keep their values */
         options.seconds = 1.5;
         options.drain = 1;
         study_options(argc, argv, "", table, OPTIONS);

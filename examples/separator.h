@@ -1,8 +1,9 @@
-/* separator.h - a corona electrostatic separator: rotor, electrode, feeder, brush, bins, and who falls where. MIT
+/* separator.h - a corona electrostatic separator: rotor, electrode, feeder, brush, bins, and where each grain lands. MIT
    licence. Include it after dem.h and corona.h.
 
-   x to the side on which metal flies, y up, z along the rotor's axis, which is the origin. The rotor turns clockwise. A
-   slice of the machine, periodic along z, with its share of the feed. Grains go down a plate onto the top of the rotor.
+   x points to the side to which metal flies, y up, z along the axis of the rotor, which goes through the origin. The rotor
+   rotates clockwise. The world is a slice of the machine, periodic along z, with its share of the feed. Grains slide down a
+   plate onto the top of the rotor.
 
        separator_desc d = separator_desc_make();
        separator s;
@@ -12,8 +13,8 @@
        ... s.landed[0 .. s.landed_count - 1] ...
        separator_end(&s);
 
-   Machine: the open program of [CRI14] (see corona.h), drum .320 m, electrode .038 m, .267 m from axis to axis, 30
-   degrees above the horizontal, 30 kV, 44.8 turns a minute, fed over .182 m of its width. */
+   The machine is that of the open program of [CRI14] (see corona.h): rotor 0.320 m, electrode 0.038 m, 0.267 m from axis
+   to axis, 30 degrees above the horizontal, 30 kV, 44.8 revolutions a minute, fed over a width of 0.182 m. */
 #ifndef SEPARATOR_H
 #define SEPARATOR_H
 #include <stdio.h>
@@ -24,7 +25,7 @@ typedef enum separator_form {
 } separator_form;
 typedef enum separator_stuff { SEPARATOR_METAL, SEPARATOR_PLASTIC, SEPARATOR_MIDDLING } separator_stuff;
 
-/* A share of what is fed: each is a material of dem.h, and a class of the feed per variant of its form. */
+/* A part of the feed. Each is a material of dem.h, with one class of the feed per variant of its form. */
 typedef struct separator_part { separator_stuff stuff; separator_form form; double share; } separator_part;
 
 typedef struct separator_desc {
@@ -32,7 +33,7 @@ typedef struct separator_desc {
     double angle, voltage, rpm;              /* rad; V; 1/min */
     double width, feed_width;                /* m: of the slice; of the whole machine's feed */
     double rate;                             /* grains/s of the whole machine */
-    double feed_time;                        /* s, then nothing more comes; 0: no end */
+    double feed_time;                        /* s, after which the feed ends; 0: no end */
     double feeder_speed, feeder_angle, feeder_length, feeder_edge;   /* m/s; rad below level; m; m, x where it ends */
     dem_sizes sizes;                         /* of the spheres of equal volume */
     int part_count;
@@ -50,7 +51,7 @@ typedef struct separator_desc {
     double tolerance, range, skin, dt;       /* as in dem_world_desc */
     double young;                            /* Pa, springs alone */
     dem_normal_law normal_law;
-    double near_interval;                    /* s, from one sum of Coulomb's forces to the next */
+    double near_interval;                    /* s, from one list of near pairs to the next */
     uint64_t seed;
     int ledger;
 } separator_desc;
@@ -78,7 +79,7 @@ typedef struct separator {
     char error[600];
 } separator;
 
-/* ---- what is fed ---- */
+/* ---- the feed ---- */
 
 static inline double separator_random(uint64_t *state) {
     uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
@@ -109,7 +110,7 @@ static inline int separator_points(separator_form form, int variant, dem_real *p
     }
     return count;
 }
-/* One class more: of this part, in this variant of its form. The corona is told where it can touch. */
+/* Adds a class: this part, in this variant of its form. The corona receives the points at which it can touch. */
 static inline int separator_class_add(separator *s, int part, int variant) {
     const separator_form form = s->desc.parts[part].form;
     const int n = s->class_count;
@@ -250,7 +251,7 @@ static inline int separator_stuff_add(separator *s) {
         separator_rub(s, s->rotor_stuff, d->drum_friction, d->rolling) &&
         separator_rub(s, s->plate_stuff, d->plate_friction, 0);
 }
-/* Rotor, electrode, the feeder's plate with an upright back, and what is fed onto it. */
+/* Adds the rotor, the electrode, the feeder's plate with an upright back, and the feed. */
 static inline int separator_walls_add(separator *s) {
     const separator_desc *d = &s->desc;
     const dem_vec3 origin = dem_vec3_make(0, 0, 0), along = dem_vec3_make(0, 0, 1);
@@ -276,7 +277,7 @@ static inline int separator_walls_add(separator *s) {
         dem_wall_motion_set(s->world, s->rotor, &turn) == DEM_OK && separator_feed_add(s, x, y);
 }
 static inline int separator_outlet_add(separator *s) {
-    const double y = s->desc.bins - 0.05;            /* counted at the bins, taken out below */
+    const double y = s->desc.bins - 0.05;            /* grains are counted at the bins and removed below */
     dem_outlet_desc o = DEM_OUTLET_DESC;
     o.box = dem_box_make(-2, (dem_real)(y - 2), -1, 2, (dem_real)y, 1);
     s->outlet = dem_outlet_add(s->world, &o);
@@ -293,7 +294,7 @@ static inline void separator_corona_set(separator *s) {
     c->ions.depth = c->brush.depth = d->layer;
     c->bins = d->bins;
     c->period = d->width;
-    if (d->response == DEM_RESPONSE_IMPULSES) {      /* what they leave open at twice the rotor's speed */
+    if (d->response == DEM_RESPONSE_IMPULSES) {      /* the gap that impulses leave, at twice the rotor's speed */
         const double along = 2*c->speed*d->rotor*d->dt, gap = along*along/(2*d->rotor);
         if (gap > c->touch) c->touch = gap;
     }
@@ -302,7 +303,7 @@ static inline dem_result separator_refused(separator *s, dem_result result) {
     if (result != DEM_OK) separator_say(s, dem_world_error_get(s->world));
     return result;
 }
-/* s must stay where it is while its world lives. */
+/* Creates the machine. s must keep its address until separator_end. */
 static inline dem_result separator_create(separator *s, const separator_desc *desc) {
     dem_world_desc d = DEM_WORLD_DESC;
     int i;
@@ -330,8 +331,8 @@ static inline dem_result separator_create(separator *s, const separator_desc *de
         d.tolerance = (dem_real)desc->tolerance;
         d.cold_start = desc->cold;
         d.law_range = (dem_real)desc->range;
-        /* What falls at 4 m/s goes farther than its radius in a step. dem.h wants twice that as range; where steps
-           are so long that this costs too much, it is enough that what meets on the rotor, at 1 m/s, is seen */
+        /* A grain that falls at 4 m/s moves farther than its radius in a step. dem.h needs a range of twice that.
+           Where steps are so long that this costs too much, a range for contacts on the rotor, at 1 m/s, is enough */
         d.allow_large_dt = desc->range < 8*desc->dt;
     } else d.normal_law = desc->normal_law;
     s->world = dem_world_create(&d);
@@ -348,7 +349,7 @@ static inline void separator_end(separator *s) {
     memset(s, 0, sizeof *s);
 }
 
-/* ---- who falls where ---- */
+/* ---- where grains land ---- */
 
 static inline int separator_class_of(const separator *s, int32_t material, int32_t shape) {
     int k;
@@ -380,7 +381,7 @@ static inline int separator_land(separator *s, double x, double mass, int fed_cl
     l->fed_class = fed_class; l->part = s->class_part[fed_class];
     return 1;
 }
-/* Counts, once, each grain that has gone through the plane of the bins; present: by class, those that have not. */
+/* Counts each grain once when it has passed the plane of the bins; present: by class, the grains that have not. */
 static inline dem_result separator_tally(separator *s, uint64_t *present) {
     const dem_bodies b = dem_bodies_get(s->world);
     int i;
@@ -398,7 +399,7 @@ static inline dem_result separator_tally(separator *s, uint64_t *present) {
     }
     return DEM_OK;
 }
-/* 1: of each class as many were fed as have landed and are here. */
+/* Returns 1 if for each class the grains fed are those landed plus those present. */
 static inline int separator_balanced(const separator *s, const uint64_t *present) {
     const dem_body_counts balance = dem_body_counts_get(s->world);
     dem_feed_state fed;
@@ -412,7 +413,7 @@ static inline int separator_balanced(const separator *s, const uint64_t *present
     }
     return ok && sum == fed.total;
 }
-/* Some steps, at which all that was fed is looked for: it has landed, or is here. */
+/* Takes some steps, then counts landed grains and checks that every grain fed has landed or is present. */
 static inline dem_result separator_advance(separator *s, int steps) {
     uint64_t present[SEPARATOR_CLASSES];
     dem_counters counters;
@@ -429,8 +430,8 @@ static inline dem_result separator_advance(separator *s, int steps) {
     s->unbalanced += !separator_balanced(s, present);
     return DEM_OK;
 }
-/* As far as Coulomb's forces between near grains may stay as they are, about near_interval: with impulses each step by
-   itself, springs all at once. */
+/* Runs for about near_interval, in which the list of near grains stays: with impulses one step at a time, with springs all
+   steps at once. */
 static inline dem_result separator_step(separator *s) {
     const double dt = (double)dem_counters_get(s->world).dt;
     const int steps = dt > 0 ? (int)(s->desc.near_interval/dt + 0.5) : 1;
@@ -445,7 +446,7 @@ static inline dem_result separator_step(separator *s) {
     for (i = 0; result == DEM_OK && (i < steps || !i); i++) result = separator_advance(s, 1);
     return result;
 }
-/* Grains that have not landed. */
+/* Returns the number of grains that have not landed. */
 static inline uint64_t separator_present(const separator *s) {
     dem_feed_state fed;
     uint64_t binned = 0;
@@ -453,7 +454,7 @@ static inline uint64_t separator_present(const separator *s) {
     for (k = 0; k < s->class_count; k++) binned += s->binned[k];
     return dem_feed_get(s->world, s->feed, &fed) == DEM_OK ? fed.total - binned : 0;
 }
-/* After dem_checkpoint_read: what had landed then was counted by another program. */
+/* Call this after dem_checkpoint_read: the grains that had landed before were counted by the earlier program. */
 static inline dem_result separator_restored(separator *s) {
     uint64_t present[SEPARATOR_CLASSES];
     dem_feed_state fed;

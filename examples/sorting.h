@@ -1,17 +1,17 @@
 /* sorting.h - how well a screening machine sorts: efficiency, gangue and rate of several outlets.
    MIT licence. Include it after dem.h.
 
-   Of each outlet (dem_outlet_add) two kinds of grains are counted: s of the radii wanted there, and
-   g others, the gangue. Of M outlets together, by number of grains and by mass, [ALK07]:
+   Each outlet (dem_outlet_add) counts two kinds of grains: s of the radii wanted there, and g others,
+   the gangue. Measures of M outlets together, by number of grains or by mass [ALK07]:
 
        efficiency   1/M sum s/(s + g)               eq 4.33, 4.35
        gangue       sum g/sum (s + g)               eq 4.41
        rate         sum (s + g)/(time counted)      eq 4.40
 
-   An outlet that nothing has left yet counts as 0 in the efficiency, and `silent` says how many
-   these are; [ALK07] takes 1 for the lowest deck from the start. Its eq 4.36 contains the density
-   twice, which we take for a misprint. The time is counted from the creation of the world or the
-   last dem_outlet_reset, whichever outlet's is the earliest.
+   An outlet through which no grain has left yet counts as 0 in the efficiency; `silent` is the number
+   of these outlets. [ALK07] counts the lowest deck as 1 from the start. Its eq 4.36 contains the
+   density twice, which we take for a misprint. The time begins at the earliest start of an outlet:
+   its addition or its last dem_outlet_reset.
    Tests: tests/scene/test_feed.c. Used by examples/screener.c. */
 #ifndef SORTING_H
 #define SORTING_H
@@ -22,12 +22,12 @@ typedef struct sorting {
     double efficiency_number, efficiency_mass; /* 0..1 */
     double gangue_number, gangue_mass;         /* 0..1, share of gangue in all that left */
     double rate_number, rate_mass;             /* grains/s, kg/s */
-    int silent;                                /* outlets that nothing has left yet */
+    int silent;                                /* outlets through which no grain has left yet */
     char error[200];                           /* why sorting_get failed, else "" */
 } sorting;
 
-/* Fills in *out; count outlets, >= 0. DEM_ERROR_ARGUMENT and a sentence in out->error: a null
-   pointer, or an outlet that the world does not have. */
+/* Computes the measures of `count` outlets (>= 0) into *out. DEM_ERROR_ARGUMENT, with a message in
+   out->error, for a null pointer or an outlet that the world does not have. */
 static inline dem_result sorting_get(const dem_world *world, const dem_outlet *outlets, int count,
                                      sorting *out) {
     double number = 0, mass = 0, gangue = 0, gangue_mass = 0, seconds = 0;

@@ -1,15 +1,16 @@
-/* study.h - what the studies and benches share: options, progress, results, CSV, pictures (SVG).
-   MIT licence. Needs libc and libm only; dem.h never needs it. Include it in one file of a program.
+/* study.h - functions that the studies and benches share: options, progress, results, CSV, pictures
+   (SVG). MIT licence. It needs only libc and libm, and dem.h does not need it. Include it in one file of
+   a program.
 
-       static double speed = 0.7;                            // its value is the option's default
+       static double speed = 0.7;                            // the present value is the default of the option
        static const study_option table[] = {
            {"speed", STUDY_REAL, &speed, 0.01, 3, "of critical", "speed of the mill"},
        };
        study_options(argc, argv, "what it does", table, 1);  // --help; exit code 2 on a mistake
        study_begin("build/results");                         // makes folder and summary.txt
-       study_progress("mill", 0.1, particle_steps);          // as often as you like; on stderr
-       study_result("torque_mean", 0.031, "N m");            // on stdout and in summary.txt
-       return study_end();                                   // 0, or 1 when something went wrong
+       study_progress("mill", 0.1, particle_steps);          // as often as you like; prints on stderr
+       study_result("torque_mean", 0.031, "N m");            // prints on stdout and into summary.txt
+       return study_end();                                   // 0, or 1 if something failed
 */
 #ifndef STUDY_H
 #define STUDY_H
@@ -41,10 +42,10 @@ typedef struct study_state {
     char root[400], folder[480];  /* results of the whole study; of the present part of it */
     char prefix[64];              /* put before the names of results */
     int files, failures;          /* written; things that went wrong */
-    int quiet;                    /* 1: nothing is written or told but failures: another process does */
+    int quiet;                    /* 1: writes and prints failures only, because another process does the rest */
     double begun, shown;          /* s, wall clock: of this progress line */
-    int tenths, open;             /* tenths told; a line is open on the terminal */
-    char told[64];                /* what the line is about */
+    int tenths, open;             /* tenths printed; 1: a line is open on the terminal */
+    char told[64];                /* task that the line reports */
     char replay[1024];            /* file of the replay, printed by study_end; "": none */
 } study_state;
 static study_state study;
@@ -61,7 +62,7 @@ STUDY_FN double study_clock(void) { /* s, wall clock */
 #endif
 }
 
-/* One sentence on stderr; counted, so that study_end tells the shell. */
+/* Prints a message on stderr and counts a failure, so that study_end returns 1. */
 STUDY_FN void study_fail(const char *sentence, ...) {
     va_list arguments;
     study.failures++;
@@ -73,7 +74,7 @@ STUDY_FN void study_fail(const char *sentence, ...) {
     fputc('\n', stderr);
 }
 
-/* Zeroed memory; ends the program when there is none. */
+/* Returns zeroed memory; ends the program if there is none. */
 STUDY_FN void *study_alloc(size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
     if (!memory) { study_fail("no memory for %.0f bytes", (double)count*(double)size); exit(1); }
@@ -92,7 +93,7 @@ typedef struct study_option {
     const char *help;
 } study_option;
 
-/* Help of the flag --short, which every study takes with all its other options; tests/studies.sh gives it. */
+/* Help text of the flag --short. Every study accepts it together with all its other options; tests/studies.sh uses it. */
 #define STUDY_SHORT "for tests: all runs that were asked for, in seconds, whatever else is said of their length"
 
 STUDY_FN void study_help(const char *about, const study_option *table, int count) {
@@ -114,8 +115,8 @@ STUDY_FN void study_help(const char *about, const study_option *table, int count
     printf("  %-20s this text\n", "--help");
 }
 
-/* Reads --name value, --name=value and --flag into the table's variables. --help prints and exits
-   with 0; a mistake is told in one sentence and exits with 2. */
+/* Reads --name value, --name=value and --flag into the variables of the table. --help prints the table
+   and exits with 0. A wrong option prints a message and exits with 2. */
 STUDY_FN void study_options(int argc, char **argv, const char *about, const study_option *table,
                             int count) {
     int i, k, bad;
@@ -158,7 +159,7 @@ STUDY_FN void study_options(int argc, char **argv, const char *about, const stud
 
 /* ---- folders, files, results ---- */
 
-/* And those above it; failure shows when files are opened. */
+/* Makes a folder and those above it. A failure appears when files are opened. */
 STUDY_FN void study_make_folder(const char *path) {
     char part[512] = "mkdir ";
     size_t i;
@@ -168,12 +169,12 @@ STUDY_FN void study_make_folder(const char *path) {
 #ifdef STUDY_POSIX
         if (mkdir(part + 6, 0777) && errno != EEXIST) return;
 #else
-        if (system(part)) continue; /* it may be there already */
+        if (system(part)) continue; /* it may exist already */
 #endif
     }
 }
 
-/* A name in the present folder. Holds until the next four calls. */
+/* Returns the path of a file in the present folder. It is valid during the next three calls. */
 STUDY_FN const char *study_path(const char *name) {
     static char paths[4][1024];
     static int next;
@@ -204,8 +205,8 @@ STUDY_FN void study_begin(const char *folder) {
     study_close(study_open("summary.txt"), "summary.txt");
     if (study.failures) exit(1);
 }
-/* From here on files go to a folder inside the study's, and names of results begin with its name;
-   "": back. */
+/* From now on files go to this folder inside that of the study, and names of results begin with its
+   name; "": back to the folder of the study. */
 STUDY_FN void study_part(const char *name) {
     snprintf(study.folder, sizeof study.folder, "%s%s%s", study.root, *name ? "/" : "", name);
     snprintf(study.prefix, sizeof study.prefix, "%s%s", name, *name ? "_" : "");
@@ -233,7 +234,7 @@ STUDY_FN void study_result(const char *name, double value, const char *unit) {
     if (value != value) study_fail("%s%s could not be measured", study.prefix, name);
 }
 
-/* A sentence on stderr that is no failure. */
+/* Prints a note on stderr; it does not count as a failure. */
 STUDY_FN void study_say(const char *sentence, ...) {
     va_list arguments;
     if (study.quiet) return;
@@ -257,7 +258,7 @@ STUDY_FN int study_end(void) { /* returns the exit code; prints the file of the 
     return study.failures ? 1 : 0;
 }
 
-/* A table: columns of `rows` numbers each under a heading "time_s,torque_Nm". */
+/* Writes a table: columns of `rows` numbers each, under a heading such as "time_s,torque_Nm". */
 STUDY_FN void study_csv(const char *name, const char *heading, int rows, int columns,
                         const double *const *column) {
     FILE *file = study_open(name);
@@ -272,9 +273,9 @@ STUDY_FN void study_csv(const char *name, const char *heading, int rows, int col
 
 /* ---- progress ---- */
 
-/* How far `what` is: done 0..1, work in particle-steps since it began. The first call for a new
-   `what` starts its clock; the one with done = 1 ends the line. A terminal sees one line rewritten,
-   a file a line every 10 %. */
+/* Reports the progress of the task `what`: done, 0 to 1; work, grains times steps since it began. The
+   first call for a new `what` starts its clock; the call with done = 1 ends the line. On a terminal
+   one line is rewritten, a file gets a line every 10 %. */
 STUDY_FN void study_progress(const char *what, double done, double work) {
     double now = study_clock(), spent, left;
     int terminal = study_terminal();
@@ -305,13 +306,14 @@ typedef enum study_style {
     STUDY_LINE, STUDY_DASHED, STUDY_FAINT, STUDY_DOTS, STUDY_OUTLINE
 } study_style;
 typedef struct study_series {
-    const char *name;             /* in the legend; null: not there */
+    const char *name;             /* in the legend; null: not in it */
     study_style style;
     int count;
     const double *x, *y;
 } study_series;
 
-/* Zeroed, then filled in. Curves, over a map (value), a quiver (u, v) or discs (disc_*). */
+/* A figure: curves over a map (value), over arrows (u, v) or over discs (disc_*). Set all to zero, then
+   fill it in. */
 #define STUDY_CURVES 20
 typedef struct study_figure {
     const char *title, *x_label, *y_label;
@@ -321,8 +323,8 @@ typedef struct study_figure {
     int curve_count;
     study_series curves[STUDY_CURVES];
     int nx, ny;                   /* cells over the range */
-    const double *value;          /* map, nx x ny; what is not a number stays white */
-    const double *u, *v;          /* quiver, nx x ny: darts coloured by length */
+    const double *value;          /* map, nx x ny; NaN stays white */
+    const double *u, *v;          /* nx x ny arrows, coloured by length */
     int disc_count;
     const double *disc_x, *disc_y, *disc_r, *disc_value;
     const char *bar_label;
@@ -336,7 +338,8 @@ STUDY_FN void study_curve(study_figure *f, const char *name, study_style style, 
     if (f->curve_count < STUDY_CURVES) f->curves[f->curve_count++] = s;
 }
 
-/* Viridis, 0..1: even in lightness, also for the colour-blind. Holds until the next call. */
+/* Returns the colour of a value, 0 to 1, in the scale Viridis: its lightness grows evenly, which the colour-blind see, too.
+   Valid until the next call. */
 STUDY_FN const char *study_colour(double t) {
     static const unsigned char anchor[11][3] = {
         {68, 1, 84}, {72, 36, 117}, {65, 68, 135}, {53, 95, 141}, {42, 120, 142}, {33, 145, 140},
@@ -362,8 +365,8 @@ STUDY_FN void study_text(FILE *f, double x, double y, const char *anchor, int si
     fputs("</text>\n", f);
 }
 
-/* Where the ticks go: about `most`, at 1, 2 or 5 times a power of ten; of a logarithmic axis, at
-   powers of ten. */
+/* Chooses about `most` ticks at 1, 2 or 5 times a power of ten; on a logarithmic axis at powers of
+   ten. */
 STUDY_FN int study_ticks(double lo, double hi, int logarithmic, int most, double at[20]) {
     int count = 0, k;
     double step = 1, power, want = (hi - lo)/most;
@@ -376,14 +379,14 @@ STUDY_FN int study_ticks(double lo, double hi, int logarithmic, int most, double
     return count;
 }
 
-/* Level of colour of a cell, of 64; -1 where there is nothing. */
+/* Returns the level of colour of a cell, of 64; -1 for an empty cell. */
 STUDY_FN int study_level(const study_figure *f, int cell, const double *range) {
     double value = f->value ? f->value[cell] : hypot(f->u[cell], f->v[cell]);
     double at = 64*(value - range[0])/(range[1] - range[0]);
     return at != at ? -1 : at < 0 ? 0 : at >= 64 ? 63 : (int)at;
 }
 
-/* Cells as runs of equal colour (map) or as darts (quiver), one path per colour for small files. */
+/* Draws cells as runs of equal colour (map) or as arrows, one path per colour, so that files are small. */
 STUDY_FN void study_cells(FILE *file, const study_figure *f, double left, double top, double w,
                           double h, const double *range) {
     double dx = w/f->nx, dy = h/f->ny, a, b, n, wide;
@@ -398,7 +401,7 @@ STUDY_FN void study_cells(FILE *file, const study_figure *f, double left, double
                 for (from = k; (k + 1)%f->nx && study_level(f, k + 1, range) == level;) k++;
                 a = (k + 1 - from)*dx;
                 fprintf(file, "M%.2f %.2fh%.2fv%.2fh%.2fz", x, y, a, dy, -a);
-            } else { /* tip, barb, notch, barb; a dart of full speed is two cells and a half long */
+            } else { /* tip, barb, notch, barb; the longest arrow has 2.5 cells */
                 a = 2.5*dx*f->u[k]/range[1];
                 b = -2.5*dx*f->v[k]/range[1];
                 n = hypot(a, b);
@@ -413,7 +416,7 @@ STUDY_FN void study_cells(FILE *file, const study_figure *f, double left, double
     }
 }
 
-/* Ranges of what was left to choose: r = x0, x1, y0, y1 (logarithms where the axis is), lo, hi. */
+/* Finds the ranges that the caller left open: r = x0, x1, y0, y1 (logarithms on logarithmic axes), lo, hi. */
 STUDY_FN void study_ranges(const study_figure *f, double r[6]) {
     int c, i, axis;
     r[0] = f->x0; r[1] = f->x1; r[2] = f->y0; r[3] = f->y1; r[4] = f->lo; r[5] = f->hi;
@@ -449,7 +452,7 @@ STUDY_FN void study_ranges(const study_figure *f, double r[6]) {
     if (r[5] == r[4]) r[5] = r[4] + 1;
 }
 
-/* Where a value lies between lo and hi, on a stretch of the paper. */
+/* Returns the position of a value between lo and hi on a part of the paper. */
 STUDY_FN double study_place(double p, int logarithmic, const double *range, double from,
                             double length) {
     return from + length*((logarithmic ? log10(p) : p) - range[0])/(range[1] - range[0]);
@@ -515,7 +518,7 @@ STUDY_FN void study_figure_write(const study_figure *f, const char *name) {
     study_rectangle(file, left, top, w, h, "");
     fputs("</clipPath>\n", file);
 
-    /* map or darts, discs, frame */
+    /* map or arrows, discs, frame */
     if (f->value || f->u) study_cells(file, f, left, top, w, h, r + 4);
     for (i = 0; i < f->disc_count; i++)
         study_dot(file, study_place(f->disc_x[i], 0, r, left, w),

@@ -17,7 +17,7 @@
 
 typedef struct study_replay {
     dem_world *world;
-    dem_replay *replay;          /* null: none, or a failure, which has been reported */
+    dem_replay *replay;          /* null: no replay, or a failure that has been reported */
     double start, interval;      /* s */
     int taken;
 } study_replay;

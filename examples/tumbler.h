@@ -1,22 +1,22 @@
 /* tumbler.h - how a tumbling screening machine moves: the frames of its barrel and its plates, as a
    function for DEM_MOTION_USER. MIT licence. Include it after dem.h.
 
-   The machine is that of [ALK07] section 4.2 and 4.3.2. A main shaft turns with `speed` about the
-   vertical; on it sits a plate inclined by alpha and beta; on the plate, out of the shaft's middle
-   by `eccentricity`, an auxiliary shaft carries the barrel, which turns about its own axis by psi
-   against the ground (or nearly so: about an axis that tumbles). With Z, C, B the rotations of the
-   coordinates about z, x and y, phi = speed t, chi = psi - phi,
+   The machine is that of [ALK07] sections 4.2 and 4.3.2. A main shaft rotates with `speed` about the
+   vertical. It carries a plate inclined by alpha and beta. On the plate, off the axis of the main
+   shaft by `eccentricity`, an auxiliary shaft carries the barrel. Relative to the ground the barrel
+   rotates by psi about its own axis, which tumbles. Z, C and B are rotations of the coordinates about
+   z, x and y; phi = speed t, chi = psi - phi:
 
        A_lg = Z(chi) B(beta) C(alpha) Z(phi)           eq 4.2, 4.3; local = A_lg (world - r_oc)
        r_oc = Z(phi)^T p,  p = (u (1 - cos b), eps - e (1 - cos a) - u sin a sin b,
                                 u sin b cos a + e sin a)                                  eq 4.1
        spin = phi' z + chi' A_lg^T z,   velocity = phi' z x r_oc
 
-   [ALK07] prints derivatives of all nine elements of A_lg instead. Where it differs:
+   [ALK07] prints derivatives of all nine elements of A_lg instead. We correct three misprints:
      4.13  A11', A12', A22': "(w_b - w) cos(w_b - w)t cos(wt)" must have the sine of (w_b - w)t
-     4.15  has ten lines for nine elements: the fifth, named A22', is A22 itself, and those after
-           it are one name behind (what is named A23' is A22', and so on: A33' appears twice)
-     4.7   the way back must end where it began: w_b (2 n dt - (t - t_s)); printed are
+     4.15  has ten lines for nine elements: the fifth, named A22', is A22 itself, and the names of
+           those after it lag by one (the line named A23' is A22', and so on: A33' appears twice)
+     4.7   the swing back must end where it began: w_b (2 n dt - (t - t_s)). The thesis prints
            -w_b (t - t_s) - 2 n dt, which mixes an angle with a time
    Tests: tests/examples/test_tumbler.c. */
 #ifndef TUMBLER_H
@@ -29,12 +29,13 @@ typedef struct tumbler {
     double u, e;                   /* m, dimensions of the plate */
     double eccentricity;           /* m */
     double factor;                 /* K: speed of the barrel about its own axis over `speed`. 1: it
-                                      turns freely, 0: it is held */
-    double period;                 /* s: > 0: it swings to and fro in a triangle; 0: goes on */
+                                      rotates freely, 0: it is held */
+    double period;                 /* s; > 0: the barrel swings to and fro at constant speed; 0: it
+                                      rotates in one direction */
 } tumbler;
 
-/* Angle of the barrel and its rate, eq 4.6 and 4.7. At the turning points the rate of the half
-   period that begins. */
+/* Returns the angle psi of the barrel (rad) and writes its rate (rad/s), eq 4.6 and 4.7. At a turning
+   point the rate is that of the half period that begins. */
 static inline double tumbler_swing(const tumbler *m, double time, double *rate) {
     const double speed = m->factor*m->speed;
     double t;
@@ -46,7 +47,7 @@ static inline double tumbler_swing(const tumbler *m, double time, double *rate) 
     return speed*(m->period - t);
 }
 
-/* Barrel: rotation (row-major, local -> world), place and their rates. */
+/* Writes rotation (row-major, local to world), position, velocity and spin of the barrel. */
 static inline void tumbler_barrel(const tumbler *m, double time, double R[9], double x[3],
                                   double v[3], double spin[3]) {
     const double phi = fmod(m->speed*time, 6.283185307179586476925);
@@ -81,7 +82,7 @@ static inline void tumbler_barrel(const tumbler *m, double time, double R[9], do
     for (i = 0; i < 3; i++) spin[i] = (rate - m->speed)*R[3*i + 2] + (i == 2 ? m->speed : 0);
 }
 
-/* A wall of the machine: its place in the barrel's frame. Give a pointer to it as motion.user. */
+/* A wall of the machine and its position in the frame of the barrel; motion.user points to it. */
 typedef struct tumbler_part { const tumbler *machine; double place[3]; } tumbler_part;
 static inline void tumbler_frame(double time, dem_pose *pose, void *user) {
     const tumbler_part *part = (const tumbler_part *)user;

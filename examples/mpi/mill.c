@@ -1,11 +1,11 @@
-/* mill.c - the tumbling mill of examples/mill.c over MPI: its drum dealt across x, a slab for each
-   process.
+/* mill.c - the tumbling mill of examples/mill.c over MPI: its drum is cut across x into slabs, one
+   for each process.
 
        mpicc -O2 -ffp-contract=off -I. examples/mpi/mill.c -o build/mill_mpi -lm   (or: make mpi)
        mpirun -n 2 build/mill_mpi --quick --out build/out/mill_mpi
 
-   Options, results and pictures are those of build/mill; the first process writes them. The hash is
-   that of build/mill --slabs N for N processes: bits follow the number of slabs alone. */
+   Options, results and pictures are those of build/mill; the first process writes them. With N
+   processes the hash is that of build/mill --slabs N: the bits depend on the number of slabs only. */
 #define main mill_main
 #include "../mill.c"
 #undef main

@@ -1,14 +1,14 @@
-/* A turning drum whose grains are dealt to MPI processes, one slab each, and checked against the
-   same drum in one world and against the same slabs in one process.
+/* A rotating drum whose grains are distributed to MPI processes, one slab each. The result is compared
+   with the same drum in one world and with the same slabs in one process.
 
        mpicc -O2 -ffp-contract=off -I. examples/mpi/slabs.c -o slabs -lm       (or: make mpi)
        mpirun -n 3 ./slabs [steps]
 
-   The transport is two functions (transport.h): send to both neighbours in the ring, and reduce.
-   Every process
-   builds the same world, deals it, and steps; dem_slabs_collect writes the whole state back into
-   each process's world. Expected: the bits of the slabs in one process, and grains within 1e-11 m
-   of those in one world (after 4000 steps; collisions multiply round-off, so later it is more). */
+   The transport consists of two functions (transport.h): exchange with both neighbours in the ring,
+   and reduce. Every process builds the same world, creates its slab and steps it. dem_slabs_collect
+   then writes the whole state into the world of each process. Expected: the same bits as the slabs in
+   one process, and after 4000 steps grains within 1e-11 m of those in one world. Collisions multiply
+   round-off, so later the distance grows. */
 #include "dem.h"
 #include "transport.h"
 #include <stdlib.h>
@@ -50,12 +50,13 @@ static dem_world *drum(void) {
     }
     return world;
 }
-/* The digest with contact memory: that is in it only while there is a list. */
+/* Returns the hash with contact history, which counts only while there is a contact list. */
 static uint64_t digest(dem_world *world) {
     dem_candidates_rebuild(world);
     return dem_world_hash_get(world);
 }
-/* Largest distance between the same grains of two worlds; twos, when each stands once in both. */
+/* Returns the largest distance (m) between the same grains of two worlds. *twos: 1 if each grain is
+   exactly once in both. */
 static double apart(const dem_world *a, const dem_world *b, int *twos) {
     const dem_bodies p = dem_bodies_get(a), q = dem_bodies_get(b);
     int at[GRAINS], i, k;
@@ -107,7 +108,7 @@ int main(int argc, char **argv) {
     if (dem_slabs_collect(slabs, world) != DEM_OK) puts(dem_slabs_error_get(slabs));
     dem_slabs_destroy(slabs);
 
-    one = drum();                               /* the same in one world, and in one process */
+    one = drum();                               /* the same scene in one world, and in slabs of one process */
     same = drum();
     desc = DEM_SLABS_DESC;
     desc.count = size;

@@ -1,5 +1,5 @@
-/* transport.h - what dem_slabs_desc.transport asks for, over MPI: the two functions that slabs in
-   several processes reach each other by. Include after dem.h. */
+/* transport.h - the transport of dem_slabs_desc over MPI: the two functions by which slabs in several
+   processes communicate. Include it after dem.h. */
 #ifndef TRANSPORT_H
 #define TRANSPORT_H
 #include <mpi.h>

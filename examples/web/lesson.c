@@ -1,5 +1,5 @@
 /* lesson.c - a drum, a hopper and a pile of discs that lesson.html runs in a browser, compiled to WebAssembly. As an
-   ordinary program the same without a picture: equal sliders and steps give the same digest, to the last bit.
+   ordinary program it runs the same scenes without pictures: equal sliders and steps give the same digest.
 
    Build:  make web, and open build/web/lesson.html; or  cc -O2 lesson.c ../../dem.c -lm -o lesson
    Run:    lesson drum|hopper|pile STEPS [GRAINS FRICTION RESTITUTION OWN RATIO]
@@ -38,7 +38,7 @@ static void line_add(dem_real x, dem_real y, dem_real to_x, dem_real to_y) {
     float *l = now.lines + 4*now.line_count++;
     l[0] = (float)x; l[1] = (float)y; l[2] = (float)to_x; l[3] = (float)to_y;
 }
-/* A wall of the lines that have been added since `first`. */
+/* Adds a wall that consists of the lines since `first`. */
 static dem_wall wall_of(int first) {
     dem_real corners[4*LINES];
     int32_t segments[2*LINES];
@@ -60,7 +60,7 @@ static dem_wall drum_make(void) {
     }
     return wall_of(0);
 }
-/* A silo over a box; mouth in mean diameters of the grains. */
+/* A silo above a box; mouth: its width in mean diameters of the grains. */
 static dem_wall hopper_make(double mouth) {
     const dem_real half = mouth*r, wide = 0.85*now.R;
     for (int side = -1; side < 2; side += 2) {
@@ -80,8 +80,8 @@ static dem_wall pile_make(void) {
     return wall_of(now.still);
 }
 
-/* What the sliders set while it runs. own: turns of the drum a minute; speed at which a pile's walls are lifted, m/s.
-   Not 0: lesson_error tells what is wrong. */
+/* Sets what the sliders change during a run. own: revolutions of the drum per minute, or speed at which the walls of a
+   pile are lifted, m/s. Returns 0, or another number after an error: lesson_error has the message. */
 LESSON_API(lesson_set) int lesson_set(double friction, double restitution, double own) {
     dem_motion motion = DEM_MOTION;
     now.gravel.friction = friction;
@@ -93,7 +93,7 @@ LESSON_API(lesson_set) int lesson_set(double friction, double restitution, doubl
     } else if (now.scene == PILE) {
         motion.kind = DEM_MOTION_TRANSLATING;
         motion.velocity.y = own;
-        motion.start = fmax(0, 0.5 - dem_world_time_get(now.world));        /* s: the grains lie still by then */
+        motion.start = fmax(0, 0.5 - dem_world_time_get(now.world));        /* s, when the grains are at rest */
     }
     if (now.scene != HOPPER && dem_wall_motion_set(now.world, now.moving, &motion) != DEM_OK) return 1;
     return dem_material_set(now.world, now.material, &now.gravel) != DEM_OK;
@@ -103,8 +103,8 @@ static int inside(dem_vec3 centre, dem_real radius, void *user) {
     (void)user;
     return now.scene != DRUM || sqrt(centre.x*centre.x + centre.y*centre.y) < now.R - r - radius;
 }
-/* own: as above; of the hopper its mouth, in mean diameters. ratio, >= 1: radius of large over small grains, of equal
-   masses. 0: all is well. */
+/* Begins a lesson. own: as above; for the hopper the width of its mouth in mean diameters. ratio, >= 1: radius of large over
+   small grains, of which there are equal masses. Returns 0 on success. */
 LESSON_API(lesson_begin) int lesson_begin(int scene, int grains, double friction, double restitution, double own,
                                           double ratio) {
     /* the mean mass is that of a grain of radius r; large ones lie below */
@@ -150,8 +150,8 @@ LESSON_API(lesson_begin) int lesson_begin(int scene, int grains, double friction
     if (!now.start || !now.grains || dem_step_advice_get(now.world, &advice) != DEM_OK) return 1;
     return dem_world_dt_set(now.world, 0.8*advice.dt_max) != DEM_OK || lesson_set(friction, restitution, own);
 }
-/* Sliders may ask for contacts that the time step is too long for (little restitution: a strong dashpot): it is made
-   shorter then, and the steps go on. */
+/* Takes steps. Sliders may set contacts for which the time step is too long (a low restitution is a strong dashpot). Then the
+   time step becomes shorter and the steps continue. */
 LESSON_API(lesson_step) int lesson_step(int steps) {
     const uint64_t end = dem_world_steps_get(now.world) + (uint64_t)steps;
     dem_result result = DEM_OK;
@@ -168,8 +168,8 @@ LESSON_API(lesson_hash) uint64_t lesson_hash(void) { return dem_world_hash_get(n
 LESSON_API(lesson_error) const char *lesson_error(void) { return dem_world_error_get(now.world); }
 LESSON_API(lesson_overlap) double lesson_overlap(void) { return dem_counters_get(now.world).overlap_max; }
 LESSON_API(lesson_count) int lesson_count(void) { return dem_bodies_get(now.world).count; }
-/* lesson_count x 5: x, y, radius [m], speed [m/s], where it was when first asked for, about 0 to 1 (in the
-   drum from left to right, else upwards). */
+/* lesson_count x 5: x, y, radius [m], speed [m/s], and the position at the first call as a number from about 0 to 1
+   (in the drum from left to right, otherwise upwards). */
 LESSON_API(lesson_grains) const float *lesson_grains(void) {
     const dem_bodies all = dem_bodies_get(now.world);
     for (int i = 0; i < all.count; i++) {
@@ -184,7 +184,7 @@ LESSON_API(lesson_grains) const float *lesson_grains(void) {
     return now.grains;
 }
 LESSON_API(lesson_line_count) int lesson_line_count(void) { return now.line_count; }
-/* lesson_line_count x 4: x, y from and to [m], where the walls are now. */
+/* lesson_line_count x 4: x, y of both ends [m] of the lines of the walls, at present. */
 LESSON_API(lesson_lines) const float *lesson_lines(void) {
     dem_pose pose;
     memcpy(now.moved, now.lines, sizeof now.moved);
@@ -196,7 +196,7 @@ LESSON_API(lesson_lines) const float *lesson_lines(void) {
     }
     return now.moved;
 }
-/* What the lesson is about: slope of drum and pile [degrees], below -90: none yet; grains that have left the hopper. */
+/* Returns the slope in drum or pile [degrees], below -90 if there is none yet, or the number of grains out of the hopper. */
 LESSON_API(lesson_measure) double lesson_measure(void) {
     const dem_box all = {{0, 0, 0}, {0, 0, 0}};
     dem_repose slope;
@@ -211,7 +211,7 @@ LESSON_API(lesson_measure) double lesson_measure(void) {
 int main(int argc, char **argv) {
     static const char *names[3] = {"drum", "hopper", "pile"};
     static const double own[3] = {10, 8, 0.3};
-    double v[6] = {0, 1000, 0.5, 0.5, 0, 1.4};                          /* as the sliders stand at first */
+    double v[6] = {0, 1000, 0.5, 0.5, 0, 1.4};                          /* the first values of the sliders */
     int scene = 0;
     while (argc > 1 && scene < 3 && strcmp(argv[1], names[scene])) scene++;
     if (argc < 3 || scene == 3) {
