@@ -112,7 +112,7 @@ int main(int argc, char **argv) {
               at least 1 above the second; the smallest mu (within 3 %), by bisection: +- half of the last interval
    Exercises: check an answer with ./02_pile --check N VALUE
    1  The logs do not slide on each other. How much friction must the floor have for three logs to stay?
-   2  A gap of one radius is between the lower logs. How much friction between logs holds the upper one now? */
+   2  Now the lower logs are one radius apart. How much friction between logs holds the upper one? */
 /* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     return exercise == 1 ? tan(3.14159265/12)/3 : tan(asin(3.0/4)/2);

@@ -155,8 +155,8 @@ typedef struct corona {
     double strength;                         /* V/m at the grain, with the ions' own field; 0: that of `field` */
     double current;                          /* A/m2 of ions; 0: they charge at once */
     double onset;                            /* V, no ions below */
-    double contact_time, leak_time;          /* s: time constants of conductors and insulators on the rotor; 0: at once; never */
-    double brush_time;                       /* s: time constant in which the brush discharges and stops grains; 0: no brush */
+    double contact_time, leak_time;          /* s: of conductors and insulators on the rotor; 0: at once; never */
+    double brush_time;                       /* s: time constant of discharging and stopping in the brush; 0: no brush */
     double scatter;                          /* charge of each grain: 1 - scatter times 0 .. 1, by its id */
     double touch;                            /* m, largest gap that counts as contact with the rotor; impulses leave
                                                 gaps of (v dt)^2/(2 R) on a rotor of radius R */

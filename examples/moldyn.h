@@ -1,9 +1,9 @@
 /* moldyn.h - the files of MOLDYN, the program of [ALK07]: scenes in and out (.cin, .pin, .win),
    frames for the viewers XBALLS (.xb) and ANIM (.str). MIT licence.
 
-   One C99 or C++11 file. Including it in one source is all there is to do: every function is
-   static. It uses public functions of dem.h only, and includes it unless that has been done. Memory
-   comes from malloc. A scene given by three files runs like this:
+   One C99 or C++11 file. Include it in one source file; all functions are static. It uses only
+   public functions of dem.h, which it includes if you have not done so. Memory comes from malloc.
+   This runs a scene given by three files:
 
        moldyn m = MOLDYN;
        if (moldyn_read(&m, "a.cin", "a.pin", "a.win") != DEM_OK) puts(m.error);
@@ -11,25 +11,26 @@
        dem_world *world = dem_world_create(&desc);
        if (moldyn_add(&m, world) != DEM_OK) puts(m.error);
        dem_world_run(world, m.end - m.start, 0, 0);
-       moldyn_take(&m, world);                     now m holds the grains as they are
+       moldyn_take(&m, world);                     now m holds the present grains
        moldyn_write(&m, "b.cin", "b.pin", "b.win");
        moldyn_free(&m);
 
    Source: the appendix of [ALK07] (the key is that of dem.h's manual). All numbers are in SI units.
-     .cin  one key and its value a line; the keys are in moldyn_keys below, with their ranges.
+     .cin  one key and its value per line; moldyn_keys below lists the keys and their ranges.
            Required: times.tend, times.dt, control.rho, sd.stiff_lo. All others are 0 by default
-     .pin  the number of grains; then a row each: place, velocity, three angles, spin, radius, and
-           1 if the grain moves, 0 if it stands still
-     .win  the number of walls and their thickness; then a row each: normal, centre
+     .pin  the number of grains; then one row per grain: position, velocity, three angles, spin,
+           radius, and 1 if the grain moves, 0 if it is fixed
+     .win  the number of walls and their thickness; then one row per wall: normal, centre
    In space z points up, and rows have 14 numbers (grains) and 6 (walls), as in the appendix. In a
    plane y points up, and rows have 8 (x y, velocity, angle, spin, radius, flag) and 4 (normal,
-   centre); the appendix shows no such file, so this is our reading. Numbers are decimal, with a
-   point whatever the locale says, within +-1e15. # begins a comment.
+   centre); the appendix shows no such file, so this is our interpretation. Numbers are decimal, with
+   a point in every locale, within +-1e15. # begins a comment.
 
-   Polygons, in a plane. MOLDYN has convex and concave ones, says [ALK07] 2.4.2, and walls given by
-   their end points, but the appendix shows no file with any: this, too, is our reading. A .pin or
-   .win may begin with outlines; what comes after them is as above. A number of outlines; then for
-   each the number of its corners, and a row x y (m) a corner, in turn, either way round, each once:
+   Polygons, in a plane. According to [ALK07] 2.4.2, MOLDYN has convex and concave ones, and walls
+   given by their end points. The appendix shows no file with them, so the format is our
+   interpretation, too. A .pin or .win may begin with outlines, and the rest follows as above. Write
+   the number of outlines; then for each outline the number of its corners and one row x y (m) per
+   corner. Corners follow each other along the outline, in either direction, each once:
      .pin  polygons 2                     .win  polygons 1      # closed: last corner to first
            3                                    4
            0 0                                  -1 0
@@ -39,25 +40,27 @@
            ... six corners, two kinds           0 0
            1                                    .1 .02
            0 .1 0 0 .5 0 1 1 2                  0 .003          # no straight walls
-   Rows of grains have a ninth number then: 0 for a disc, else which polygon, counted from 1. Its
-   seventh is the factor of all lengths of that polygon (1: as it is listed), its place that of the
-   centre of mass, its angle (rad, anticlockwise) from how it is listed. Polygons of grains have
-   3 to 98 corners (dem_shape_polygon_add), those of walls 3 to 1000, chains 2 to 1000; none may
-   cross or touch itself. The corners of walls are their surface (the thickness of walls is that of
-   straight ones), and both sides push (dem_wall_profile_add). A chain is a sheet: a polygon can hang on
-   its sharp ends, and gain energy there; where grains meet ends, give a closed part a thickness.
+   Rows of grains then have a ninth number: 0 for a disc, otherwise the number of its polygon, from 1.
+   The seventh number is a factor on all lengths of that polygon (1: as listed), the position is that
+   of the centre of mass, and the angle (rad, anticlockwise) is measured from the listed orientation.
+   Polygons of grains have 3 to 98 corners (dem_shape_polygon_add), those of walls 3 to 1000, chains
+   2 to 1000. No outline may cross or touch itself. The corners of walls are on their surface (the
+   thickness is that of straight walls only), and walls repel on both sides (dem_wall_profile_add). A
+   chain is a sheet. A polygon can be caught on its sharp ends and gain energy there; where grains
+   reach the ends, use a closed outline with a thickness instead.
 
-   Not in the files, so chosen here: Poisson's ratio is 0.25, which sets the tangential stiffness to
-   0.857 of the normal one. Angles are read and written, but a sphere has no use for them. The
-   viewers' figures in the appendix are those of a plane, although its text speaks of space. Neither
-   viewer's file has outlines: a polygon is the disc of its area in .xb, place and turn in .str.
+   Our choices for values that the files do not contain: Poisson's ratio is 0.25, which sets the
+   tangential stiffness to 0.857 of the normal one. Angles of spheres are read and written, but not
+   used. The figures of the viewers in the appendix show a plane, although its text is about space.
+   The files of both viewers have no outlines: a polygon is the disc of its area in .xb, and its
+   position and rotation in .str.
 
-   Errors. A function that can fail returns a dem_result and leaves one sentence in moldyn.error:
-   the call, the file and line or the value, the limit, the likely cause, the remedy.
-   DEM_ERROR_FORMAT: a file is not what it should be; DEM_ERROR_FILE: it cannot be opened, read,
-   written or renamed; DEM_ERROR_ARGUMENT: a null pointer (if it is that of the moldyn, without a
-   sentence) or a value out of its range; DEM_ERROR_MEMORY. Nothing is printed, nothing exits.
-   What a file announces is compared with its size before memory is taken.
+   Errors. A function that can fail returns a dem_result and leaves a message in moldyn.error with
+   the call, the file and line or the value, the limit, the likely cause and the remedy.
+   DEM_ERROR_FORMAT: a file does not follow its format. DEM_ERROR_FILE: it cannot be opened, read,
+   written or renamed. DEM_ERROR_ARGUMENT: a value is out of its range, or a pointer is null (without
+   a message if it is that of the moldyn). DEM_ERROR_MEMORY: memory ran out. No function prints or
+   exits. The numbers of rows in a file are compared with its size before memory is allocated.
    Tests: tests/examples/test_moldyn.c; `make fuzz` feeds moldyn_parse with any bytes. */
 #ifndef MOLDYN_H
 #define MOLDYN_H
@@ -89,7 +92,7 @@ typedef struct moldyn_outlines {
     int *ends;                       /* count, ascending */
     dem_real *corners;               /* ends[count - 1] x 2, m */
 } moldyn_outlines;
-/* A scene. Zero is the default of every field; required are only those said to be. Arrays come from
+/* A scene. The default of every field is zero; comments name the required ones. Arrays come from
    malloc, and moldyn_free frees them. */
 typedef struct moldyn {
     double start, end, dt;           /* s; times.t0, tend (required), dt (required, > 0) */
@@ -98,7 +101,7 @@ typedef struct moldyn {
     double friction_static, friction;/* >= 0; control.mue_s (0: the same as mue_d), mue_d */
     double stiffness;                /* N/m, required, > 0, of loading; sd.stiff_lo */
     double stiffness_unloading;      /* N/m, sd.stiff_k_un; up to `stiffness`: the linear law,
-                                        which never pulls; above: the hysteretic law */
+                                        which never attracts; above: the hysteretic law */
     double stiffness_adhesion;       /* N/m, >= 0; sd.stiff_adh, which is negative in the file */
     double damping_grain, damping_wall; /* N s/m, >= 0; sd.damp_particle, damp_wall. 0: from
                                         restitution if the law is linear, else none */
@@ -111,13 +114,13 @@ typedef struct moldyn {
                                         (rad/s), radius (m), 1 if it moves; axes of dem.h */
     dem_real *walls;                 /* wall_count x 6: normal (any length but 0), centre (m) */
     moldyn_outlines polygons;        /* of grains; planar scenes only, as the next three are */
-    int *kinds;                      /* grain_count: 0: a disc; k: the k-th of polygons, counted
-                                        from 1, and what is its radius above is the factor of its
+    int *kinds;                      /* grain_count: 0: a disc; k: the k-th polygon, from 1. For a
+                                        polygon the radius in `grains` is the factor on its
                                         lengths. Null: all are discs */
     moldyn_outlines parts, chains;   /* walls: closed ones, open ones */
 
-    double origin;                   /* s, file's time when the clock of a world stands at 0: a
-                                        world's clock cannot be set, so moldyn keeps the
+    double origin;                   /* s, time of the file when the clock of a world is at 0. The
+                                        clock of a world cannot be set, so moldyn keeps the
                                         difference. Set by reading a .cin and by moldyn_add */
     dem_material grain_material, wall_material; /* added by moldyn_add */
     dem_wall *planes;                /* those of walls, parts and chains, in this order, added by
@@ -125,7 +128,7 @@ typedef struct moldyn {
     int shape_count, body_count;
     dem_shape *shapes;               /* those of polygons, added by moldyn_add; null before */
     dem_body *bodies;                /* those of grains, added by moldyn_add or taken */
-    char error[500];                 /* the sentence of the last call that failed */
+    char error[500];                 /* the message of the last call that failed */
 } moldyn;
 static const moldyn MOLDYN_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
                                    {0, 0, 0}, 0, {0, 0, 0}, {0, 0, 0}, 0,
@@ -157,7 +160,7 @@ static dem_result moldyn_no_memory(moldyn *m, const char *call, double count, co
     return moldyn_fail(m, DEM_ERROR_MEMORY, "%s: no memory for %.0f %s; free some", call, count,
                        what);
 }
-/* On the exponent bits, which -ffast-math cannot fold away. */
+/* Tests the exponent bits, because -ffast-math would remove a comparison. */
 static int moldyn_finite(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -166,7 +169,7 @@ static int moldyn_finite(double x) {
 static int moldyn_within(double x, double lo, double hi) {
     return moldyn_finite(x) && x >= lo && x <= hi;
 }
-/* Rows of zeros; null when there is no room or the product overflows. */
+/* Returns rows of zeros; null if memory runs out or the product overflows. */
 static dem_real *moldyn_rows_new(size_t count, size_t wide) {
     const size_t row = wide*sizeof(dem_real);
     return count > (size_t)-1/2/row ? 0 : (dem_real *)calloc(count, row);
@@ -179,7 +182,7 @@ static void moldyn_outlines_free(moldyn_outlines *o) {
     free(o->corners);
     memset(o, 0, sizeof *o);
 }
-/* Frees the arrays; all is zero then but `error`. */
+/* Frees the arrays and sets all fields except `error` to zero. */
 MOLDYN_API void moldyn_free(moldyn *m) {
     if (!m) return;
     free(m->grains);
@@ -194,16 +197,16 @@ MOLDYN_API void moldyn_free(moldyn *m) {
     memset(m, 0, offsetof(moldyn, error));
 }
 
-/* ---- text in ---- */
+/* ---- reading text ---- */
 
-/* A text being read, without a zero at its end, and what an error sentence needs. */
+/* A text that is read, without a zero at its end, and the data for error messages. */
 typedef struct moldyn_text {
     moldyn *m;
     const char *call, *name;    /* the public function; the file or data it reads */
     const char *word;           /* the present word; null at the end of the text */
     size_t length;              /* of the word; 0 at the end of a line */
-    const char *at, *line_end;  /* what is left of the line */
-    const char *next, *end;     /* what is left after it */
+    const char *at, *line_end;  /* the rest of the line */
+    const char *next, *end;     /* the rest of the text after it */
     long line;                  /* counted from 1 */
     char half[24];              /* 0.5 in this locale: strtod expects its decimal point */
 } moldyn_text;
@@ -223,7 +226,7 @@ static moldyn_text moldyn_text_make(moldyn *m, const char *call, const char *nam
     return t;
 }
 static int moldyn_is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-/* Moves to the next word of the line; 0 when there is none. */
+/* Moves to the next word of the line; returns 0 if there is none. */
 static int moldyn_word(moldyn_text *t) {
     const char *p = t->at;
     while (p < t->line_end && moldyn_is_space(*p)) p++;
@@ -233,7 +236,7 @@ static int moldyn_word(moldyn_text *t) {
     t->length = (size_t)(p - t->word);
     return t->length > 0;
 }
-/* Moves to the first word of the next line that has one; 0 at the end of the text. */
+/* Moves to the first word of the next line that has one; returns 0 at the end of the text. */
 static int moldyn_line(moldyn_text *t) {
     while (t->next < t->end) {
         const char *p = t->next, *comment;
@@ -263,7 +266,7 @@ static dem_result moldyn_refuse(const moldyn_text *t, const char *expected) {
                        t->name, t->line, t->length ? shown : t->word ? "the end of the line" :
                        "the end of the file", expected);
 }
-/* 1 if the present word is this one (given in lower case), in capitals or not. */
+/* Returns 1 if the present word is this one (given in lower case), in capitals or not. */
 static int moldyn_is(const moldyn_text *t, const char *word) {
     size_t i;
     if (t->length != strlen(word)) return 0;
@@ -273,8 +276,9 @@ static int moldyn_is(const moldyn_text *t, const char *word) {
     }
     return 1;
 }
-/* The present word as a decimal number with a point, no nan, inf or hexadecimal; 0 if it is none.
-   strtod rounds correctly, but needs a zero at the end and the locale's point: hence the copy. */
+/* Reads the present word as a decimal number with a point; returns 0 if it is none, or nan, inf or
+   hexadecimal. strtod rounds correctly, but needs a zero at the end and the locale's point: hence the
+   copy. */
 static int moldyn_real(const moldyn_text *t, double *value) {
     char copy[160], *end = copy;
     size_t i, n = 0;
@@ -294,10 +298,10 @@ static int moldyn_real(const moldyn_text *t, double *value) {
     copy[bad ? 0 : n] = 0;
     if (!bad) number = strtod(copy, &end);
     if (bad || end != copy + n || number > 1e15 || number < -1e15) return 0;
-    *value = number < 0 || number > 0 ? number : 0;      /* -0 and 0 are one place */
+    *value = number < 0 || number > 0 ? number : 0;      /* -0 becomes 0 */
     return 1;
 }
-/* The present word as a whole number from 0, of at most 9 digits; 0 if it is none. */
+/* Reads the present word as a whole number from 0, of at most 9 digits; returns 0 if it is none. */
 static int moldyn_count(const moldyn_text *t, int *value) {
     size_t i;
     int number = 0;
@@ -312,7 +316,7 @@ static int moldyn_count(const moldyn_text *t, int *value) {
 
 /* ---- outlines ---- */
 
-/* What an outline is in files and sentences, and how many corners it may have. */
+/* The names of a kind of outline in files and messages, and its limits on corners. */
 typedef struct moldyn_outline_kind {
     const char *key, *name;
     int least, most, closed;
@@ -322,14 +326,14 @@ static const moldyn_outline_kind moldyn_polygon = {"polygons", "polygon", 3,
 static const moldyn_outline_kind moldyn_part = {"polygons", "polygon", 3, MOLDYN_WALL_CORNERS, 1};
 static const moldyn_outline_kind moldyn_chain = {"chains", "chain", 2, MOLDYN_WALL_CORNERS, 0};
 
-/* The corners of outline i, and how many there are. */
+/* Returns the corners of outline i, and their number. */
 static const dem_real *moldyn_corners(const moldyn_outlines *o, int i, int *count) {
     const int first = i ? o->ends[i - 1] : 0;
     *count = o->ends[i] - first;
     return o->corners + 2*(size_t)first;
 }
-/* Area (m2), its middle (m), its second moment about that (m4), the farthest corner's distance from
-   it (m). From the first corner on, so that a far place costs no digits. */
+/* Computes area (m2), centre (m), second moment about it (m4), and the distance of the farthest corner
+   from it (m). Coordinates are relative to the first corner, so that a distant outline loses no digits. */
 typedef struct moldyn_measure { double area, middle[2], second, radius; } moldyn_measure;
 static moldyn_measure moldyn_measure_of(const dem_real *corners, int count) {
     const double x0 = (double)corners[0], y0 = (double)corners[1];
@@ -356,13 +360,13 @@ static moldyn_measure moldyn_measure_of(const dem_real *corners, int count) {
                                         (double)corners[2*i + 1] - s.middle[1]));
     return s;
 }
-/* Twice the area of a triangle of corners, > 0 where it turns left. */
+/* Returns twice the area of a triangle of corners, > 0 if they are anticlockwise. */
 static double moldyn_turn(const dem_real *x, int a, int b, int c) {
     const double ax = (double)x[2*a], ay = (double)x[2*a + 1];
     return ((double)x[2*b] - ax)*((double)x[2*c + 1] - ay) -
            ((double)x[2*b + 1] - ay)*((double)x[2*c] - ax);
 }
-/* Do the sides from a to b and from c to d, which have no corner in common, cross or touch? */
+/* Returns 1 if the sides from a to b and from c to d, which have no corner in common, cross or touch. */
 static int moldyn_sides_meet(const dem_real *x, int a, int b, int c, int d) {
     const double abc = moldyn_turn(x, a, b, c), abd = moldyn_turn(x, a, b, d);
     const double cda = moldyn_turn(x, c, d, a), cdb = moldyn_turn(x, c, d, b);
@@ -375,8 +379,8 @@ static int moldyn_sides_meet(const dem_real *x, int a, int b, int c, int d) {
     return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) ||
              (cda < 0 && cdb < 0));
 }
-/* Writes what is wrong with an outline, the index-th of its kind from 0, into `fault`; 0: nothing.
-   */
+/* Checks an outline, the index-th of its kind from 0. Returns 0 if it is right; otherwise `fault` gets
+   the reason. */
 static int moldyn_outline_fault(const moldyn_outline_kind *kind, int index, const dem_real *x,
                                 int count, char *fault, size_t room) {
     const int sides = kind->closed ? count : count - 1;
@@ -412,7 +416,7 @@ static int moldyn_outline_fault(const moldyn_outline_kind *kind, int index, cons
     return 0;
 }
 
-/* The rows of an outline's corners, and what they say together. */
+/* Reads the rows of an outline's corners and checks the outline. */
 static dem_result moldyn_outline_rows(moldyn_text *t, const moldyn_outline_kind *kind, int index,
                                       dem_real *corners, int count) {
     const long line = t->line;
@@ -439,7 +443,7 @@ static dem_result moldyn_too_short(const moldyn_text *t, int found, const char *
                        "file has bytes for at most %.0f; was it cut short?", t->call, t->name,
                        t->line, found, what, most);
 }
-/* One outline, after those that o holds; room: corners that there is memory for. */
+/* Reads one outline and adds it to o; room: corners for which there is memory. */
 static dem_result moldyn_outline_read(moldyn_text *t, const moldyn_outline_kind *kind,
                                       moldyn_outlines *o, int *room) {
     const int had = o->count ? o->ends[o->count - 1] : 0;
@@ -467,7 +471,7 @@ static dem_result moldyn_outline_read(moldyn_text *t, const moldyn_outline_kind 
     if (result == DEM_OK) o->ends[o->count++] = had + count;
     return result;
 }
-/* All outlines of a kind; the present word is its key. o: empty; the caller frees it. */
+/* Reads all outlines of a kind; the present word is its key. o is empty; the caller frees it. */
 static dem_result moldyn_outlines_read(moldyn_text *t, const moldyn_outline_kind *kind,
                                        moldyn_outlines *o) {
     const double least = 2 + 4.0*kind->least;
@@ -487,7 +491,7 @@ static dem_result moldyn_outlines_read(moldyn_text *t, const moldyn_outline_kind
     return result;
 }
 
-/* ---- scenes in ---- */
+/* ---- reading scenes ---- */
 
 /* Keys of .cin, where their values go, their ranges, and whether they are required. */
 typedef struct moldyn_key { const char *key; size_t at; double lo, hi; int needed; } moldyn_key;
@@ -506,14 +510,14 @@ static const moldyn_key moldyn_keys[] = {
     {"sd.damp_wall",     offsetof(moldyn, damping_wall),        0,     1e15, 0},
     {"sd.e",             offsetof(moldyn, restitution),         0,     1,    0}};
 enum { MOLDYN_KEYS = (int)(sizeof moldyn_keys/sizeof *moldyn_keys) };
-/* A value as it stands in the file: there adhesion is a slope, which is negative. */
+/* Returns a value as in the file, where adhesion is a slope, which is negative. */
 static double moldyn_value(const moldyn *m, const moldyn_key *key) {
     double value;
     memcpy(&value, (const char *)m + key->at, sizeof value);
     return key->hi > 0 || !(value > 0 || value < 0) ? value : -value;
 }
 
-/* One line: a key and its value. */
+/* Reads one line: a key and its value. */
 static dem_result moldyn_key_read(moldyn_text *t, moldyn *fresh, unsigned *seen) {
     const moldyn_key *key = 0;
     double value = 0;
@@ -559,11 +563,11 @@ static dem_result moldyn_control(moldyn_text *t) {
     return DEM_OK;
 }
 
-/* Rows of numbers: `wide` of them in space, `flat` in a plane, of grains one more where there may
-   be polygons; the first row tells which. Before them may come outlines. */
+/* A table of rows. A row has `wide` numbers in space and `flat` in a plane; rows of grains have one
+   more if there may be polygons. The first row decides. Outlines may precede the rows. */
 typedef struct moldyn_table {
     int of_walls, wide, flat, count;
-    int known, planar;          /* has the other file said if the scene is in a plane? Is it? */
+    int known, planar;          /* 1: the other file has shown whether the scene is in a plane; 1: it is */
     int columns;                /* of the rows read so far; 0: none yet */
     double thickness;           /* of walls */
     dem_real *rows;             /* count x wide */
@@ -571,7 +575,7 @@ typedef struct moldyn_table {
     moldyn_outlines closed, open;
 } moldyn_table;
 
-/* The outlines before the first line, which is the present one then. */
+/* Reads the outlines before the first line of the table, which then is the present line. */
 static dem_result moldyn_table_outlines(moldyn_text *t, moldyn_table *table) {
     dem_result result = DEM_OK;
     int seen[2] = {0, 0}, k;
@@ -587,7 +591,7 @@ static dem_result moldyn_table_outlines(moldyn_text *t, moldyn_table *table) {
     if (table->closed.count || table->open.count) table->known = table->planar = 1;
     return result;
 }
-/* The first line, and whether the file is long enough for what it announces. */
+/* Reads the first line, and checks that the file is long enough for that number of rows. */
 static dem_result moldyn_table_head(moldyn_text *t, moldyn_table *table) {
     double bytes;
     if (!moldyn_count(t, &table->count))
@@ -602,7 +606,7 @@ static dem_result moldyn_table_head(moldyn_text *t, moldyn_table *table) {
         return moldyn_too_short(t, table->count, "rows", bytes/(2*table->flat - 1));
     return DEM_OK;
 }
-/* The numbers of row i; how many there are is looked at, not what they say. */
+/* Reads the numbers of row i; checks their number, not their values. */
 static dem_result moldyn_row_numbers(moldyn_text *t, moldyn_table *table, int i, double *value) {
     const int outlined = table->closed.count > 0, flat = table->flat + (outlined &&
                                                                         !table->of_walls);
@@ -646,7 +650,7 @@ static const char *moldyn_wall_set(dem_real *row, const double *value, int flat)
     }
     return any ? 0 : "a normal that is not 0 is expected";
 }
-/* Row i of nine numbers, the last of which says which polygon the grain is. */
+/* Row i of nine numbers; the last one is the polygon of the grain. */
 static dem_result moldyn_kind_set(moldyn_text *t, moldyn_table *table, int i, const double *row) {
     const int most = table->closed.count;
     const double value = row[MOLDYN_GRAIN_FLAT];
@@ -686,7 +690,7 @@ static dem_result moldyn_table_rows(moldyn_text *t, moldyn_table *table) {
                              "first line says");
     return DEM_OK;
 }
-/* All that a table's file says, into `table`, which holds what is to be freed if this fails. */
+/* Reads the file of a table into `table`, which the caller frees, also after a failure. */
 static dem_result moldyn_table_all(moldyn_text *t, moldyn_table *table) {
     dem_result result = moldyn_table_outlines(t, table);
     if (result == DEM_OK) result = moldyn_table_head(t, table);
@@ -723,7 +727,7 @@ static dem_result moldyn_table_read(moldyn_text *t, int of_walls) {
     if (table.count) m->planar = table.columns != table.wide;
     else if (table.closed.count || table.open.count) m->planar = 1;
     if (of_walls) {
-        free(m->planes);                        /* they are those of other rows */
+        free(m->planes);                        /* they belong to the old rows */
         free(m->walls);
         moldyn_outlines_free(&m->parts);
         moldyn_outlines_free(&m->chains);
@@ -755,8 +759,8 @@ static dem_result moldyn_parse_as(moldyn *m, const char *call, const char *name,
     return file == MOLDYN_CONTROL ? moldyn_control(&t) : moldyn_table_read(&t,
                                                                            file == MOLDYN_WALLS);
 }
-/* Reads one of the three files from memory into what the others have filled in (begin with MOLDYN).
-   name is for error sentences; null: "data". If it fails, m stays as it was. */
+/* Reads one of the three files from memory into m, which may hold the others already (begin with
+   MOLDYN). name is for error messages; null: "data". If it fails, m stays as it was. */
 MOLDYN_API dem_result moldyn_parse(moldyn *m, const char *name, moldyn_file file, const void *data,
                                    size_t size) {
     if (!m) return DEM_ERROR_ARGUMENT;
@@ -792,8 +796,8 @@ static dem_result moldyn_load(moldyn *m, const char *call, const char *path, cha
     if (file) fclose(file);
     return result;
 }
-/* Reads the three files. pin and win may be null: no grains, no walls. What m held is freed first,
-   so m must be MOLDYN or filled in before; if reading fails, m is MOLDYN but for the sentence. */
+/* Reads the three files. pin and win may be null: no grains, no walls. The old contents of m are freed
+   first, so m must be MOLDYN or a valid scene. If reading fails, m is MOLDYN except for the message. */
 MOLDYN_API dem_result moldyn_read(moldyn *m, const char *cin, const char *pin, const char *win) {
     static const char call[] = "moldyn_read";
     const char *paths[3];
@@ -819,8 +823,8 @@ MOLDYN_API dem_result moldyn_read(moldyn *m, const char *cin, const char *pin, c
 /* ---- from a scene to a world and back ---- */
 
 static int moldyn_linear(const moldyn *m) { return m->stiffness_unloading <= m->stiffness; }
-/* The desc of a world for this scene: law, gravity, time step, plane or space. All other fields are
-   yours to set. Of a null moldyn: DEM_WORLD_DESC. */
+/* Returns the desc of a world for this scene: law, gravity, time step, plane or space. You may set all
+   other fields. For a null moldyn it is DEM_WORLD_DESC. */
 MOLDYN_API dem_world_desc moldyn_desc(const moldyn *m) {
     dem_world_desc d = DEM_WORLD_DESC;
     if (!m) return d;
@@ -832,7 +836,7 @@ MOLDYN_API dem_world_desc moldyn_desc(const moldyn *m) {
     return d;
 }
 
-/* A point of the surface of wall i, and its unit normal. */
+/* Computes a point of the surface of wall i, and its unit normal. */
 static void moldyn_plane(const moldyn *m, int i, double *point, double *normal) {
     const dem_real *row = m->walls + (size_t)i*MOLDYN_WALL;
     double most = 0, length = 0;
@@ -848,10 +852,10 @@ static void moldyn_plane(const moldyn *m, int i, double *point, double *normal) 
         point[k] = (double)row[3 + k] + normal[k]*m->wall_thickness/2;
     }
 }
-/* Which polygon grain i is, counted from 1; 0: a disc, or a sphere. */
+/* Returns the polygon of grain i, from 1; 0: a disc or a sphere. */
 static int moldyn_kind(const moldyn *m, int i) { return m->kinds ? m->kinds[i] : 0; }
-/* Can dem_real hold the mass of grain i (in a plane 1 m thick), its moment of inertia and the
-   inverses of both? */
+/* Returns 1 if dem_real can hold the mass of grain i (in a plane 1 m thick), its moment of inertia and
+   the inverses of both. */
 static int moldyn_weighs(const moldyn *m, int i) {
     const double least = sizeof(dem_real) == sizeof(float) ? 1e-37 : 1e-300;
     const double r = (double)m->grains[(size_t)i*MOLDYN_GRAIN + 12];
@@ -927,7 +931,7 @@ static dem_result moldyn_outlines_check(moldyn *m, const char *call, const moldy
     }
     return DEM_OK;
 }
-/* Finds what the files cannot hold, but a moldyn filled in by hand can. */
+/* Checks for values that files cannot contain, but that a program can write into a moldyn. */
 static dem_result moldyn_check(moldyn *m, const char *call) {
     dem_result result = DEM_OK;
     int i;
@@ -969,8 +973,8 @@ static dem_result moldyn_suits(moldyn *m, const char *call, const dem_world *wor
                            "moldyn_desc", call, bodies, (double)dem_world_steps_get(world));
     return DEM_OK;
 }
-/* The world's own sentence is left to the user: as long as nobody reads it, the world does not run
-   without what was refused. */
+/* The user should read the world's error message. Until then the world refuses to run without the part
+   that it refused. */
 static dem_result moldyn_refused(moldyn *m, const char *call, dem_result result, const char *what,
                                  int i) {
     return moldyn_fail(m, result, "%s: the world refused %s %d and holds a part of the scene only; "
@@ -1015,7 +1019,7 @@ static dem_result moldyn_planes_add(moldyn *m, const char *call, dem_world *worl
     }
     return DEM_OK;
 }
-/* Walls of outlines: segments from corner to corner. planes: where their ids go. */
+/* Adds walls of outlines, with segments from corner to corner. planes receives their ids. */
 static dem_result moldyn_outlines_add(moldyn *m, const char *call, dem_world *world,
                                       const moldyn_outlines *o, const moldyn_outline_kind *kind,
                                       dem_wall *planes) {
@@ -1048,7 +1052,7 @@ static dem_result moldyn_shapes_add(moldyn *m, const char *call, dem_world *worl
     }
     return DEM_OK;
 }
-/* The grain of a row that is a polygon; slot 0: refused. */
+/* Adds the polygon of a row; slot 0: the world refused it. */
 static dem_body moldyn_polygon_add(const moldyn *m, dem_world *world, int i) {
     const dem_real *row = m->grains + (size_t)i*MOLDYN_GRAIN;
     const dem_quat q = dem_quat_about(dem_vec3_make(0, 0, 1), row[8]);
@@ -1079,7 +1083,7 @@ static dem_result moldyn_grains_add(moldyn *m, const char *call, dem_world *worl
     }
     return DEM_OK;
 }
-/* Room for the ids of what is added, in place of what there was. */
+/* Allocates the ids of walls, shapes and bodies again. */
 static dem_result moldyn_ids_new(moldyn *m, const char *call) {
     const size_t walls = (size_t)m->wall_count + (size_t)m->parts.count + (size_t)m->chains.count;
     dem_wall *planes = (dem_wall *)calloc(walls + 1, sizeof *planes);
@@ -1102,9 +1106,9 @@ static dem_result moldyn_ids_new(moldyn *m, const char *call) {
     return DEM_OK;
 }
 /* Adds materials, walls and grains, in the order of their rows, to a world made with moldyn_desc
-   that has no bodies yet and has not run. All is checked before any is added; what can still fail
-   then is memory, or a polygon too thin for dem_shape_polygon_add: destroy the world. The world's
-   clock begins at 0, not at start. */
+   that has no bodies yet and has not run. It checks everything before it adds anything. After that
+   only memory can run out, or a polygon be too thin for dem_shape_polygon_add; then destroy the world.
+   The world's clock begins at 0, not at start. */
 MOLDYN_API dem_result moldyn_add(moldyn *m, dem_world *world) {
     static const char call[] = "moldyn_add";
     dem_result result;
@@ -1125,7 +1129,7 @@ MOLDYN_API dem_result moldyn_add(moldyn *m, dem_world *world) {
     return result == DEM_OK ? moldyn_grains_add(m, call, world) : result;
 }
 
-/* All bodies of a world as they are now, in the order in which they came. */
+/* The present bodies of a world, in the order in which they were added. */
 typedef struct moldyn_bodies {
     int count, *index;
     int *row;                   /* by slot of dem_body less 1: which row of m it may be, or -1; part
@@ -1148,7 +1152,7 @@ static dem_result moldyn_bodies_get(moldyn *m, const char *call, const dem_world
         if (m->bodies[i].slot && m->bodies[i].slot - 1 <= top)
             all->row[m->bodies[i].slot - 1] = i;
     for (i = 0; i < b.count; i++) all->index[b.slots[i]] = i;
-    for (slot = 0; slot <= top; slot++)         /* closes the gaps of those that left */
+    for (slot = 0; slot <= top; slot++)         /* closes the gaps of bodies that have left */
         if (all->index[slot] >= 0) all->index[n++] = all->index[slot];
     return DEM_OK;
 }
@@ -1158,8 +1162,8 @@ static dem_body_state moldyn_body(const dem_world *world, const moldyn_bodies *a
     dem_body_get(world, dem_body_id_get(world, all->index[i]), &s);
     return s;
 }
-/* Which of m's polygons a shape of the world is, counted from 1; 0: none. The world may be another
-   than they were added to: area and size (of a prism, see dem_shape_polygon_add) are looked at. */
+/* Returns the polygon of m that a shape of the world is, from 1; 0: none. The polygons may have been
+   added to another world, so it compares area and size (of a prism, see dem_shape_polygon_add). */
 static int moldyn_kind_of(const moldyn *m, const dem_world *world, dem_shape shape,
                           dem_shape_info *info) {
     const double thickness = (double)dem_world_desc_get(world).thickness;
@@ -1175,8 +1179,9 @@ static int moldyn_kind_of(const moldyn *m, const dem_world *world, dem_shape sha
     }
     return 0;
 }
-/* The angle about z and the factor of a polygon's body, as a row has them. row: what was added as
-   this body, whose factor, and angle if it has not turned, are kept to the last bit; or null. */
+/* Computes the angle about z and the factor of a polygon's body for its row. row: the row from which
+   this body was added, or null. Its factor is kept to the last bit, and its angle if the body has not
+   rotated. */
 static void moldyn_polygon_put(dem_real *to, const dem_body_state *s, const dem_shape_info *info,
                                const dem_real *row) {
     const double least = sizeof(dem_real) == sizeof(float) ? 1e-6 : 2e-15;
@@ -1189,15 +1194,15 @@ static void moldyn_polygon_put(dem_real *to, const dem_body_state *s, const dem_
         least*(1 + fabs((double)row[8]))) to[8] = row[8];
     if (fabs((double)to[12] - (double)row[12]) < least*(double)row[12]) to[12] = row[12];
 }
-/* What moldyn_take fills in. */
+/* The arrays that moldyn_take fills in. */
 typedef struct moldyn_taken { dem_real *rows; int *kinds; dem_body *bodies; } moldyn_taken;
 static void moldyn_taken_free(moldyn_taken *to) {
     free(to->rows);
     free(to->kinds);
     free(to->bodies);
 }
-/* All bodies; was: the rows of m by slot of the bodies that they were added as. How many are
-   neither spheres (discs) nor polygons of m. */
+/* Takes all bodies; was: the rows of m by the slot of the body added from them. Returns the number of
+   bodies that are neither spheres (discs) nor polygons of m. */
 static int moldyn_taken_fill(const moldyn *m, const dem_world *world, const moldyn_bodies *all,
                              moldyn_taken *to) {
     int i, strange = 0;
@@ -1223,9 +1228,9 @@ static int moldyn_taken_fill(const moldyn *m, const dem_world *world, const mold
     }
     return strange;
 }
-/* Takes the grains of a world as they are now in place of those of m, in the order in which they
-   came. Angles of polygons are within -pi and pi, or as they were if they have not turned; those of
-   others are 0. Then start is what it was when they were added plus dem_world_time_get(world), and end
+/* Replaces the grains of m by the present grains of a world, in the order in which they were added.
+   Angles of polygons are within -pi and pi, or the old ones if they have not rotated; other angles are
+   0. start becomes the start at which the grains were added plus dem_world_time_get(world), and end is
    at least that. The bodies must be spheres, or discs and polygons of m that moldyn_add has added.
    If it fails, m stays as it was. */
 MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
@@ -1269,10 +1274,10 @@ MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
     return DEM_OK;
 }
 
-/* ---- files out ---- */
+/* ---- writing files ---- */
 
-/* Writes a number, with a decimal point in every locale, and what comes after it: so many
-   significant digits; or, if digits is 0, six decimals. */
+/* Writes a number with a decimal point in every locale, and the character `after` it: with `digits`
+   significant digits, or with six decimals if digits is 0. */
 static void moldyn_put(FILE *file, double value, int digits, char after) {
     char raw[400], out[400];
     size_t i, n = 0;
@@ -1286,8 +1291,8 @@ static void moldyn_put(FILE *file, double value, int digits, char after) {
     fprintf(file, "%s%c", out, after);
 }
 
-/* A file under a temporary name. What is there but empty (a file, a device such as /dev/null) is
-   written to as it is: it has nothing to lose. A symbolic link is replaced by a file. */
+/* A file under a temporary name. An empty file or a device such as /dev/null is written to directly,
+   because nothing can be lost there. A symbolic link is replaced by a file. */
 typedef struct moldyn_out {
     moldyn *m;
     const char *call, *path;
@@ -1295,8 +1300,8 @@ typedef struct moldyn_out {
     FILE *file;
 } moldyn_out;
 
-/* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
-   to replace a file (Windows), the old one is removed first; a folder of that name never is. */
+/* Ends a file: renames it if all was written, otherwise removes it. Where rename refuses to replace a
+   file (Windows), the old file is removed first, but never a folder of that name. */
 static dem_result moldyn_out_close(moldyn_out *o) {
     int whole = o->file && fflush(o->file) == 0 && !ferror(o->file), cause = errno;
     if (o->file && fclose(o->file) != 0 && whole) {
@@ -1309,7 +1314,7 @@ static dem_result moldyn_out_close(moldyn_out *o) {
                 rename(o->temporary, o->path) == 0;
     }
     if (!whole && o->file && o->temporary) remove(o->temporary);
-    if (!whole && o->file && !o->temporary) {   /* it was empty: so it is again */
+    if (!whole && o->file && !o->temporary) {   /* empties it again */
         FILE *empty = fopen(o->path, "wb");
         if (empty) fclose(empty);
     }
@@ -1319,11 +1324,11 @@ static dem_result moldyn_out_close(moldyn_out *o) {
                        "exists, may be written to and has room", o->call, o->path,
                        cause ? strerror(cause) : "unknown cause");
 }
-/* Begins a file. If this fails there is nothing to close. */
+/* Begins a file. If it fails, there is nothing to close. */
 static dem_result moldyn_out_open(moldyn_out *o, moldyn *m, const char *call, const char *path) {
     const size_t length = strlen(path);
     unsigned long tries = 0;
-    FILE *there = fopen(path, "r+b");           /* of a pipe: does not wait for its other end */
+    FILE *there = fopen(path, "r+b");           /* does not wait for the other end of a pipe */
     memset(o, 0, sizeof *o);
     o->m = m;
     o->call = call;
@@ -1346,14 +1351,14 @@ static dem_result moldyn_out_open(moldyn_out *o, moldyn *m, const char *call, co
         sprintf(o->temporary, "%s.%08lx.tmp", path,
                 ((unsigned long)time(0)*2654435761UL + (unsigned long)clock()*40503UL + tries) & 0xffffffffUL);
         errno = 0;
-        o->file = fopen(o->temporary, "wbx");   /* C11: refuses a name that is taken, also by a link */
+        o->file = fopen(o->temporary, "wbx");   /* C11: refuses an existing name, also a link */
         if (!o->file && errno != EEXIST) break;
     }
     if (!o->file && errno == EINVAL) o->file = fopen(o->temporary, "wb");       /* a library before C11 */
     return o->file ? DEM_OK : moldyn_out_close(o);
 }
-/* The columns of rows that a file has: all, or those named by `flat` in a plane. of: null, or what
-   has kinds, the last column then. */
+/* Writes the columns of rows: all, or in a plane those named by `flat`. of: the scene whose kinds are
+   the last column, or null. */
 static void moldyn_rows_put(FILE *file, const dem_real *rows, int count, int wide, int columns,
                             const int *flat, const moldyn *of) {
     int i, k;
@@ -1401,9 +1406,9 @@ static void moldyn_file_put(FILE *file, const moldyn *m, moldyn_file which) {
                         planar ? MOLDYN_WALL_FLAT : MOLDYN_WALL, planar ? wall : 0, 0);
     }
 }
-/* Writes the three files; null paths are left out. Each is written to a new temporary name
-   (path.XXXXXXXX.tmp) and renamed, so that a file that was there stays whole on failure. Read back, they are the same
-   numbers. */
+/* Writes the three files, except those whose paths are null. Each is written under a new temporary name
+   (path.XXXXXXXX.tmp) and renamed, so that an existing file stays whole if writing fails. Reading the
+   files gives the same numbers. */
 MOLDYN_API dem_result moldyn_write(moldyn *m, const char *cin, const char *pin, const char *win) {
     const char *paths[3];
     dem_result result;
@@ -1424,7 +1429,7 @@ MOLDYN_API dem_result moldyn_write(moldyn *m, const char *cin, const char *pin, 
 
 /* ---- frames ---- */
 
-/* Opens a file to append to; *fresh: it is new or empty. */
+/* Opens a file for appending; *fresh: 1 if it is new or empty. */
 static FILE *moldyn_append_open(moldyn *m, const char *call, const char *path, int *fresh) {
     FILE *file = fopen(path, "ab");
     *fresh = file && fseek(file, 0, SEEK_END) == 0 && ftell(file) == 0;
@@ -1439,7 +1444,7 @@ static dem_result moldyn_append_close(moldyn *m, const char *call, const char *p
                            "full?", call, path);
     return DEM_OK;
 }
-/* The radius a viewer of discs draws: a polygon's is that of the disc of its area. */
+/* Returns the radius that a viewer of discs draws; for a polygon that of the disc of its area. */
 static dem_real moldyn_round_radius(const dem_world *world, const dem_body_state *s) {
     const dem_world_desc desc = dem_world_desc_get(world);
     dem_shape_info info;
@@ -1449,10 +1454,9 @@ static dem_real moldyn_round_radius(const dem_world *world, const dem_body_state
                       (double)(s->radius/info.radius));
 }
 /* Appends a frame for XBALLS: a line with count, time (s, of the file: origin + dem_world_time_get) and
-   the corners of box; then a line a grain: x, y (in space: z), their velocities, radius (of a
+   the corners of box; then one line per grain: x, y (in space: z), their velocities, radius (of a
    polygon: that of the disc of its area), spin. The text of the appendix calls these six numbers
-   place and velocity in space. m: MOLDYN will do, if there is no other; it holds the origin of time
-   and the sentence. */
+   position and velocity in space. m holds the origin of time and the error message; it may be MOLDYN. */
 MOLDYN_API dem_result moldyn_xb_append(moldyn *m, const dem_world *world, const char *path,
                                        dem_box box) {
     static const char call[] = "moldyn_xb_append";
@@ -1500,14 +1504,14 @@ static void moldyn_str_body(FILE *file, const dem_body_state *s, int planar) {
     dem_quat q = s->orientation;
     dem_real R[9];
     int i;
-    if (planar) q.x = q.y = 0;                  /* but for round-off they are */
+    if (planar) q.x = q.y = 0;                  /* they are 0 except for round-off */
     for (i = 0; i < 3; i++) {
         const dem_vec3 e = dem_quat_rotate(q, dem_vec3_make(i == 0, i == 1, i == 2));
         R[i] = e.x; R[3 + i] = e.y; R[6 + i] = e.z;
     }
     moldyn_str_row(file, R, s->position);
 }
-/* Does the head of the file, "interval frames bodies", say so many bodies? */
+/* Returns 1 if the head of the file, "interval frames bodies", has this number of bodies. */
 static int moldyn_str_holds(const char *path, int bodies) {
     char head[200] = "", *at = head;
     FILE *file = fopen(path, "rb");
@@ -1538,12 +1542,13 @@ static dem_result moldyn_str_check(moldyn *m, const char *call, const dem_world 
                                (long)walls[i].id);
     return DEM_OK;
 }
-/* Appends a frame for ANIM. A new file begins with interval (s, >= 0, between frames), frames (how
-   many there will be) and the number of bodies. Then a line a grain and a line a wall: rotation
-   matrix and place (m); the identity for spheres that nothing turns; of a polygon its turn from how
-   it is listed, and its centre of mass; of polygons and chains of walls those of their frame, the
-   identity and 0 until they move. walls: those to draw, such as m.planes (straight ones, then
-   polygons, then chains); null if wall_count is 0. The number of bodies must stay what it was. */
+/* Appends a frame for ANIM. A new file begins with interval (s, >= 0, between frames), frames (their
+   final number) and the number of bodies. Then there is one line per grain and per wall with rotation
+   matrix and position (m). The matrix of a sphere without orientation is the identity. A polygon has
+   its rotation from the listed orientation, and its centre of mass. Polygons and chains of walls have
+   those of their frame, the identity and 0 until they move. walls: the walls to draw, such as m.planes
+   (straight ones, then polygons, then chains); null if wall_count is 0. The number of bodies must be
+   the same in all frames. */
 MOLDYN_API dem_result moldyn_str_append(moldyn *m, const dem_world *world, const char *path,
                                         double interval, int frames, const dem_wall *walls,
                                         int wall_count) {

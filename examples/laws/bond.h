@@ -12,16 +12,16 @@
 
    `dem_bonds_make(world, gap, bond_make, world)` makes bonds between all pairs of spheres with smaller gaps, not with walls.
    A beam of n bonds bends under a force F at its end by F l^3/(E I) (n^3/3 - n/12) + F n l k/(E A), for large n by
-   F L^3/(3 E I) with L = n l. beta: damping of each bond, over the critical one; slow vibrations of a whole beam are damped
-   little.
+   F L^3/(3 E I) with L = n l. beta: damping of each bond over its critical damping. It hardly damps slow vibrations of a
+   whole beam.
 
    law_range: above `gap`, and above the stretch at rupture, tension l/E. law_stiffness: 4 E A/l. law_who = 1. Limits: small
    rotations of a bond; grains without a bond use the linear law with a spring (set normal_law to linear).
-   History: 8 reals, 2 vectors: shear (m), bending (rad), twist (rad), state: 0: no bond, > 0: l, < 0: broken. */
+   History: 8 reals, 2 vectors: shear (m), bending (rad), twist (rad), and the state (0: no bond; > 0: l; < 0: broken). */
 #ifndef BOND_H
 #define BOND_H
 #include <math.h>
-typedef struct bond {                        /* what law_user points to                               */
+typedef struct bond {                        /* law_user points to it */
     dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                     */
     dem_real tension, shear, beta;           /* Pa, strengths > 0; >= 0                                   */
 } bond;

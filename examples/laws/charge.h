@@ -9,11 +9,11 @@
    phi: work functions of the materials over e, V; A = pi R* d, m2, counted up to its largest value in this contact; q: C;
    E: V/m, of the charges of these two grains, each spread over its sphere; a wall counts as uncharged. For a grain that hits
    a wall dq/dA = s - q/(4 pi R^2), with s = eps0 (phi_a - phi_b)/z in C/m2: its charge approaches 4 pi R^2 s, of which an
-   area A gives the fraction 1 - exp(-A/(4 pi R^2)). One gains the charge that the other loses; for a wall see `gained` in
-   dem_wall_loads.
+   area A gives the fraction 1 - exp(-A/(4 pi R^2)). One grain gains the charge that the other loses; `gained` in
+   dem_wall_loads is the charge that a wall gains.
 
-   Limits: no charge flows back when a contact ends, none leaks; charges exert no force here (a force field can: it sees the
-   charges in dem_bodies). Normal force and friction: dem_law_hertz, dem_law_mindlin_rescaled.
+   Limits: no charge flows back when a contact ends, and none leaks. Charges exert no force here; a force field can add it,
+   because it can read the charges in dem_bodies. Normal force and friction: dem_law_hertz, dem_law_mindlin_rescaled.
 
    law_who = 1; body_reals = "charge" (in C) or more names, `at` is its index. History: 5 reals, 1 vector; the last is A, m2. */
 #ifndef CHARGE_H

@@ -1,4 +1,4 @@
-/* luding.h - cohesive powder: grains that yield, and stick the more the harder they were pressed. MIT licence.
+/* luding.h - cohesive powder: grains that yield; the harder they were pressed, the more they stick. MIT licence.
    Include it after dem.h.
 
    Luding, Granular Matter 10 (2008) 235. D (m) is the depth in the contact history:

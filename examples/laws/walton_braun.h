@@ -1,11 +1,11 @@
-/* walton_braun.h - grains that yield: unloading is stiffer than loading, the more the harder they were pressed.
-   MIT licence. Include it after dem.h.
+/* walton_braun.h - grains that yield: unloading is stiffer than loading, and the difference grows with the
+   largest force. MIT licence. Include it after dem.h.
 
    Walton and Braun, J. Rheol. 30 (1986) 949. D (m) is the largest overlap so far:
 
        loading             F = k1 d
        un- and reloading   F = k2 (d - d0),   d0 = (1 - k1/k2) D,   never attractive
-       k2                  k1 stiffer + S k1 D: grows with the largest force; S (1/m) 0: constant
+       k2                  k1 stiffer + S k1 D: grows with D, or is constant if S (1/m) is 0
 
    k1, k2: N/m; d: overlap, m. An impact at g (m/s) with the reduced mass m (kg) reaches D = g sqrt(m/k1), so that
 
