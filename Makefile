@@ -83,7 +83,7 @@ dem.h: $(ROOMS) src/join.awk ## join the files in src/ to dem.h, in the order of
 	@mkdir -p build
 	@if test -f build/joined.h && test -f $@ && ! cmp -s build/joined.h $@; then awk -f src/join.awk src/dem.h | cmp -s - $@ || { \
 	    echo "dem.h was edited: make rooms copies the change into src/; rm build/joined.h discards it"; exit 1; }; fi
-	@! command -v $(CC) >/dev/null || $(CC) $(CPPFLAGS) -DDEM_IMPLEMENTATION -x c -fsyntax-only src/dem.h
+	@! command -v $(CC) >/dev/null || $(CC) $(CPPFLAGS) -DDEM_IMPLEMENTATION -fsyntax-only -c -o build/joined.o -x c src/dem.h
 	@awk -f src/join.awk src/dem.h > build/joined.new && mv build/joined.new build/joined.h
 	@cmp -s build/joined.h $@ || cp build/joined.h $@; touch $@
 
@@ -180,7 +180,7 @@ tags: ## check that dem.h is joined from src/, that its parts agree with its con
 	@$(MAKE) --no-print-directory english
 
 english: ## list sentences of pages, public comments, error messages and test names that need a second reading
-	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/hard/*.c
+	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/*/*.c
 
 web: ## build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77
@@ -221,7 +221,7 @@ build/rooms/made: $(ROOMS) src/open.awk src/open.sh
 build/rooms/private.h $(FOLDERS:%=build/rooms/%.c): build/rooms/made ;
 $(ROOMS_O): build/rooms/%.o: build/rooms/%.c build/flags
 	$(COMPILE) $(LEVEL) $(OMP) -c -o $@ $<
-# two tests want many domains of few bodies
+# two tests need several domains of few bodies
 build/rooms/small_%.o: build/rooms/%.c build/flags
 	$(COMPILE) $(LEVEL) $(OMP) -DDEM_DOMAIN_BODIES=16 -c -o $@ $<
 SMALL_O := $(patsubst %/search.o,%/small_search.o,$(patsubst %/file.o,%/small_file.o,$(ROOMS_O)))
@@ -230,7 +230,7 @@ tests/refused.h: tests/refused.awk dem.h
 	awk -f tests/refused.awk dem.h > $@
 build/obj/test_refused.o: tests/refused.h
 OPEN = -include build/rooms/private.h
-build/obj/test_own_law.o: OPEN =                       # which has a law compiled into dem.h
+build/obj/test_own_law.o: OPEN =# compiles a law into dem.h
 define TEST
 build/obj/$(2).o: $(1) $(wildcard tests/*.h) $(HEADERS) build/rooms/private.h build/flags
 	$$(COMPILE) $$(LEVEL) $$(OMP) $$(OPEN) -c -o $$@ $(1)

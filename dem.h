@@ -1043,8 +1043,9 @@ DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
    comments give its size (vectors first). Coefficients (kn, cn, kt, ct, ...) come with the contact.
    No law has a branch that depends on the contact, so that compilers can vectorise loops over
    contacts. docs/theory.md has the coefficients.
-   tests/law/test_laws.c checks all of them: springs are of second order in the time step, user-defined
-   laws that call built-in laws get the same bits, and every accepted time step is stable. */
+   tests/law/test_laws.c checks all of them: springs are of second order in the time step,
+   user-defined laws that call built-in laws get the same bits, and every accepted time step is
+   stable. */
 
 /* Computes the load for friction and removes a dashpot's attraction. A normal law calls it after it
    has set f->elastic and f->normal. Without tension (CLIPPED, COMPENSATED) f->normal is raised to
@@ -1201,7 +1202,8 @@ DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_contact_force *f, de
 /* Friction of a spring and a dashpot [CS79]: -kt s - ct v_t, limited by Coulomb's law, where s is
    the tangential displacement since the contact began, rotated with the contact plane. With Hertz's
    law kt follows the present overlap. Contact history: 3 reals, the vector s [m].
-   Tests: tests/contact/test_impacts.c (oblique impacts), tests/law/test_friction.c, tests/law/test_laws.c. */
+   Tests: tests/contact/test_impacts.c (oblique impacts), tests/law/test_friction.c,
+   tests/law/test_laws.c. */
 DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 v = c->slip;
     const dem_real kt = f->kt, ct = f->ct;

@@ -21,6 +21,8 @@ try "parts of dem.h in order" "awk -f tests/tags.awk dem.h"
 try "no sentence of pages, public comments, error messages and test names needs a second reading" "make -s english"
 try "dem.h calls no function of libm that libraries round in their own way" "awk -f tests/libm.awk dem.h"
 try "tests/refused.h has a call of every public function of dem.h" "awk -f tests/refused.awk dem.h | cmp - tests/refused.h"
+try "dem.h is joined from src/" "awk -f src/join.awk src/dem.h | cmp - dem.h"
+try "dem.h split into src/ and joined is dem.h" "mkdir -p \$bin && cp -r src \$bin && awk -v to=\$bin/src -f src/split.awk src/dem.h dem.h && diff -r src \$bin/src"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
 
 # what is compiled: the header alone, the implementation, both in one file, two files linked; the headers
@@ -149,39 +151,31 @@ if found gcc && gcc -m32 $dir/probe.c -o $dir/probe 2>/dev/null; then
     done
 else skip "gcc -m32 does not link (Debian package gcc-multilib)"; fi
 
-# the whole tests: under address and undefined-behaviour sanitizers, with tcc, in 32 bits, in C++
-alone="test_api test_feed test_own_law"        # they set macros of dem.h; the others are one program
-together=$(for source in tests/test_*.c tests/hard/hard_*.c; do
-    case " $alone " in *" $(basename "$source" .c) "*) ;; *) echo "$source" ;; esac; done)
-# tests NAME COMPILER: one case for the program of many, one per test that is a program by itself. Each runs in a
-# folder of its own: cases run side by side, and tests write files. Where an emulator runs them, the many are left out.
+# tests NAME CC CFLAGS LDFLAGS: all tests, built and run in a folder of the case's own. Where an emulator runs the
+# programs, only three.
 emulator=
 tests() {
-    group=$1; turn=1; shift
-    [ "$emulator" ] ||
-    try "$group: tests" "mkdir -p \$bin/build/tmp && awk -f tests/together.awk $(echo $together)" \
-        "> \$bin/tests.c && $* -I. \$bin/tests.c -o \$bin/tests -lm && top=\$PWD && cd \$bin &&" \
-        "sh \$top/tests/run.sh '' $(for t in $together; do printf './tests@%s ' "$(basename "$t" .c)"; done)"
+    turn=1
+    names=$(for t in tests/*/test_*.c tests/hard/hard_*.c; do echo "build/$(basename "$t" .c)"; done)
+    [ "$emulator" ] && names="build/test_api build/test_feed build/test_own_law"
+    try "$1: tests" "mkdir -p \$bin && for f in Makefile bench dem.c dem.h docs examples src tests; do ln -s \$PWD/\$f \$bin; done &&" \
+        "cd \$bin && make CC='$2' CFLAGS='$3' LDFLAGS='$4' OMP= JOBS=1 $(echo $names) && JOBS=1 EMULATOR=$emulator sh tests/run.sh '' $(echo $names)"
     turn=2
-    for test in $alone; do
-        try "$group: $test" "mkdir -p \$bin/build/tmp && $* -I. tests/$test.c -o \$bin/$test -lm &&" \
-            "top=\$PWD && cd \$bin && EMULATOR=$emulator sh \$top/tests/run.sh '' ./$test"
-    done
 }
 # clang's undefined behaviour knows what gcc's does not: null + 0, and other arithmetic of pointers
 if [ "$1" != short ]; then
     for how in "gcc address,undefined" "clang undefined"; do
-        sanitize="${how% *} -g -O1 -ffp-contract=off -fsanitize=${how#* } -fno-sanitize-recover=all"
-        if $sanitize $dir/probe.c -o $dir/probe 2>/dev/null; then
-            tests "${how% *} -fsanitize=${how#* }" "$sanitize"
+        sanitize="-fsanitize=${how#* } -fno-sanitize-recover=all"
+        if ${how% *} $sanitize $dir/probe.c -o $dir/probe 2>/dev/null; then
+            tests "${how% *} -fsanitize=${how#* }" "${how% *}" "-g -O1 -ffp-contract=off $sanitize" "$sanitize"
         else skip "${how% *} has no sanitizers (Debian package gcc, or libclang-rt-dev for clang)"; fi
     done
-    found tcc && tests tcc "tcc"
-    found clang && tests "clang -O2" "clang -std=c99 -O2 -ffp-contract=off"
+    found tcc && tests tcc tcc
+    found clang && tests "clang -O2" clang "-std=c99 -O2 -ffp-contract=off"
     # processors that can fuse a product and a sum, and compilers that would
     found clang && try "clang -O3 -march=native: test_threads" "clang -O3 -march=native -I. tests/run/test_threads.c -o \$bin -lm && \$bin"
     found gcc && try "gcc -std=gnu99 -O3 -march=native: test_threads" "gcc -std=gnu99 -O3 -march=native -I. tests/run/test_threads.c -o \$bin -lm && \$bin"
-    found g++ && tests "g++ -std=c++11" "g++ -std=c++11 -O2 -ffp-contract=off -x c++"
+    found g++ && tests "g++ -std=c++11" g++ "-std=c++11 -O2 -ffp-contract=off"
     try "the same bits on Windows, aarch64, WebAssembly" "sh tests/cross.sh \$bin"
     turn=1
     try "every documented command of the studies, as it is written" \
@@ -199,7 +193,7 @@ if [ "$1" != short ]; then
     emulator=$run32
     [ "$run32" = qemu-i386 ] && skip "gcc -m32: tests: this kernel runs no 32-bit programs, and in qemu-i386 they take hours"
     [ "$run32" = none ] ||
-    tests "gcc -m32" "gcc -m32 -msse2 -mfpmath=sse -std=c99 -O2 -ffp-contract=off"
+    tests "gcc -m32" gcc "-m32 -msse2 -mfpmath=sse -std=c99 -O2 -ffp-contract=off" -m32
 fi
 
 # run them, JOBS at a time, and tell

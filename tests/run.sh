@@ -1,13 +1,10 @@
 # sh tests/run.sh FILTER PROGRAM...: runs test programs, JOBS (1) at a time, and adds up their totals.
-# PROGRAM@TEST is one test of a program of many (tests/together.awk). EMULATOR: what runs programs, if not the system.
+# EMULATOR: what runs programs, if not the system.
 # A program that ends without its totals, or badly in spite of them, counts as one failure.
 # The last line is "N passed, N failed"; the exit code is 1 when anything failed.
 if [ "$1" = -one ]; then                       # DIR FILTER NUMBER PROGRAM: output to DIR/NUMBER
     dir=$2; filter=$3; number=$4; program=$5; name=$(basename "$program")
-    case $name in
-    *@*) name=${name#*@}; $EMULATOR "${program%@*}" "@$name" "$filter" >"$dir/$number" 2>&1 ;;
-    *) $EMULATOR "$program" "$filter" >"$dir/$number" 2>&1 ;;
-    esac
+    $EMULATOR "$program" "$filter" >"$dir/$number" 2>&1
     code=$?
     totals=$(sed -n "s/^$name: \([0-9]*\) passed, \([0-9]*\) failed\$/\1 \2/p" "$dir/$number" | tail -n 1)
     p=${totals% *}; f=${totals#* }

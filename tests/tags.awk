@@ -1,8 +1,7 @@
 # awk -f tests/tags.awk dem.h: the tags of the contents list at the top of the file (lines that begin
 # with >>name, before the first ruled banner) must each head one ruled banner, in the same order; a
 # banner that the list does not name is an error too. Tags such as >>add-law inside the text are free.
-# A part has at most 900 lines, a function at most 80, a line at most 100 columns. -v out=DIR also writes each part
-# to a file of its own there, for reading.
+# A part has at most 900 lines, a function at most 80, a line at most 100 columns.
 BEGIN { dashes = "------------------------------------------------------------"; equals = dashes; gsub(/-/, "=", equals) }
 { ruled = index($0, dashes) || index($0, equals) }
 length($0) > 100 { complain("line " FNR " has " length($0) " columns, must be at most 100") }
@@ -15,17 +14,7 @@ length($0) > 100 { complain("line " FNR " has " length($0) " columns, must be at
 $1 ~ /^>>[a-z]/ && !banners_begun && !was_ruled { listed[++lists] = $1; place[$1] = lists }
 $1 ~ /^>>[a-z]/ && was_ruled { headed[++heads] = $1; line[heads] = FNR; times[$1]++ }
 { if (ruled) banners_begun = 1; was_ruled = ruled }
-out {                               # a part begins with the rule above its tag
-    if ($1 ~ /^>>[a-z]/ && held_rule) {
-        if (file) close(file)
-        file = sprintf("%s/%02d-%s.h", out, ++files, substr($1, 3))
-    }
-    if (held != "") print held > (file ? file : out "/00-contents.h")
-    held_rule = ruled && /^\/\*/
-    held = $0 ? $0 : " "
-}
 END {
-    if (out && held != "") print held > file
     line[heads + 1] = FNR + 1
     for (i = 1; i <= heads; i++)
         if (line[i + 1] - line[i] > 900)

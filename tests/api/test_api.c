@@ -1,7 +1,6 @@
 /* Programs of public calls, drawn from seeds, played in two worlds: fuzz_api.h says what is demanded. A
    seed that fails is printed with the calls that it takes; `build/test_api WORDS` runs fewer sentences.
-   Domains are small, so that few grains make many. */
-#define DEM_DOMAIN_BODIES 16
+   The Makefile makes domains small (DEM_DOMAIN_BODIES), so that few grains make many. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../test.h"

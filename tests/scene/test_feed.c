@@ -1,6 +1,6 @@
 /* Feeds and outlets: what comes in by number and by mass, what goes out, and that between the two
-   nothing is lost (for an hour of machine time: build/screener --study hour). */
-#define DEM_DOMAIN_BODIES 64                  /* several domains: newcomers have neighbours in all */
+   nothing is lost (for an hour of machine time: build/screener --study hour). The Makefile makes domains small
+   (DEM_DOMAIN_BODIES), so that newcomers have neighbours in several. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../../examples/sorting.h"
