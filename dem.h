@@ -25279,7 +25279,8 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
    the highest grain there. */
 typedef struct demi_surface {
     dem_vec3 centre, out, along, up;   /* m; unit */
-    int around;                        /* a heap: rows by distance from the centre */
+    int around;                        /* a heap: rows by distance from the centre, to which the
+                                          nearest image of each grain counts */
     double width, from;                /* m: of a cell; where the first row begins */
     int rows, columns;
     double *top;                       /* rows x columns, m above the lowest grain; < 0: nobody */
@@ -25313,14 +25314,13 @@ static int demi_surface_line(const demi_surface *s, int first, int last, dem_rep
     out->places = (int)n;
     return 1;
 }
-/* Is grain i in the box, if there is one, and can it move? */
-static int demi_repose_sees(const dem_world *w, dem_box b, int i) {
-    const dem_real *x = w->bodies.pos + 4*i;
+/* Is grain i at x in the box, if there is one, and can it move? */
+static int demi_repose_sees(const dem_world *w, dem_box b, int i, dem_vec3 x) {
     const dem_vec3 size = demi_sub(b.hi, b.lo);
     if (!(w->bodies.inv_mass[i] > 0)) return 0;
     if (!(demi_dot(size, size) > 0)) return 1;
-    return x[0] >= b.lo.x && x[0] <= b.hi.x && x[1] >= b.lo.y && x[1] <= b.hi.y &&
-        x[2] >= b.lo.z && x[2] <= b.hi.z;
+    return x.x >= b.lo.x && x.x <= b.hi.x && x.y >= b.lo.y && x.y <= b.hi.y && x.z >= b.lo.z &&
+        x.z <= b.hi.z;
 }
 static int32_t demi_heap_of(int32_t *root, int32_t i) {
     while (root[i] != i) i = root[i] = root[root[i]];
@@ -25367,7 +25367,7 @@ static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
     for (i = 0; i < n && x && s->root; i++) {
         const dem_vec3 at = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
         x[3*i] = (double)at.x; x[3*i + 1] = (double)at.y; x[3*i + 2] = (double)at.z;
-        s->root[i] = demi_repose_sees(w, box, i) ? i : -1;
+        s->root[i] = demi_repose_sees(w, box, i, at) ? i : -1;
         most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
     }
     ok = x && mass && s->root && demi_tree_make(w, &tree, x, n);
@@ -25386,7 +25386,9 @@ static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
 /* Row and column of a grain, and how high its top is. */
 static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, double *row,
                                  int *column) {
-    const dem_vec3 d = demi_sub(demi_at(w->bodies.pos + 4*i), s->centre);
+    const demi_periods p = demi_periods_of(w);
+    const dem_vec3 to = demi_sub(demi_at(w->bodies.pos + 4*i), s->centre);
+    const dem_vec3 d = s->around ? demi_nearest(&p, to) : to;
     const double x = (double)demi_dot(d, s->out), y = (double)demi_dot(d, s->along);
     const double far = s->around ? sqrt(x*x + y*y) : x;
     const double n = s->columns, across = floor(y/s->width);     /* rows more than ints hold */
@@ -25395,6 +25397,32 @@ static double demi_surface_place(const dem_world *w, const demi_surface *s, int 
     *row = floor((far - s->from)/s->width);
     *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
     return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
+}
+/* m: the centre of mass of the heap, across periodic faces too. A period is a circle, on which the
+   mean direction of the grains gives a place in their midst; then the images nearest to it count. */
+static dem_vec3 demi_heap_centre(const dem_world *w, const demi_surface *s) {
+    const demi_periods p = demi_periods_of(w);
+    double mass = 0, mean[3] = {0, 0, 0};
+    dem_vec3 sum = demi_v(0, 0, 0), midst;
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        double x = 0, y = 0;
+        for (i = 0; i < w->bodies.count && p.period[k] > 0; i++) {
+            const double turn = 2*DEMI_PI/(double)p.period[k];
+            if (s->root[i] != s->heap) continue;
+            x += (double)w->bodies.mass[i]*demi_cos(turn*(double)w->bodies.pos[4*i + k]);
+            y += (double)w->bodies.mass[i]*demi_sin(turn*(double)w->bodies.pos[4*i + k]);
+        }
+        mean[k] = demi_atan2(y, x)*(double)p.period[k]/(2*DEMI_PI);
+    }
+    midst = demi_v((dem_real)mean[0], (dem_real)mean[1], (dem_real)mean[2]);
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 to = demi_sub(demi_at(w->bodies.pos + 4*i), midst);
+        if (s->root[i] != s->heap) continue;
+        sum = demi_add(sum, demi_scale(demi_nearest(&p, to), w->bodies.mass[i]));
+        mass += (double)w->bodies.mass[i];
+    }
+    return mass > 0 ? demi_add(midst, demi_scale(sum, (dem_real)(1/mass))) : midst;
 }
 /* Looks at the grains of the heap: a surface with the heights above its lowest grain. 0: no memory;
    top is null where there are no grains. */
@@ -25484,20 +25512,14 @@ DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_
     const char *call = "dem_repose_heap_get";
     dem_world *w = (dem_world *)world;          /* its sentence, and memory for a while */
     demi_surface s;
-    dem_vec3 sum = demi_v(0, 0, 0);
-    double mass = 0, highest = 0;
+    double highest = 0;
     dem_result result;
     int i, first, last, good = 0;
     if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     result = demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s);
     if (result != DEM_OK) return result;
-    for (i = 0; i < w->bodies.count; i++) {
-        if (s.root[i] != s.heap) continue;
-        sum = demi_add(sum, demi_scale(demi_at(w->bodies.pos + 4*i), w->bodies.mass[i]));
-        mass += (double)w->bodies.mass[i];
-    }
-    if (mass > 0) s.centre = demi_scale(sum, (dem_real)(1/mass));
+    s.centre = demi_heap_centre(w, &s);
     s.around = 1;
     if (!demi_surface_look(w, &s)) good = -1;
     for (i = 0; s.top && i < s.rows; i++) highest = DEMI_MAX(highest, demi_surface_row(&s, i));

@@ -112,6 +112,47 @@ int main(int argc, char **argv) {
             }
     }
 
+    TEST("a heap across periodic faces has the angle of the same heap in the middle of the box") {
+        double angle[3];
+        int k, i, in[3];
+        for (k = 0; k < 3; k++) {
+            const double by = k*0.03;
+            const dem_box half = box_of(-0.06 + by, -0.06 + by, 0, by, 0.06 + by, 0.06);
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material m;
+            dem_bodies all_of;
+            dem_repose r;
+            desc.gravity = at(0, 0, -9.81);
+            desc.domain = box_of(-0.06, -0.06, -0.01, 0.06, 0.06, 0.1);
+            desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e6, 0.5, 0.5, 0);
+            steep = tan(25*degree);
+            lean = 0;
+            CHECK(dem_spheres_pack(world, m, DEM_R(0.0011), 0,
+                                   dem_region_inside_make(box_of(-0.055, -0.055, 0, 0.055, 0.055, 0.06), below, 0), 0) > 1000);
+            all_of = dem_bodies_get(world);
+            for (i = 0; i < all_of.count; i++) {
+                const dem_body body = dem_body_id_get(world, i);
+                dem_body_state s = scene_state(world, body);
+                s.position.x += (dem_real)(by - (s.position.x + by > 0.06 ? 0.12 : 0));
+                s.position.y += (dem_real)(by - (s.position.y + by > 0.06 ? 0.12 : 0));
+                CHECK_EQ(dem_body_set(world, body, &s), DEM_OK);
+            }
+            CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_OK);
+            angle[k] = r.angle;
+            CHECK_NEAR(r.angle, 25*degree, 1.5*degree);
+            /* a box is the part of the period that it names: half the heap, of which the rest is not in it */
+            CHECK_EQ(dem_repose_heap_get(world, half, &r), DEM_OK);
+            in[k] = r.places;
+            dem_world_destroy(world);
+        }
+        for (k = 1; k < 3; k++) {
+            CHECK_NEAR(angle[k], angle[0], 1e-6);
+            CHECK(in[k] > 3);
+        }
+    }
     TEST("without gravity, grains or a horizontal axis there is no slope, and the error says which") {
         dem_material m;
         dem_world *world = world_of(at(0, 0, 0), 0, &m);
