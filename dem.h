@@ -25399,7 +25399,8 @@ static double demi_surface_place(const dem_world *w, const demi_surface *s, int 
     return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
 }
 /* m: the centre of mass of the heap, across periodic faces too. A period is a circle, on which the
-   mean direction of the grains gives a place in their midst; then the images nearest to it count. */
+   mean direction of the grains gives a point in their midst. Then the images nearest to it
+   count. */
 static dem_vec3 demi_heap_centre(const dem_world *w, const demi_surface *s) {
     const demi_periods p = demi_periods_of(w);
     double mass = 0, mean[3] = {0, 0, 0};
