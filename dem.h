@@ -22028,12 +22028,14 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
     to->user = from->user;
     return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
 }
-/* True if the centre x, whose place in the box is u (0 to 1 on each axis), is in the region. */
+/* True if the centre x, whose place in the box is u (0 to 1 on each axis), is in the region. Where
+   the box leaves centres one place on an axis, that is the middle. */
 static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, dem_real radius) {
     double round = 0;
     int k;
     for (k = 0; k < 3; k++)
-        if (g->cylinder && g->cylinder != 1 + k) round += (2*u[k] - 1)*(2*u[k] - 1);
+        if (g->cylinder && g->cylinder != 1 + k && g->size[k] > 0)
+            round += (2*u[k] - 1)*(2*u[k] - 1);
     return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
 }
 /* The place that three numbers from 0 to 1 name. 0: not of the region. */
@@ -22048,7 +22050,7 @@ static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
     const double at[3] = {(double)off.x, (double)off.y, (double)off.z};
     double u[3];
     int k;
-    for (k = 0; k < 3; k++) u[k] = g->size[k] > 0 ? at[k]/g->size[k] : 0.5;
+    for (k = 0; k < 3; k++) u[k] = g->size[k] > 0 ? at[k]/g->size[k] : 0;
     return demi_region_keeps(g, u, x, radius);
 }
 
@@ -22212,8 +22214,13 @@ static int demi_region_check(dem_world *w, const char *call, const dem_region *r
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z'))
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
                   "axis of the cylinder, or 0 for the whole box", call, region->cylinder);
-    else if (!demi_place(region->box.lo) || !demi_place(region->box.hi) ||
-             !demi_region_make(w, region, (double)radius, g))
+    else if (!demi_place(region->box.lo) || !demi_place(region->box.hi))
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, "
+                  "must be finite and at most %g m from the origin", call,
+                  (double)region->box.lo.x, (double)region->box.lo.y, (double)region->box.lo.z,
+                  (double)region->box.hi.x, (double)region->box.hi.y, (double)region->box.hi.z,
+                  DEMI_FARTHEST);
+    else if (!demi_region_make(w, region, (double)radius, g))
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
                   "give lo below hi by at least a diameter", call, (double)radius);
     else return 1;
@@ -22229,7 +22236,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     demi_calling was;
     int m = 0, first, done;
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
-    if (radii) radius = count > 0 ? radii[0] : 1;
+    if (radii) radius = radii[0];
     if (!(radius > 0) || !demi_finite(radius) || count < 0) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count is %d; the radius must be "
                   "> 0 and finite, the count >= 0", call, (double)radius, count);
@@ -22240,7 +22247,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                    demi_walls_strange(w, call, shape)) return 0;
     if (!demi_region_check(w, call, region, radius, &g)) return 0;
     /* centres of the smallest are anywhere in there */
-    if (radii) demi_region_make(w, region, count ? (double)radii[count - 1] : 0, &g);
+    if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
     done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     was = demi_calls(w, call, 1);
@@ -22282,7 +22289,8 @@ DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes 
     if (demi_null(w, call, sizes, "sizes")) return 0;
     radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
     if (!radii) { demi_no_memory(w, call); return 0; }
-    if (demi_sizes_draw(w, call, sizes, count, 0, radii) == DEM_OK) {
+    /* none are asked for: the region must still have room for one */
+    if (demi_sizes_draw(w, call, sizes, count ? count : 1, 0, radii) == DEM_OK) {
         for (i = 0; i < count/2; i++) {         /* the largest first */
             const dem_real r = radii[i];
             radii[i] = radii[count - 1 - i];
@@ -34404,6 +34412,15 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                          "from which they were created, unchanged, or one built like it", call,
                          w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
                          s->dealt, h->wall_count, h->material_count, h->feed_count);
+    for (i = 0; i < w->wall_count; i++) {       /* a place may have got another wall */
+        const demi_wall *here = &w->walls[i], *there = &s->slabs[0].world->walls[i];
+        const int none = here->kind == DEMI_WALL_NONE, gone = there->kind == DEMI_WALL_NONE;
+        if (none == gone && (none || here->id == there->id)) continue;
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: wall %d was %s the world after the slabs were "
+                         "created; collect before adding or removing walls, or create the slabs "
+                         "again afterwards", call, (int)here->id, none ? "removed from"
+                         : "added to");
+    }
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t slot = w->bodies.slot[i];
         if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])

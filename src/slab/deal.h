@@ -617,6 +617,15 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                          "from which they were created, unchanged, or one built like it", call,
                          w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
                          s->dealt, h->wall_count, h->material_count, h->feed_count);
+    for (i = 0; i < w->wall_count; i++) {       /* a place may have got another wall */
+        const demi_wall *here = &w->walls[i], *there = &s->slabs[0].world->walls[i];
+        const int none = here->kind == DEMI_WALL_NONE, gone = there->kind == DEMI_WALL_NONE;
+        if (none == gone && (none || here->id == there->id)) continue;
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: wall %d was %s the world after the slabs were "
+                         "created; collect before adding or removing walls, or create the slabs "
+                         "again afterwards", call, (int)here->id, none ? "removed from"
+                         : "added to");
+    }
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t slot = w->bodies.slot[i];
         if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])

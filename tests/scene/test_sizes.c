@@ -177,6 +177,29 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a fill of no spheres succeeds, and discs fill a cylinder along an axis of their plane; a box without end is rejected") {
+        dem_world *world = empty(1);
+        dem_sizes d = sieves();
+        dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
+        dem_region region = dem_region_make(box_of(0, 0, 0, 0.03, 0.03, 0));
+        const double endless[] = {(double)INFINITY, -(double)INFINITY, (double)NAN, 1e16};
+        int k;
+        CHECK_EQ(dem_sizes_fill(world, m, &d, region, 0, 1), 0);
+        CHECK_EQ(dem_spheres_fill(world, m, DEM_R(1e-3), region, 0, 1), 0);
+        CHECK_STR(dem_world_error_get(world), "");
+        CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+        for (k = 0; k < 3; k++) {
+            region.cylinder = "xyz"[k];
+            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(1e-3), region, 10, 1), 10);
+        }
+        for (k = 0; k < 4; k++) {
+            region.box.hi.x = (dem_real)endless[k];
+            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(1e-3), region, 1, 1), 0);
+            CHECK_STR(dem_world_error_get(world), "must be finite and at most 1e+15 m from the origin");
+        }
+        dem_world_destroy(world);
+    }
+
     TEST("invalid size distributions are rejected with the value named") {
         dem_world *world = empty(0);
         dem_sizes d = DEM_SIZES;

@@ -1267,6 +1267,33 @@ int main(int argc, char **argv) {
         dem_world_destroy(small);
         dem_world_destroy(flat);
     }
+    TEST("slabs are not collected into a world one of whose walls was removed or replaced since") {
+        drum_desc d = DRUM;
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_world *world = drum(&d);
+            dem_slabs *slabs;
+            dem_wall wall;
+            wall.id = 1;
+            slabs = deal(world, 0, 2);
+            CHECK_EQ(go(slabs, 10), DEM_OK);
+            CHECK_EQ(dem_wall_remove(world, wall), DEM_OK);
+            if (k) {
+                dem_material m;
+                m.id = 1;
+                wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+            }
+            CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_slabs_error_get(slabs), k ? "was added to the world after" : "wall 1 was removed from the world after");
+            if (k) {
+                dem_pose pose;
+                CHECK_EQ(dem_wall_pose_get(world, wall, &pose), DEM_OK);
+                CHECK_NEAR(pose.position.z, -1, 0);
+            }
+            dem_slabs_destroy(slabs);
+            dem_world_destroy(world);
+        }
+    }
     TEST("an overlap above one radius stops the run with the number of the slab that found it") {
         dem_world *world = crate(0, 0, DEM_BOUNDARY_OPEN, 60, 0);
         dem_slabs *slabs;
