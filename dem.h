@@ -19721,6 +19721,19 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
     *hits = closing - turned;
     return turned < 0 && closing < 0 ? DEMI_MAX(turned/2, closing) : 0;
 }
+/* The coefficient of a meeting with this slip (m/s): static friction holds what did not slide in
+   the last step. What did not push then begins now, and slides from the beginning where its slip is
+   more than gravity gives in a step (`rest`, m/s) and round-off: else a whole impact would feel
+   static friction, and how many did would depend on how far ahead they are seen. */
+static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
+                                      const demi_spot *o, dem_vec3 slip, dem_real rest) {
+    const dem_real slow = rest + (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*
+        (dem_real)w->booked.speed_max;
+    const int begins = !(o->memory[6*o->stride] > 0);
+    const int slides = begins ? demi_dot(slip, slip) > slow*slow
+        : o->memory[DEMI_IMPULSE_SLIDES*o->stride] > 0;
+    return slides ? pair->friction : DEMI_MAX(pair->friction, pair->friction_static);
+}
 /* The second half of a domain's meetings: all that sweeps need. What is remembered is for turned
    normals: friction stays across them. Cohesion takes hold of what touches, to a millionth of the
    radius, and holds it up to a thousandth. */
@@ -19742,19 +19755,18 @@ static void demi_impulses_lay(dem_world *w, int d) {
         /* a contact of several points has what its pair has once */
         const dem_real points = (dem_real)(k && k->corners ? k->corners : 1);
         const dem_real give = pair->compliance*points, had = w->desc.cold_start ? 0 : dt;
-        /* what slid in the last step slides on */
-        const dem_real mu = y[DEMI_IMPULSE_SLIDES*o.stride] > 0 ? pair->friction
-            : DEMI_MAX(pair->friction, pair->friction_static);
         demi_brings g = {0, 0, 0, 0, 0, 0};
-        dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
-        dem_real closing, hits;
+        dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]), before;
+        dem_real mu, closing, hits;
         if (k && k->b < 0) demi_surface_lay(w, k, s->movers + m->b);
+        c->a = m->a;
+        c->b = m->b;
+        c->normal = o.normal;
         if (shaped) {
             s->arms[2*m->at] = o.arm_a;
             s->arms[2*m->at + 1] = o.arm_b;
             demi_brings_add(s, &g, m->a, o.normal, o.arm_a);
             if (m->b < w->bodies.count) demi_brings_add(s, &g, m->b, o.normal, o.arm_b);
-            demi_brings_bound(w, &g, mu);
         } else {
             const demi_mover *a = s->movers + m->a, *b = s->movers + m->b;
             c->reach_a = demi_dot(o.arm_a, o.normal);
@@ -19763,9 +19775,11 @@ static void demi_impulses_lay(dem_world *w, int d) {
             g.roll = g.spin = a->inv_inertia + b->inv_inertia;
             g.t = g.n + c->reach_a*c->reach_a*a->inv_inertia + c->reach_b*c->reach_b*b->inv_inertia;
         }
-        c->a = m->a;
-        c->b = m->b;
-        c->normal = o.normal;
+        before = demi_impulse_before(w, c);
+        closing = demi_dot(before, o.normal);
+        mu = demi_impulse_friction(w, pair, &o, demi_sub(before, demi_scale(o.normal, closing)),
+                                   rest);
+        if (shaped) demi_brings_bound(w, &g, mu);
         c->mu = mu;
         c->gn = g.n;
         c->gt = g.t;
@@ -19773,7 +19787,6 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->per_t = 1/g.t;
         c->push = y[6*o.stride]*had;
         c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), had);
-        closing = demi_dot(demi_impulse_before(w, c), o.normal);
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
         hits = closing;
         beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);

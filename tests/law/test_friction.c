@@ -221,6 +221,45 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("an impact of a slipping sphere takes mu (1 + e) v under springs and impulses, however far ahead impulses look") {
+        static const double dts[] = {1e-6, 1e-3, 1e-4, 1e-5};
+        int k;
+        for (k = 0; k < 4; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc m = scene_stuff(1e8, 0.8, 0.1, 0);
+            dem_material stuff;
+            dem_world *world;
+            dem_body body;
+            dem_vec3 before = at(5, 0, -0.5);
+            int bounces = 0, steps;
+            m.friction_static = DEM_R(0.5);
+            desc.gravity = at(0, 0, -g_earth);
+            desc.threads = 1;
+            desc.dt = (dem_real)dts[k];
+            desc.response = k ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+            world = dem_world_create(&desc);
+            stuff = dem_material_add(world, &m);
+            dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+            body = dem_sphere_add(world, stuff, DEM_R(0.01), at(0, 0, 0.0101));
+            scene_move(world, body, before, at(0, 0, 0));
+            for (steps = 0; bounces < 3 && steps < 200000; steps++) {
+                dem_body_state s;
+                dem_vec3 v;
+                if (dem_world_step(world, 1) != DEM_OK) break;
+                s = scene_state(world, body);
+                v = s.velocity;
+                if (!((double)s.position.z > 0.01)) continue;          /* in contact */
+                if (v.z > 0 && before.z < 0) {
+                    CHECK_NEAR((double)(before.x - v.x)/(0.1*1.8*(double)-before.z), 1, 0.1);
+                    bounces++;
+                    before = v;
+                }
+                if (v.z < 0) before = v;
+            }
+            CHECK_EQ(bounces, 3);
+            dem_world_destroy(world);
+        }
+    }
     TEST("static friction set and removed in mid-run keeps springs and the user's memory") {
         for (k = 0; k < 2*CARRIERS; k++) {
             slide s = slide_of(k%CARRIERS, 1.2e-5), t = s;
