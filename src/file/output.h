@@ -83,6 +83,10 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     dem_result result = DEM_OK;
     demi_output_heading(d, heading);
     memset(value, 0, sizeof value);
+    if (d->wall.id && !demi_wall_there(w, d->wall))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: output %d writes the loads of wall "
+                         "%d, which was removed; remove the output too (dem_output_remove)",
+                         (int)o->id, (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
     else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
@@ -173,7 +177,11 @@ static dem_result demi_outputs_look(dem_world *w) {
         written->next = (int64_t)number + 1;
         written->last = now;
         result = demi_output_write(w, &o, (int64_t)number);
-        if (reads != w->look.reads) { i = -1; continue; }
+        if (reads != w->look.reads) {
+            if (result != DEM_OK) return result;
+            i = -1;
+            continue;
+        }
         i = demi_output_place(w, o.id);         /* its function may have removed some */
         if (i == w->look.output_count || w->look.outputs[i].id != o.id) i--;
         else if (result == DEM_OK) w->look.outputs[i].resumes = 0;

@@ -170,6 +170,10 @@ static int returns(dem_world *world, int64_t number, void *user) {
     if (number != 6 || r->back++) return 0;
     return dem_checkpoint_read(world, "build/tmp/output_back.ckpt") != DEM_OK;
 }
+/* Goes back once, and stops the run. */
+static int returns_and_stops(dem_world *world, int64_t number, void *user) {
+    return returns(world, number, user) || (number == 6 && ((returner *)user)->back == 1);
+}
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
@@ -261,6 +265,47 @@ int main(int argc, char **argv) {
         CHECK_NEAR(dem_world_time_get(world), 8e-3, 1e-9);
         dem_world_destroy(world);
         remove("build/tmp/output_back.ckpt");
+    }
+    TEST("a scheduled function that reads a checkpoint can stop the run, and no output misses a call afterwards") {
+        returner r;
+        int other[16] = {0}, k;
+        dem_world *world = lone();
+        memset(&r, 0, sizeof r);
+        every(world, 1e-3, count_call, other);
+        every(world, 1e-3, returns_and_stops, &r);
+        CHECK_EQ(dem_world_run_to(world, 2.5e-3, 0, 0), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(world, "build/tmp/output_back.ckpt"), DEM_OK);
+        CHECK_EQ(dem_world_run_to(world, 8e-3, 0, 0), DEM_ERROR_STOPPED);
+        CHECK_STR(dem_world_error_get(world), "stopped by the function of an output");
+        CHECK_NEAR(dem_world_time_get(world), 2.5e-3, 1e-9);
+        CHECK_EQ(dem_world_run_to(world, 8e-3, 0, 0), DEM_OK);
+        for (k = 0; k <= 8; k++) {
+            CHECK_EQ(other[k], k >= 3 && k <= 6 ? 2 : 1);
+            CHECK_EQ(r.calls[k], k >= 3 && k <= 6 ? 2 : 1);
+        }
+        dem_world_destroy(world);
+        remove("build/tmp/output_back.ckpt");
+    }
+    TEST("an output of a wall that is removed stops the run with its number, and the run goes on without it") {
+        dem_world *world = lone();
+        dem_output_desc d = DEM_OUTPUT_DESC;
+        dem_material m;
+        dem_output output;
+        m.id = 1;
+        d.kind = DEM_OUTPUT_CSV;
+        d.path = "build/tmp/output_wall.csv";
+        d.interval = 1e-4;
+        d.wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+        output = dem_output_add(world, &d);
+        CHECK_EQ(dem_world_step(world, 30), DEM_OK);
+        CHECK_EQ(dem_wall_remove(world, d.wall), DEM_OK);
+        dem_wall_plane_add(world, m, at(0, 0, -2), at(0, 0, 1));       /* in its place */
+        CHECK_EQ(dem_world_step(world, 30), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "output 1 writes the loads of wall 1, which was removed; remove the output too");
+        CHECK_EQ(dem_output_remove(world, output), DEM_OK);
+        CHECK_EQ(dem_world_step(world, 30), DEM_OK);
+        dem_world_destroy(world);
+        remove(d.path);
     }
     TEST("a CSV file holds no line of an earlier run, and after a restart those up to the checkpoint") {
         int late;
