@@ -84,8 +84,8 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_output_heading(d, heading);
     memset(value, 0, sizeof value);
     if (d->wall.id && !demi_wall_there(w, d->wall))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: output %d writes the loads of wall "
-                         "%d, which was removed; remove the output too (dem_output_remove)",
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: output %d writes the loads of "
+                         "wall %d, which was removed; remove the output too (dem_output_remove)",
                          (int)o->id, (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
     else {
