@@ -22159,7 +22159,9 @@ static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
     return 1;
 }
 static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
-    return demi_crowd_free(w, c, x, radius) && demi_walls_clear(w, x, radius);
+    /* in the domain: a region may be more periods away than can be counted */
+    return demi_crowd_free(w, c, x, radius) &&
+        demi_walls_clear(w, demi_place_of(&c->p, x), radius);
 }
 
 /* --- fills --- */
@@ -30751,10 +30753,20 @@ static int demi_probe_compare(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 /* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
-   moved from `home` to `pose` since. 0 when memory ran out. */
+   moved from `home` to `pose` since. A wall that repeats may stand any number of periods away: its
+   images are those around its middle. 0 when memory ran out. */
 static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
                           const double *box, dem_vec3 x, int feed) {
+    dem_real mid[3], to_mid[3];
     int n, k;
+    for (k = 0; k < 3; k++) mid[k] = (dem_real)((box[k] + box[3 + k])/2);
+    demi_put(mid, demi_add(wall->pose.position, demi_rotate(wall->pose.rotation, demi_unrotate(
+        wall->home.rotation, demi_sub(demi_at(mid), wall->home.position)))));
+    demi_put(to_mid, demi_sub(demi_at(mid), x));
+    for (k = 0; k < 3; k++)
+        to_mid[k] = wall->repeats[k]
+            ? (dem_real)floor((double)(to_mid[k]/w->wall_period[k]) + 0.5)*w->wall_period[k] : 0;
+    x = demi_add(x, demi_at(to_mid));
     for (n = 0; n < 27; n++) {
         const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
         const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
@@ -33720,7 +33732,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     int n, k;
     for (n = 0; n < DEMI_FEED_TRIES; n++) {
         taken[n] = !demi_feed_try(h, f, g, &x[n], &v[n]) ||
-                   !demi_walls_clear(s->slabs[0].world, x[n], r);
+                   !demi_walls_clear(s->slabs[0].world, demi_place_of(&p, x[n]), r);
         after[n] = f->random;
         for (k = 0; k < s->local && !(taken[n] > 0); k++)
             taken[n] = !demi_crowd_free(s->slabs[k].world, &s->slabs[k].crowd, x[n], r);

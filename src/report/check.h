@@ -304,10 +304,20 @@ static int demi_probe_compare(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 /* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
-   moved from `home` to `pose` since. 0 when memory ran out. */
+   moved from `home` to `pose` since. A wall that repeats may stand any number of periods away: its
+   images are those around its middle. 0 when memory ran out. */
 static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
                           const double *box, dem_vec3 x, int feed) {
+    dem_real mid[3], to_mid[3];
     int n, k;
+    for (k = 0; k < 3; k++) mid[k] = (dem_real)((box[k] + box[3 + k])/2);
+    demi_put(mid, demi_add(wall->pose.position, demi_rotate(wall->pose.rotation, demi_unrotate(
+        wall->home.rotation, demi_sub(demi_at(mid), wall->home.position)))));
+    demi_put(to_mid, demi_sub(demi_at(mid), x));
+    for (k = 0; k < 3; k++)
+        to_mid[k] = wall->repeats[k]
+            ? (dem_real)floor((double)(to_mid[k]/w->wall_period[k]) + 0.5)*w->wall_period[k] : 0;
+    x = demi_add(x, demi_at(to_mid));
     for (n = 0; n < 27; n++) {
         const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
         const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);

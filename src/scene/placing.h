@@ -328,7 +328,9 @@ static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
     return 1;
 }
 static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
-    return demi_crowd_free(w, c, x, radius) && demi_walls_clear(w, x, radius);
+    /* in the domain: a region may be more periods away than can be counted */
+    return demi_crowd_free(w, c, x, radius) &&
+        demi_walls_clear(w, demi_place_of(&c->p, x), radius);
 }
 
 /* --- fills --- */

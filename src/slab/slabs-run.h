@@ -56,7 +56,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     int n, k;
     for (n = 0; n < DEMI_FEED_TRIES; n++) {
         taken[n] = !demi_feed_try(h, f, g, &x[n], &v[n]) ||
-                   !demi_walls_clear(s->slabs[0].world, x[n], r);
+                   !demi_walls_clear(s->slabs[0].world, demi_place_of(&p, x[n]), r);
         after[n] = f->random;
         for (k = 0; k < s->local && !(taken[n] > 0); k++)
             taken[n] = !demi_crowd_free(s->slabs[k].world, &s->slabs[k].crowd, x[n], r);

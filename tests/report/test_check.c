@@ -237,10 +237,10 @@ int main(int argc, char **argv) {
     TEST("dem_world_check reports grains inside a closed surface only where others are outside, for any kind of wall") {
         /* with grains on both sides; all inside; all outside; on both sides of an open one; brought by a feed;
            across a face of a periodic world; where the surface has moved to; all inside and periodic along z,
-           where the images of a grain are inside a profile, too */
+           where the images of a grain are inside a profile, too; across a face, three periods from the surface */
         int kind, way;
         for (kind = 0; kind < BODIES; kind++)
-            for (way = 0; way < 8; way++) {
+            for (way = 0; way < 9; way++) {
                 const int all_inside = way == 1 || way == 7;
                 const dem_severity severity = kind == BODY_INSIDE_OUT ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING;
                 dem_world_desc desc = DEM_WORLD_DESC;
@@ -254,6 +254,10 @@ int main(int argc, char **argv) {
                 desc.domain = box_of(0, -0.1, -0.1, 0.2, 0.1, 0.1);
                 if (way == 5) desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
                 if (way == 7) desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
+                if (way == 8) {
+                    desc.domain = box_of(0.6, -0.1, -0.1, 0.8, 0.1, 0.1);
+                    desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+                }
                 desc.allow_large_dt = 1;
                 desc.dt = DEM_R(1e-2);
                 world = dem_world_create(&desc);
@@ -265,6 +269,7 @@ int main(int argc, char **argv) {
                     CHECK_EQ(dem_world_step(world, 1), DEM_OK);
                     centre = at(0.03, 0.04, 0);
                 }
+                if (way == 8) centre = at(0.6, 0, 0);
                 if (way != 2 && way != 4) body_grains(world, m, centre, 0);
                 if (!all_inside) body_grains(world, m, centre, 1);
                 if (way == 4) {

@@ -208,6 +208,33 @@ static void fills(void) {
             dem_world_destroy(world);
         }
     }
+    TEST("a fill and a packing of a box outside the domain keep clear of the walls where their spheres are") {
+        /* the last: more periods than an int counts */
+        static const double away[] = {0, 3, -7, sizeof(dem_real) < 8 ? 5 : 4e9};
+        int k, packed;
+        for (k = 0; k < 8; k++) {
+            const double o = away[k/2];
+            dem_material m;
+            dem_world *world = place_world(1, 1, 1, "xy", &m);
+            dem_region region = dem_region_make(box_of(o, o, 0, o + 0.98, o + 0.98, 1));
+            dem_wall wall[3];
+            dem_wall_loads loads;
+            int i;
+            packed = k%2;
+            wall[0] = dem_wall_plane_add(world, m, at(0, 0, 0.2), at(0, 0.1, 1));
+            wall[1] = dem_wall_cylinder_add(world, m, at(0.5, 0.5, 0), at(0, 0, 1), DEM_R(0.4), 1);
+            wall[2] = scene_floor(world, m, 0, 0, 1, 1, 3, 3);
+            for (i = 0; i < 3; i++) CHECK(wall[i].id > 0);
+            CHECK(packed ? dem_spheres_pack(world, m, DEM_R(0.03), DEM_R(1e-4), region, 300) == 300
+                         : dem_spheres_fill(world, m, DEM_R(0.03), region, 300, 3) == 300);
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            for (i = 0; i < 3; i++) {
+                CHECK_EQ(dem_wall_loads_get(world, wall[i], &loads), DEM_OK);
+                CHECK_EQ(loads.contacts, 0);
+            }
+            dem_world_destroy(world);
+        }
+    }
     TEST("a fill of 2^31 - 1 spheres in a small box ends soon, with those that fit") {
         dem_material m;
         dem_world *world = place_world(1, 1, 1, "", &m);
