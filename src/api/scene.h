@@ -268,7 +268,8 @@ typedef struct dem_region {
        no faces there and centres may be anywhere. */
     dem_box box;
     /* 'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis,
-       elliptic if the box is not square. 0 means the whole box. */
+       elliptic if the box is not square: centres then lie in an ellipse whose half axes are smaller
+       by the radius. 0 means the whole box. */
     int cylinder;
     dem_inside_fn inside;          /* restricts the region further; null means no restriction */
     void *user;                    /* passed to inside */
