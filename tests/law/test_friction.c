@@ -223,7 +223,6 @@ int main(int argc, char **argv) {
 
     TEST("an impact of a slipping sphere takes mu (1 + e) v under springs and impulses, however far ahead impulses look") {
         static const double dts[] = {1e-6, 1e-3, 1e-4, 1e-5};
-        int k;
         for (k = 0; k < 4; k++) {
             dem_world_desc desc = DEM_WORLD_DESC;
             dem_material_desc m = scene_stuff(1e8, 0.8, 0.1, 0);
