@@ -195,7 +195,7 @@ static inline void walk_reals(dem_real *reals, const dem_real *rates, const dem_
 }
 static inline void walk_motion(double time, dem_pose *pose, void *user) { (void)time; (void)pose; (void)user; }
 static inline int walk_inside(dem_vec3 x, dem_real radius, void *user) { (void)radius; (void)user; return x.x > 0; }
-static dem_motion_row walk_rows[3], walk_rows_other[3];
+static dem_motion_row walk_rows[8], walk_rows_other[8];       /* the walk changes their count, too */
 static dem_sizes walk_sizes[2];
 static dem_real walk_centres[6] = {0, 0, 0, DEM_R(8e-4), 0, 0}, walk_centres_other[6] = {0, 0, 0, 0, DEM_R(7e-4), 0};
 /* Another address of the kind of pointer that `f` is; 0: none is known. */
@@ -253,7 +253,7 @@ static inline walk_scene walk_begin(int kind) {
     walk_scene s;
     int k;
     memset(&s, 0, sizeof s);
-    for (k = 0; k < 3; k++) {
+    for (k = 0; k < 8; k++) {
         walk_rows[k].time = walk_rows_other[k].time = 0.01*k;
         walk_rows[k].position.z = k == 1 ? DEM_R(1e-4) : 0;
         walk_rows_other[k].position.z = k == 1 ? DEM_R(2e-4) : 0;

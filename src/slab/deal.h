@@ -209,9 +209,9 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to %d (required); one "
                          "slab per processor is a good choice", call, d->count, (int)DEMI_SLABS);
     if (d->first < 0 || local < 1 || d->first > d->count - local || (!d->local && d->first))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: first and local give slabs %d to %d, must "
-                         "lie in 0 to %d; set both, or leave both 0 for all slabs", call, d->first,
-                         d->first + local - 1, d->count - 1);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: first and local give slabs %d to %.0f, "
+                         "must lie in 0 to %d; set both, or leave both 0 for all slabs", call,
+                         d->first, (double)d->first + local - 1, d->count - 1);
     if (!d->transport.exchange_fn != !d->transport.reduce_fn ||
         (local < d->count && !d->transport.exchange_fn))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
