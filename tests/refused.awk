@@ -76,6 +76,10 @@ declaring {
     if (result == "int") answer = "return " call " > 0"
     if (result == "dem_body") answer = "return " call ".slot != 0"
     if (result ~ /^dem_(material|shape|wall|joint|feed|outlet|field|output)$/) answer = "return " call ".id != 0"
+    if (it ~ /^dem_(mesh|profile|grains)_(read|parse)$/) {     # what a call that succeeds gives is freed
+        kind = it; sub(/_[a-z]*$/, "", kind); out = kind; sub(/dem_/, "", out)
+        answer = "const int good = " call " == DEM_OK;\n    if (good) " kind "_free(r->world, " out ");\n    return good"
+    }
     if (star && it == "dem_slabs_create") answer = "return slabs_dropped(" call ")"
     if (star && it == "dem_replay_open") answer = "return replay_dropped(" call ")"
     text_of[all] = "static int call_" it "(refuser *r) {\n" body "    " answer ";\n}\n"

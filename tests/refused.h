@@ -815,7 +815,9 @@ static int call_dem_mesh_read(refuser *r) {
     const char *path = take_const_char(r, 2, "path");
     dem_mesh *mesh = take_out_dem_mesh(r, 3, "mesh");
     dem_mesh_health *health = take_out_dem_mesh_health(r, 4, "health");
-    return dem_mesh_read(r->world, path, mesh, health) == DEM_OK;
+    const int good = dem_mesh_read(r->world, path, mesh, health) == DEM_OK;
+    if (good) dem_mesh_free(r->world, mesh);
+    return good;
 }
 
 static int call_dem_mesh_parse(refuser *r) {
@@ -824,7 +826,9 @@ static int call_dem_mesh_parse(refuser *r) {
     size_t size = take_size_t(r, 4, "size");
     dem_mesh *mesh = take_out_dem_mesh(r, 5, "mesh");
     dem_mesh_health *health = take_out_dem_mesh_health(r, 6, "health");
-    return dem_mesh_parse(r->world, name, data, size, mesh, health) == DEM_OK;
+    const int good = dem_mesh_parse(r->world, name, data, size, mesh, health) == DEM_OK;
+    if (good) dem_mesh_free(r->world, mesh);
+    return good;
 }
 
 static int call_dem_mesh_part_read(refuser *r) {
@@ -870,7 +874,9 @@ static int call_dem_wall_parts_add(refuser *r) {
 static int call_dem_profile_read(refuser *r) {
     const char *path = take_const_char(r, 2, "path");
     dem_profile *profile = take_out_dem_profile(r, 3, "profile");
-    return dem_profile_read(r->world, path, profile) == DEM_OK;
+    const int good = dem_profile_read(r->world, path, profile) == DEM_OK;
+    if (good) dem_profile_free(r->world, profile);
+    return good;
 }
 
 static int call_dem_profile_parse(refuser *r) {
@@ -878,7 +884,9 @@ static int call_dem_profile_parse(refuser *r) {
     const void *data = take_const_void(r, 3, "data");
     size_t size = take_size_t(r, 4, "size");
     dem_profile *profile = take_out_dem_profile(r, 5, "profile");
-    return dem_profile_parse(r->world, name, data, size, profile) == DEM_OK;
+    const int good = dem_profile_parse(r->world, name, data, size, profile) == DEM_OK;
+    if (good) dem_profile_free(r->world, profile);
+    return good;
 }
 
 static int call_dem_profile_free(refuser *r) {
@@ -890,7 +898,9 @@ static int call_dem_profile_free(refuser *r) {
 static int call_dem_grains_read(refuser *r) {
     const char *path = take_const_char(r, 2, "path");
     dem_grains *grains = take_out_dem_grains(r, 3, "grains");
-    return dem_grains_read(r->world, path, grains) == DEM_OK;
+    const int good = dem_grains_read(r->world, path, grains) == DEM_OK;
+    if (good) dem_grains_free(r->world, grains);
+    return good;
 }
 
 static int call_dem_grains_parse(refuser *r) {
@@ -898,7 +908,9 @@ static int call_dem_grains_parse(refuser *r) {
     const void *data = take_const_void(r, 3, "data");
     size_t size = take_size_t(r, 4, "size");
     dem_grains *grains = take_out_dem_grains(r, 5, "grains");
-    return dem_grains_parse(r->world, name, data, size, grains) == DEM_OK;
+    const int good = dem_grains_parse(r->world, name, data, size, grains) == DEM_OK;
+    if (good) dem_grains_free(r->world, grains);
+    return good;
 }
 
 static int call_dem_grains_free(refuser *r) {

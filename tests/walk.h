@@ -197,7 +197,7 @@ static inline void walk_motion(double time, dem_pose *pose, void *user) { (void)
 static inline int walk_inside(dem_vec3 x, dem_real radius, void *user) { (void)radius; (void)user; return x.x > 0; }
 static dem_motion_row walk_rows[8], walk_rows_other[8];       /* the walk changes their count, too */
 static dem_sizes walk_sizes[2];
-static dem_real walk_centres[6] = {0, 0, 0, DEM_R(8e-4), 0, 0}, walk_centres_other[6] = {0, 0, 0, 0, DEM_R(7e-4), 0};
+static dem_real walk_centres[24] = {0, 0, 0, DEM_R(8e-4), 0, 0}, walk_centres_other[24] = {0, 0, 0, 0, DEM_R(7e-4), 0};
 /* Another address of the kind of pointer that `f` is; 0: none is known. */
 static inline int walk_pointer(const walk_field *f, void *out) {
 #define WALK_TO(name, kind, value) \
