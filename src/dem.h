@@ -68,6 +68,7 @@
      run/ - the step and what is measured in it
        >>advice            the time step: what is chosen and what is too large
        >>ledger            account of energy
+       >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>step              one step after another
        >>measure           counters, contacts, angle of repose, the digest
@@ -202,6 +203,7 @@
 #include "scene/feed.h"
 #include "run/advice.h"
 #include "run/ledger.h"
+#include "run/responses.h"
 #include "run/fields.h"
 #include "run/step.h"
 #include "run/measure.h"

@@ -694,7 +694,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
     demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
     demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
-    if (demi_impulsive(w)) w->bodies.went[i] = 0;
+    if (w->bodies.backward) w->bodies.went[i] = 0;
     if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
@@ -773,7 +773,7 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
                 else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
                 w->bodies.half_vel[4*b + k] = *v;
             }
-            if (demi_impulsive(w)) w->bodies.went[b] = 0;
+            if (w->bodies.backward) w->bodies.went[b] = 0;
             w->booked.inserted += demi_body_energy(w, b) - before;
         }
     }

@@ -197,8 +197,9 @@ static void demi_prime_body(dem_world *w, int i) {
     }
     if (w->bodies.shaped && w->bodies.shape[i])
         demi_put(w->bodies.angular + 4*i,
-                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i),
-                                                            demi_impulsive(w) ? 0 : h)));
+                 demi_sub(demi_angular_of(w, i),
+                          demi_scale(demi_at(w->bodies.torque + 4*i),
+                                     demi_response_is(w, DEMI_MIDWAY) ? 0 : h)));
 }
 static void demi_prime(dem_world *w) {
     int i;
@@ -448,8 +449,11 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
-/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres. */
-static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end, int how) {
+/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres: over a step;
+   without a domain half a step ahead. */
+static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
+    const int how = !domain ? DEMI_TURN_AHEAD
+        : demi_response_is(w, DEMI_MIDWAY) ? DEMI_TURN_HALVES : DEMI_TURN_STEP;
     int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
     for (i = begin; i < end; i++) {
         if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
@@ -497,18 +501,18 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
-/* Impulses have their own, whose velocities are finished at once. */
+/* The midpoint rule, whose velocities are finished at once, is a response's own. */
 static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
     static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
                                                  demi_finish_nothing, 2, 1, 0};
-    return demi_impulsive(w) ? &midpoint : demi_integrator_rows + w->desc.integrator;
+    return demi_response_is(w, DEMI_MIDWAY) ? &midpoint
+        : demi_integrator_rows + w->desc.integrator;
 }
 
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
     demi_integrator_of(w)->finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses finish it by themselves */
-        demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
+    if (w->bodies.shaped) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
 /* Completes the half kick that a step leaves open: velocities are then those of the present time.

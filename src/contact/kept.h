@@ -316,8 +316,9 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         at->arm_b = demi_add(base_b, x);
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
-        at->from = demi_impulsive(w) ? demi_kept_nearest(w, d, old, olds, c, at)
-            : demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k);
+        at->from = demi_response_is(w, DEMI_PRESSING)
+            ? demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k)
+            : demi_kept_nearest(w, d, old, olds, c, at);
     }
     return 1;
 }
@@ -561,8 +562,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
     for (i = 0, c = fresh; i < count; i++, c++)
         c->from = !shaped || !c->corners
             ? demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner)
-            : demi_impulsive(w) ? demi_kept_nearest(w, d, old, olds, fresh, c)
-            : demi_kept_turned(w, d, old, olds, c);
+            : demi_response_is(w, DEMI_PRESSING) ? demi_kept_turned(w, d, old, olds, c)
+            : demi_kept_nearest(w, d, old, olds, fresh, c);
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);

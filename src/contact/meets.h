@@ -169,7 +169,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = p->centre;
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
-    if (demi_impulsive(w)) return 1;
+    if (!demi_response_is(w, DEMI_PRESSING)) return 1;
     for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
     for (k = 0; k < 4; k++) {
         if (k != nearest) memcpy(spots->x[k], spots->x[nearest], sizeof *spots->x);
@@ -187,8 +187,8 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_pressure s;
     double overlap;
     (void)lambda;
-    if (demi_impulsive(w)) return demi_polyhedra_near(w, p, q, gap, c, spots);
-    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)))
+    if (!demi_response_is(w, DEMI_PRESSING) || demi_face_keeps(p, q, gap) ||
+        demi_face_keeps(q, p, demi_scale(gap, -1)))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);

@@ -520,7 +520,7 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const demi_part local = demi_part_local(wall->pose.rotation, part);
     const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
-    const int impulsive = demi_impulsive(w);
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
     const double range = (double)demi_range(w, part->radius);
     double side;
     demi_flats flats, seen[2];
@@ -541,13 +541,13 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         side = demi_rings_side(wall, x);
         for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
             ends |= demi_rings_end(wall, i, x, (double)part->radius) << i;
-        if (!impulsive && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
-        for (i = 0; i < 2 && !impulsive && ends; i++) {
+        if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
+        for (i = 0; i < 2 && pressing && ends; i++) {
             seen[i].count = 0;
             if (!i || seen[0].count)
                 demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
         }
-        if (!impulsive && ends) demi_flats_sides(seen, &flats);
+        if (pressing && ends) demi_flats_sides(seen, &flats);
         for (i = 0; i < pieces && range > 0; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
             if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */

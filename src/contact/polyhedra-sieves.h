@@ -282,7 +282,7 @@ static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const doub
    ends within `hair` of a face lies on it: it does not catch at the rims of holes that it slides
    over. */
 static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, const double *x,
-                             double reach, double hair, int springs, demi_flats *flats,
+                             double reach, double hair, int pressing, demi_flats *flats,
                              demi_gaps *gaps) {
     const demi_plate p = demi_plate_of(sieve);
     const double cell[2] = {0.6*p.px, 0.6*p.py};        /* of one with six sides, too */
@@ -309,8 +309,8 @@ static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, c
         for (v = v0; v < hi[1]; v += p.py)
             for (u = u0; u < u1; u += du) {
                 const int32_t number = demi_plate_hole(&p, u, v, c);
-                if (springs && p.round) demi_plate_press_round(&p, s, x, c, number, flats);
-                else if (springs) demi_plate_press(&p, s, x, c, number, flats);
+                if (pressing && p.round) demi_plate_press_round(&p, s, x, c, number, flats);
+                else if (pressing) demi_plate_press(&p, s, x, c, number, flats);
                 if (gaps->range > 0) demi_plate_rims(&p, s, x, c, number, reach, gaps);
             }
     }
@@ -318,7 +318,7 @@ static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, c
 /* One set of parallel wires: each a cylinder about z of a frame of axes turn. x: of the centre, in
    the sieve's. */
 static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_solid *s, dem_vec3 x,
-                             double reach, int springs, demi_flats *flats, demi_gaps *gaps) {
+                             double reach, int pressing, demi_flats *flats, demi_gaps *gaps) {
     const double pitch = (double)(sieve->aperture + sieve->bar), q = (double)sieve->bar/2;
     const double h = (double)(set ? -sieve->lift/2 : sieve->lift/2);
     const double u = (double)(set ? x.y : x.x), v = (double)(set ? x.x : x.y);
@@ -334,7 +334,7 @@ static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_so
         const dem_real across = (dem_real)(u - (k + 0.5)*pitch), up = x.z - (dem_real)h;
         const dem_vec3 from = set ? demi_v(across, up, x.x) : demi_v(up, across, x.y);
         const int32_t number = demi_sieve_number(k, 0, set);
-        if (springs) demi_solid_on_generator(s, &l, from, 1, number, flats);
+        if (pressing) demi_solid_on_generator(s, &l, from, 1, number, flats);
         if (gaps->range > 0) {
             const double a[3] = {-(double)from.x, -(double)from.y, -reach};
             const double b[3] = {-(double)from.x, -(double)from.y, reach};
@@ -349,7 +349,8 @@ static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last,
     const dem_sieve_desc *sieve = &wall->sieve;
     const dem_real *R = wall->pose.rotation;
     const int wires = sieve->kind == DEM_SIEVE_WIRES || sieve->kind == DEM_SIEVE_BARS;
-    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1, springs = !demi_impulsive(w);
+    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1;
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
     const double range = (double)demi_range(w, part->radius);
     const double reach = (double)part->radius + range;
     demi_flats flats;
@@ -372,8 +373,8 @@ static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last,
             local = demi_part_local(turn, part);
             demi_solid_of(&local, demi_v(0, 0, 0), &s);
             flats.count = gaps.count = 0;
-            if (wires) demi_wires_touch(sieve, set, &s, x, reach, springs, &flats, &gaps);
-            else demi_plate_touch(sieve, &s, x0, reach, 1e-3*(double)demi_part_thin(part), springs,
+            if (wires) demi_wires_touch(sieve, set, &s, x, reach, pressing, &flats, &gaps);
+            else demi_plate_touch(sieve, &s, x0, reach, 1e-3*(double)demi_part_thin(part), pressing,
                                   &flats, &gaps);
             count += demi_wall_places(w, &flats, &gaps, turn, wall->share, part, at, shift,
                                       *places + count);
@@ -398,7 +399,7 @@ static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int 
     if (s->radius > 0)
         return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
                "cylinder around it";
-    if (plate && !(s->thickness > 0) && !demi_impulsive(w))
+    if (plate && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
         return "a sheet without thickness has no inside for springs to act on; give the sieve a "
             "thickness, or use impulses";
     return 0;

@@ -303,19 +303,19 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
 static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const dem_real *R, dem_real share,
                             const demi_part *part, dem_vec3 at, dem_vec3 shift,
                             const demi_touching *there, int pressed, demi_touching *out) {
-    const int impulsive = demi_impulsive(w);
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, e, count = 0;
     for (i = 0; i < gaps->count; i++) {
         demi_gap_group *g = &gaps->group[i];
         int nearest = 0, places = 4;
-        if (impulsive) {
+        if (!pressing) {
             demi_gap_group_pick(g);
             places = g->count;
         }
         for (k = 1; k < g->count; k++) if (g->gap[k] < g->gap[nearest]) nearest = k;
         for (k = 0; k < places; k++) {
             demi_touching *t = &out[count];
-            e = impulsive ? k : nearest;
+            e = pressing ? nearest : k;
             memset(t, 0, sizeof *t);
             t->element = g->element;
             t->corner = k;
@@ -332,7 +332,7 @@ static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const dem_real 
             t->shift = shift;
             for (e = 0; e < pressed; e++)
                 if (demi_dot(there[e].normal, t->normal) > DEM_R(0.95)) break;
-            if (e < pressed || (!impulsive && !(t->overlap < 0))) break;
+            if (e < pressed || (pressing && !(t->overlap < 0))) break;
             count++;
         }
     }
@@ -603,7 +603,7 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int impulsive = demi_impulsive(w);
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
@@ -628,17 +628,17 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
         sheet.gap = w->wall_gap + base + k;
         sheet.count = end - k;
         sheet.x = x;
-        for (from = k; wall->sheet && !impulsive && from < end; from++)
+        for (from = k; wall->sheet && pressing && from < end; from++)
             if (!(w->wall_gap[base + from] > gone) && wall->sheet[w->wall_element[base + from]])
                 demi_sheets_add(&sheets, wall, w->wall_element[base + from], x,
                                 (double)sheet.within);
         demi_sheets_press(&sheets, &sheet, &s, &flats);
         for (from = k; k < end; k++) {
             const int32_t element = w->wall_element[base + k];
-            const int which = impulsive || !wall->sheet ? -1
+            const int which = !pressing || !wall->sheet ? -1
                 : demi_sheets_which(&sheets, wall, element);
             if (w->wall_gap[base + k] > gone || (wall->sheet && !wall->sheet[element])) continue;
-            if (!impulsive && (which < 0 || !sheets.ends[which])) {
+            if (pressing && (which < 0 || !sheets.ends[which])) {
                 way = wall->sheet ? demi_sheets_way(&sheets, wall, element, x) : 1;
                 demi_solid_on_element(wall, element, &s, x, way, &press);
                 demi_flats_add(&flats, element, &press);

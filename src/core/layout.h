@@ -267,6 +267,33 @@ typedef struct demi_wall_kind { int corners, most, traits; const char *name; } d
 static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed"},
     DEMI_WALLS(DEMI_WALL_KIND)};
 
+/* Responses: how contacts act on bodies (desc.response, in the order of dem_response). A row: name
+   in reports; history of a contact: reals (0: as contact laws have it), and bits of those that are
+   components of vectors; traits; functions, see demi_response_row (0: nothing is to be done).
+   History with impulses: friction and moment (vectors), the normal force and what of it cohesion
+   takes, as forces; the normal velocity after the step and the one that was reversed (m/s), see
+   demi_impulse_turns; and whether the contact slides, 1 or 0. */
+enum {
+    DEMI_LAWS = 1,                 /* contact laws give the forces, contact by contact */
+    DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
+    DEMI_PRESSING = 4,             /* polyhedra: by pressure, on four points; else by gaps */
+    DEMI_MIDWAY = 8,               /* contacts are found half a step ahead: the midpoint rule */
+    DEMI_FORESEEN = 16             /* contacts are found before they touch, as speeds require */
+};
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
+#define DEMI_RESPONSES(X) \
+    X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
+      demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
+    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN, demi_impulses_settle, \
+      demi_impulses_room, 0, demi_impulses, demi_impulses_due, demi_impulses_info) \
+    /* the last */
+typedef struct demi_response_kind {
+    const char *name;
+    int memory, vectors, traits;
+} demi_response_kind;
+#define DEMI_RESPONSE_KIND(NAME, MEMORY, VECTORS, TRAITS, ...) {NAME, MEMORY, VECTORS, TRAITS},
+static const demi_response_kind demi_response_kinds[] = {DEMI_RESPONSES(DEMI_RESPONSE_KIND)};
+
 /* A piece of a triangle's side that ends at corners of other triangles. */
 typedef struct demi_cut {
     dem_vec3 a, b;

@@ -7,12 +7,17 @@
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
-/* Contacts answer by impulses; each remembers its friction and moment (vectors), its push and what
-   of that cohesion takes, as forces; the normal velocity that it was left with, and what it turned
-   back (m/s), see demi_impulse_turns; and whether it slides, 1 or 0. */
-enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
+/* Has the response in force this trait? */
+DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
+    return (demi_response_kinds[w->desc.response].traits & trait) != 0;
+}
+/* Is it DEM_RESPONSE_IMPULSES? Ask for a trait instead where one says what matters. */
 DEM_INLINE int demi_impulsive(const dem_world *w) {
     return w->desc.response == DEM_RESPONSE_IMPULSES;
+}
+/* Does the reach follow the speeds, so that no scene may be refused because of it? */
+DEM_INLINE int demi_reach_free(const dem_world *w) {
+    return demi_response_is(w, DEMI_FORESEEN) && !(w->desc.law_range > 0);
 }
 /* m: from the first body of entry `at` of the near list to the second, or to its image there. */
 DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
@@ -68,7 +73,7 @@ static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
 /* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
    0 where it is asked at touch alone. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
-    if (demi_impulsive(w)) return (dem_real)w->margin.reach;
+    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
 }
 

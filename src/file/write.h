@@ -423,7 +423,8 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
         for (k = 0; k < l.stride; k++) {
             const char *name = demi_name(world->desc.law_memory_names, k, &length);
             const demi_column own = {"CellData", names[k], 'r', 1, l.room, l.stride, k, l.memory};
-            if (k == world->laws.at_sliding && !demi_impulsive(world)) sprintf(names[k], "sliding");
+            if (demi_response_is(world, DEMI_LAWS) && k == world->laws.at_sliding)
+                sprintf(names[k], "sliding");
             else if (name) sprintf(names[k], "%.*s", length, name);
             else sprintf(names[k], "memory%d", k);
             column[4 + k] = own;

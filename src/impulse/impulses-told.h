@@ -5,6 +5,23 @@
    alone.
    --------------------------------------------------------------------------------------------- */
 
+/* Takes the time step as given, since no contact is too short for it; refuses what the solver does
+   not support. */
+static dem_result demi_impulses_settle(dem_world *w) {
+    const demi_solver_row *solver = &demi_solvers[w->desc.solver];
+    if (demi_impulses_twist(w) && !solver->moments)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
+                         "spinning friction, which the solver %s does not support; leave "
+                         "desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+    if (demi_joints_in_force(w) && !solver->joints)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
+                         "solver %s does not support; leave desc.solver at "
+                         "DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+    w->clock.dt = w->desc.dt;
+    w->clock.press_since = w->clock.steps;
+    w->stage.dt_valid = 1;
+    return DEM_OK;
+}
 /* Room for all contacts there may be. 0: memory ran out. */
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
@@ -12,7 +29,6 @@ static int demi_impulses_room(dem_world *w) {
     const size_t bodies = (size_t)w->bodies.count;
     size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
-    if (!demi_impulsive(w)) return 1;
     if (!demi_joints_room(w)) return 0;
     movers += (size_t)w->joint_count;
     for (d = 0; d < w->domain_count; d++) {
@@ -252,7 +268,7 @@ static void demi_some_ahead(dem_world *w, int index) {
             w->bodies.pos[k] += w->bodies.vel[k]*h;
     if (!w->bodies.orienting) return;
     memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
-    demi_orient_move(w, 0, begin, end, DEMI_TURN_AHEAD);
+    demi_orient_move(w, 0, begin, end);
 }
 static void demi_some_back(dem_world *w, int index) {
     const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
@@ -306,33 +322,27 @@ static void demi_impulses_due(dem_world *w) {
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
 }
-/* What was due is done, now that bodies have moved by it. */
-static void demi_impulses_book(dem_world *w) {
+/* What was due is done, now that bodies have moved by it; of springs nothing is due. */
+static void demi_due_book(dem_world *w) {
     static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
     int i;
     for (i = 0; i < 4; i++) w->booked.energy[flows[i]] += w->booked.due[i];
     w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
     w->booked.throughput += fabs(w->booked.due[3]);
 }
-/* One pair of spheres, if it pushes or overlaps, as demi_contact_force tells those of springs. */
-static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info *out,
-                             dem_vec3 *branch) {
+/* One near pair, if it has an impulse or overlaps: see demi_response_row. */
+static int demi_impulses_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                              dem_vec3 *gap) {
     const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;
     const dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
-    const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-    const demi_periods periods = demi_periods_of(w);
+    const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
     const dem_vec3 way = demi_near_way(w, at);
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
     if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
-    out->a = dem_body_id_get(w, a);
-    out->b = dem_body_id_get(w, b);
-    out->wall = 0;
     out->normal = demi_scale(way, 1/l);
     out->overlap = overlap;
-    if (branch) *branch = way;
-    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(way, x[3]/(x[3] + y[3]))));
+    *gap = way;
     out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
                           demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
     return 1;

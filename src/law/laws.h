@@ -109,9 +109,10 @@ static int demi_rolling_meant(const dem_world *w) {
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
     return (demi_normal_laws[w->desc.normal_law].traits & trait) != 0;
 }
-/* Do built-in laws keep the memory of contacts, where `laws` says? Else a law of one's own does, or
-   the impulses. */
-static int demi_laws_keep(const dem_world *w) { return !w->desc.law && !demi_impulsive(w); }
+/* Do built-in laws keep the history of contacts, where `laws` says? */
+static int demi_laws_keep(const dem_world *w) {
+    return !w->desc.law && demi_response_is(w, DEMI_LAWS);
+}
 /* Does a law in force ask for r_eff or m_eff of pairs? */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |

@@ -557,24 +557,24 @@ static void demi_check_enclosed(dem_world *w, demi_findings *f) {
 
 /* The time step that was asked for, beside what the scene bears. */
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const int lasting = demi_response_is(w, DEMI_LASTING);
     const double dt = (double)w->desc.dt;
     double limit, fastest = demi_fastest(w);
     int i, worst = 0;
-    if (!(dt > 0) || (!(a->contact_time > 0) && !demi_impulsive(w))) return;
+    if (!(dt > 0) || (lasting && !(a->contact_time > 0))) return;
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
-    if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
-    else if (dt > (double)a->dt_max)
+    if (lasting && dt > (double)a->dt_max)
         demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
                   "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
                   (double)a->dt_max, a->binds);
-    else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
+    else if (lasting && (limit = demi_press_limit(w, dt, &worst)) > 0)
         demi_find(f, DEM_SEVERITY_ERROR,
                   "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
                   "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
                   w->press[worst].contacts);
-    else if (dt < (double)a->dt/20)
+    else if (lasting && dt < (double)a->dt/20)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
                   "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
                   (double)a->dt);
@@ -593,7 +593,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
                          (double)w->desc.gravity.z};
     demi_grades grades;
     int i, k;
-    if (w->desc.law || demi_impulsive(w)) return;       /* nothing is known of it; no overlaps */
+    if (!demi_laws_keep(w)) return;             /* nothing is known of it; no overlaps */
     for (i = 0; i < w->bodies.count; i++) {
         if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
         for (k = 0; k < 3; k++) {

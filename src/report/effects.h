@@ -66,10 +66,16 @@ static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
 static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
 static dem_real demi_coheres(const dem_pair *p) { return p->cohesion; }
 
-static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
-    const char *name = demi_normal_laws[w->desc.normal_law].name;
+/* An effect of contacts: `name` is the built-in law that has it; null: `none` says why none has it.
+   A response without laws has it in any case. */
+static dem_effect_state demi_look_response(const dem_world *w, dem_real (*of)(const dem_pair *),
+                                           const char *name, const char *none, dem_effect *e) {
     if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    return demi_look_pairs(w, demi_any, demi_impulsive(w) ? "impulses" : name, e);
+    if (!demi_laws_keep(w)) name = demi_response_kinds[w->desc.response].name;
+    return name ? demi_look_pairs(w, of, name, e) : demi_look_off(e, none);
+}
+static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
+    return demi_look_response(w, demi_any, demi_normal_laws[w->desc.normal_law].name, "", e);
 }
 static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
     if (!w->desc.law) return demi_look_off(e, "desc.law is null");
@@ -77,24 +83,19 @@ static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
     const int law = demi_tangent_meant(w);
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rubs, "impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    if (law == DEM_TANGENT_NONE) return demi_look_off(e, "tangent_law is DEM_TANGENT_NONE");
-    return demi_look_pairs(w, demi_rubs, demi_tangent_laws[law].name, e);
+    return demi_look_response(w, demi_rubs, law == DEM_TANGENT_NONE ? 0
+                              : demi_tangent_laws[law].name, "tangent_law is DEM_TANGENT_NONE", e);
 }
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rolls, "impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    if (law == DEM_ROLLING_NONE) return demi_look_off(e, "rolling_law is DEM_ROLLING_NONE");
-    return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
+    return demi_look_response(w, demi_rolls, law == DEM_ROLLING_NONE ? 0
+                              : demi_rolling_laws[law].name, "rolling_law is DEM_ROLLING_NONE", e);
 }
 static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_coheres, "cohesion under impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    if (!demi_normal_is(w, DEMI_BRANCHED))
-        return demi_look_off(e, "only the hysteretic normal law has it");
-    return demi_look_pairs(w, demi_sticks, "hysteretic law", e);
+    if (!demi_response_is(w, DEMI_LAWS))
+        return demi_look_pairs(w, demi_coheres, "cohesion under impulses", e);
+    return demi_look_response(w, demi_sticks, demi_normal_is(w, DEMI_BRANCHED) ? "hysteretic law"
+                              : 0, "only the hysteretic normal law has it", e);
 }
 /* Is there a force now? The field is asked for every body that moves. */
 static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {

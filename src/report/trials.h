@@ -241,7 +241,7 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
 static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
-    if (demi_impulsive(w)) {
+    if (!demi_response_is(w, DEMI_LASTING)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts of this world are impulses, "
                   "but trials vary the steps, stiffnesses and laws of springs; compare runs with "
                   "other dt, sweeps and tolerance instead");

@@ -502,10 +502,9 @@ static double demi_spin_fastest(const dem_world *w) {
             most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
     return most;
 }
-/* Settles dt before stepping: chosen or checked. */
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
-    if (demi_impulsive(w))
+    if (!demi_response_is(w, DEMI_LASTING))
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts of "
                          "this world are impulses, which have no contact time; choose a step in "
                          "which grains move by less than a tenth of their radius");
@@ -522,27 +521,11 @@ static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
                      "grain far too light: find it with dem_world_check_print", dt, DEMI_DT_LEAST,
                      by);
 }
-/* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
-   A change of the step ends half steps of the old one first. */
-static dem_result demi_dt_settle(dem_world *w) {
+/* The time step of springs for the scene as it is, given or chosen; one that is not stable is
+   refused. A change of the step ends half steps of the old one first. */
+static dem_result demi_springs_settle(dem_world *w) {
     dem_advice a;
     double spin;
-    if (w->stage.dt_valid) return DEM_OK;
-    if (demi_impulsive(w)) {                    /* as given: no contact is too short for it */
-        if (demi_impulses_twist(w) && !demi_solvers[w->desc.solver].moments)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
-                             "spinning friction, which the solver %s does not support; leave "
-                             "desc.solver at DEM_SOLVER_GAUSS_SEIDEL",
-                             demi_solvers[w->desc.solver].name);
-        if (demi_joints_in_force(w) && !demi_solvers[w->desc.solver].joints)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
-                             "solver %s does not support; leave desc.solver at "
-                             "DEM_SOLVER_GAUSS_SEIDEL", demi_solvers[w->desc.solver].name);
-        w->clock.dt = w->desc.dt;
-        w->clock.press_since = w->clock.steps;
-        w->stage.dt_valid = 1;
-        return DEM_OK;
-    }
     if (!w->bodies.count && !w->feed_count) {          /* nothing to limit it: walls still move */
         if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
@@ -579,7 +562,7 @@ static dem_result demi_dt_settle(dem_world *w) {
 /* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
    given stays. */
 static int demi_outgrown(const dem_world *w) {
-    return !demi_impulsive(w) && !(w->desc.impact_speed > 0) &&
+    return demi_response_is(w, DEMI_LASTING) && !(w->desc.impact_speed > 0) &&
         w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
 /* The fastest body that moves, m/s. */
@@ -592,7 +575,8 @@ static double demi_fastest(const dem_world *w) {
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
-/* m/s, how fast a body may be in the next step by the forces that act now. */
+/* m/s, how fast a body may be in the next step by the forces that act now, with the midpoint rule
+   exactly. */
 static double demi_fastest_next(const dem_world *w) {
     double most = 0;
     int i, k;
@@ -607,7 +591,7 @@ static double demi_fastest_next(const dem_world *w) {
             a2 += a*a;
             v2 += v*v;
         }
-        if (inv > 0 && demi_impulsive(w)) most = DEMI_MAX(most, sqrt(v2));     /* exactly */
+        if (inv > 0 && demi_response_is(w, DEMI_MIDWAY)) most = DEMI_MAX(most, sqrt(v2));
         else if (inv > 0)
             most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.vel + 4*i)) +
                             sqrt(a2)*(double)w->clock.dt);
@@ -615,10 +599,11 @@ static double demi_fastest_next(const dem_world *w) {
     return most;
 }
 /* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
-   and walls unseen; but for impulses that see both come from as far off as they may go together.
+   and walls unseen; but for contacts that are foreseen from as far off as both may go together.
    speed: a bound, m/s; named: 1 where w has bodies to look for it. */
 static dem_result demi_speed_check(dem_world *w, double speed, int named) {
-    const double seen = demi_impulsive(w) ? w->margin.reach/2 : 0;
+    const int foreseen = demi_response_is(w, DEMI_FORESEEN);
+    const double seen = foreseen ? w->margin.reach/2 : 0;
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
     double most = 0;
     char who[80] = "a body";
@@ -637,7 +622,7 @@ static dem_result demi_speed_check(dem_world *w, double speed, int named) {
                      "use at most %.2g s%s, or find what made it so fast",
                      (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
                      0.1*radius/speed,
-                     demi_impulsive(w) ? ", or a law_range of twice that distance" : "");
+                     foreseen ? ", or a law_range of twice that distance" : "");
 }
 /* The same of walls that are thin: planes and cylinders cannot be passed. */
 static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
@@ -662,7 +647,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
 static void demi_held_report(const dem_world *w, FILE *out) {
     const demi_held *h = &w->clock.held;
     char who[64] = "a body";
-    if (demi_impulsive(w) || w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
+    if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
     fprintf(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
             h->from/(double)w->clock.dt, h->from);
     if (h->body > 0)
@@ -709,14 +694,15 @@ static dem_result demi_dt_check(dem_world *w) {
     int worst = 0;
     if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
     /* after a change of the scene the last kick may be that of a body which is gone */
-    result = demi_speed_check(w, demi_impulsive(w) ? demi_fastest_next(w)
+    result = demi_speed_check(w, demi_response_is(w, DEMI_MIDWAY) ? demi_fastest_next(w)
                               : w->clock.steps == w->clock.press_since
                               ? DEMI_MIN(demi_fastest(w) + w->margin.last_change,
                                          demi_fastest_next(w))
                               : w->margin.last_change + w->booked.speed_max, 1);
     if (result == DEM_OK)
         result = demi_wall_speed_check(w, (double)w->effects.radius_min, (double)w->clock.dt);
-    if (result != DEM_OK || w->clock.steps < w->clock.press_due || demi_impulsive(w)) return result;
+    if (result != DEM_OK || w->clock.steps < w->clock.press_due ||
+        !demi_response_is(w, DEMI_LASTING)) return result;
     limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
     demi_press_looked(&w->clock, w);

@@ -3,8 +3,8 @@
    Means on a grid. What is there at a place (a grain at its centre, a piece of the line between two
    centres) is put into the cell it is in, or spread over the cells about it; in a periodic world
    wherever one of its images is. A field is one array of sums, block after block, so that whoever
-   saves, copies or adds up fields need not know which there are. First how a contact looks to a
-   user: stress is made of that.
+   saves, copies or adds up fields need not know which there are. First how a persistent contact
+   looks to a user: stress is made of all contacts.
    --------------------------------------------------------------------------------------------- */
 /* One kept contact, as users see it. */
 static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
@@ -18,50 +18,6 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_i
     out->point = demi_place_of(&p, x);
     out->overlap = c->overlap;
     out->force = c->force;
-}
-/* One near pair, if it touches: its force by the law of the run on a copy of its memory, and,
-   unless null, the way from a's centre to b's. */
-static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
-                              dem_vec3 *branch) {
-    demi_run r = demi_run_of(w, 0, w->effects.uniform);
-    const demi_span span = demi_span_of(w, d, p, 1);
-    const int a = span.a[0], b = span.b[0];
-    const demi_periods periods = demi_periods_of(w);
-    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
-    demi_tile tile;
-    dem_contact c;
-    dem_contact_force f;
-    demi_calling was;
-    dem_vec3 gap;
-    int e;
-    tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
-    if (demi_impulsive(w)) return demi_impulse_info(w, d, p, out, branch);
-    r.span = &span;
-    demi_tile_fetch(&r, 1, &tile);
-    gap = demi_rows_at(&tile.gap, 0);
-    demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
-    if (!(tile.touch[0] > 0)) return 0;
-    if (!out) return 1;
-    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
-    demi_span_coefs(w, &span, 0, coef);
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
-    demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
-    demi_who_clear(&c.who);
-    demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
-    was = demi_look_calls(w, "a read of the contacts");
-    demi_law(w, &c, memory, &f);
-    demi_look_called(w, was);
-    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
-    out->a = dem_body_id_get(w, a);
-    out->b = dem_body_id_get(w, b);
-    out->wall = 0;
-    out->normal = demi_row(tile.normal, 0);
-    out->overlap = tile.overlap[0];
-    if (branch) *branch = gap;
-    gap = demi_scale(gap, w->bodies.pos[4*a + 3]/(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]));
-    out->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), gap));
-    out->force = demi_row(tile.force, 0);
-    return 1;
 }
 /* Blocks of a field's sums: where each begins, and how many numbers of a cell stand together in
    it. */

@@ -25,6 +25,7 @@ static void demi_ledger_book(dem_world *w) {
                                 DEMI_E_FORCE};
     double walls = 0;
     size_t i;
+    if (!w->desc.ledger) return;
     for (i = 0; i < sizeof flows/sizeof *flows; i++) {
         const double part = demi_sum_energy(w, flows[i]);
         w->booked.energy[flows[i]] += part;

@@ -4,6 +4,7 @@
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_counters dem_counters_get(const dem_world *w) {
     dem_counters c;
+    const int pressing = w && w->bodies.shaped && demi_response_is(w, DEMI_PRESSING);
     int d, k;
     memset(&c, 0, sizeof c);
     if (!w) return c;
@@ -13,7 +14,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
-        for (k = 0; k < w->domains[d].kept && w->bodies.shaped && !demi_impulsive(w); k++) {
+        for (k = 0; k < w->domains[d].kept && pressing; k++) {
             const demi_kept *kept = demi_kept_of(w, d) + k;     /* corners: one contact of four */
             c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
         }
@@ -145,7 +146,7 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     for (i = 0; i < w->memory_stride; i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
-        if (!demi_impulsive(w) && i == laws->at_sliding) {
+        if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
             if (!sticks) continue;
             number = 24;
         } else if (demi_laws_keep(w)) {

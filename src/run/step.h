@@ -43,10 +43,8 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
             w->bodies.half_vel[4*i + 2] = w->bodies.half_spin[4*i] = w->bodies.half_spin[4*i + 1] =
                 0;
         }
-    if (w->bodies.orienting)
-        demi_orient_move(w, domain, begin, end, demi_impulsive(w) ? DEMI_TURN_HALVES
-                         : DEMI_TURN_STEP);
-    if (demi_impulsive(w)) memset(w->bodies.went + begin, 1, (size_t)(end - begin));
+    if (w->bodies.orienting) demi_orient_move(w, domain, begin, end);
+    if (demi_response_is(w, DEMI_MIDWAY)) memset(w->bodies.went + begin, 1, (size_t)(end - begin));
     for (i = begin; i + DEMI_LANES <= end; i += DEMI_LANES) {
         DEMI_VECTOR
         for (l = 0; l < DEMI_LANES; l++) demi_pace_look(w, i + l, pace, l);
@@ -77,9 +75,7 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
             if (q->restless == 1) q->restless = 0;
         } else {
             for (k = 4*i; k < 4*end; k++) x[k] += u[k]*dt;
-            if (w->bodies.orienting)
-                demi_orient_move(w, domain, i, end, demi_impulsive(w) ? DEMI_TURN_HALVES
-                                 : DEMI_TURN_STEP);
+            if (w->bodies.orienting) demi_orient_move(w, domain, i, end);
         }
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
@@ -114,22 +110,22 @@ static void demi_domain_move(dem_world *w, int d) {
         domain->check += (double)pace.sum[i];
     }
     /* where contacts are found, bodies have gone with the velocity of the end of the step */
-    for (i = domain->begin; i < domain->end && demi_impulsive(w); i++) {
+    for (i = domain->begin; i < domain->end && demi_response_is(w, DEMI_MIDWAY); i++) {
         const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
         domain->speed2 = DEMI_MAX(domain->speed2, (double)demi_dot(v, v));
     }
     if (w->desc.ledger) domain->energy[DEMI_E_GRAVITY] = demi_gravity_work(w, domain);
 }
 
-/* What fields of force see: of impulses the middle of the step to come, velocities as they have
-   changed in the step before. */
+/* Time and velocities that fields of force see: of now, or with the midpoint rule in the middle of
+   the next step, if velocities go on as in the last one. */
 static double demi_field_time(const dem_world *w) {
-    return w->clock.time + (demi_impulsive(w) ? (double)w->clock.dt/2 : 0);
+    return w->clock.time + (demi_response_is(w, DEMI_MIDWAY) ? (double)w->clock.dt/2 : 0);
 }
 DEM_INLINE dem_vec3 demi_field_rate(const dem_world *w, const dem_real *now, const dem_real *half,
                                     int i) {
     const dem_vec3 v = demi_at(now + 4*i);
-    return demi_impulsive(w) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
+    return demi_response_is(w, DEMI_MIDWAY) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
 }
 /* Forces and torques of a field that sees whole bodies. */
 static void demi_domain_fields(dem_world *w, int d) {
@@ -179,6 +175,7 @@ static void demi_domain_clear(dem_world *w, int d) {
 /* All contacts that a domain owns. Its own bodies are summed here; forces on bodies of other
    domains stay in slots until all have answered (demi_cross_gather). */
 static void demi_domain_respond(dem_world *w, int d) {
+    const demi_response_row *response = &demi_responses[w->desc.response];
     const size_t walls = (size_t)w->wall_count;
     demi_domain_clear(w, d);
     if (walls) memset(w->wall_sums + (size_t)d*walls, 0, walls*sizeof *w->wall_sums);
@@ -186,15 +183,12 @@ static void demi_domain_respond(dem_world *w, int d) {
         const size_t row = (size_t)w->bodies.real_count*walls;
         memset(w->wall_rates + (size_t)d*row, 0, row*sizeof *w->wall_rates);
     }
-    if (demi_impulsive(w)) return;              /* all contacts are solved together */
-    w->kernel(w, d);
-    demi_kept_clear(w, d);
-    demi_kept_respond(w, d);
+    if (response->respond) response->respond(w, d);
 }
 /* What others did to this domain's bodies, in the order of their entries. */
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
-    if (w->cross_entries && !demi_impulsive(w)) demi_cross_gather(w, d);
+    if (w->cross_entries && demi_responses[w->desc.response].respond) demi_cross_gather(w, d);
     if (demi_own(w)) {                          /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
@@ -222,17 +216,19 @@ static void demi_walls_rates(dem_world *w) {
                 c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
         }
 }
-/* Forces at the present positions and velocities; wall loads. */
-static void demi_forces(dem_world *w) {
+/* Forces at the present positions and velocities; wall loads. 0: memory ran out. */
+static int demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
+    const demi_response_row *response = &demi_responses[w->desc.response];
     demi_kept *kept = w->kept_now;
     int d, i, k;
+    if (response->room && !response->room(w)) return 0;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
     }
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
-    if (demi_impulsive(w)) demi_impulses(w);
+    if (response->solve) response->solve(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
@@ -263,8 +259,8 @@ static void demi_forces(dem_world *w) {
     for (d = 0; d < w->domain_count; d++)
         w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
     if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
-    if (demi_impulsive(w)) demi_impulses_due(w);
-    else if (w->desc.ledger) demi_ledger_book(w);
+    response->book(w);
+    return 1;
 }
 
 /* Which two bodies overlap most, of the smaller radius. Answers by how much. */
@@ -394,7 +390,7 @@ static dem_result demi_step_move(dem_world *w) {
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
-    w->stage.synced = demi_impulsive(w);
+    w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -417,7 +413,7 @@ static dem_result demi_step_move(dem_world *w) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->booked.energy[DEMI_E_GRAVITY] += work;
         w->booked.throughput += fabs(work);
-        if (demi_impulsive(w)) demi_impulses_book(w);
+        demi_due_book(w);
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -425,7 +421,7 @@ static dem_result demi_step_move(dem_world *w) {
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(wall, w->clock.time, &pose);
-        if (!demi_impulsive(w))
+        if (!demi_response_is(w, DEMI_MIDWAY))
             demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
         if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
@@ -507,8 +503,7 @@ static dem_result demi_step_answer(dem_world *w) {
     }
 
     /* 3 touch, 4 respond, 5 gather */
-    if (!demi_touch(w) || !demi_impulses_room(w)) return demi_no_memory(w, "dem_world_step");
-    demi_forces(w);
+    if (!demi_touch(w) || !demi_forces(w)) return demi_no_memory(w, "dem_world_step");
     demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
@@ -526,10 +521,10 @@ static dem_result demi_step_answer(dem_world *w) {
                      2*w->solver.limited > w->solver.count ? "where sweeps converge slowly"
                      : "the others carry more load than so many sweeps pass on");
 }
-/* The same where contacts are found: impulses, half a step ahead. */
+/* The same where contacts are found: with the midpoint rule half a step ahead. */
 static dem_result demi_answer(dem_world *w, dem_result (*answer)(dem_world *w)) {
     dem_result result;
-    if (!demi_impulsive(w)) return answer(w);
+    if (!demi_response_is(w, DEMI_MIDWAY)) return answer(w);
     demi_ahead(w);
     result = answer(w);
     demi_ahead_back(w);
@@ -559,8 +554,7 @@ static dem_result demi_refresh_answer(dem_world *w) {
     w->stage.pairs_changed = 0;
     demi_kernel_choose(w);
     w->stage.forces_valid = 0;
-    if (!demi_touch(w) || !demi_impulses_room(w)) return demi_no_memory(w, "dem_world_step");
-    demi_forces(w);
+    if (!demi_touch(w) || !demi_forces(w)) return demi_no_memory(w, "dem_world_step");
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     w->stage.forces_valid = 1;
     return DEM_OK;
@@ -589,7 +583,7 @@ DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 or %g to "
                          "%g s; 0 lets the library choose", (double)dt, DEMI_DT_LEAST,
                          DEMI_FARTHEST);
-    if (demi_impulsive(w) && !(dt > 0))
+    if (!demi_response_is(w, DEMI_LASTING) && !(dt > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
                          "no contact time to choose it from; set it, for example 1e-3 s for "
                          "grains of millimetres");

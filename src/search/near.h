@@ -371,7 +371,7 @@ static int demi_quiet_reserve(dem_world *w, int bodies) {
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
-           (!w->bodies.backward || demi_impulsive(w)) && !w->joint_count;
+           (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count;
 }
 /* Says of every few bodies whether anything is near any of them: where nothing is, and no field
    acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */

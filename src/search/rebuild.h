@@ -8,17 +8,18 @@
    old list as they were. New bodies may join a list that stands (demi_list_join).
    --------------------------------------------------------------------------------------------- */
 
-/* What the laws in force keep per contact: the user's own what desc says, built-in ones what their
-   rows say, one after the other (demi_laws_set). */
+/* What contacts keep: with the user's own law what desc says, with built-in ones what their rows
+   say, one after the other (demi_laws_set); or what the row of the response says. */
 static void demi_effects_memory(dem_world *w) {
+    const demi_response_kind *response = &demi_response_kinds[w->desc.response];
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
     if (w->desc.law) {
         w->laws.memory = w->desc.law_memory;
         w->laws.at_sliding = demi_laws_sliding(&w->laws.memory, w->effects.sticks);
         w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
     }
-    w->memory_stride = demi_impulsive(w) ? (int)DEMI_IMPULSE_REALS : w->laws.memory;
-    w->vector_mask = demi_impulsive(w) ? 0x3f : w->laws.vectors;
+    w->memory_stride = response->memory ? response->memory : w->laws.memory;
+    w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
 /* Does any pair of the scene have friction, rolling friction, or static friction above that of
    sliding? */
@@ -32,11 +33,6 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int 
             *rolling |= p->rolling_friction > 0;
             *sticks |= p->friction_static > p->friction;
         }
-}
-/* Do impulses choose how far they look ahead? Their reach follows the speeds, so that no scene may
-   be refused because of it. */
-static int demi_reach_free(const dem_world *w) {
-    return demi_impulsive(w) && !(w->desc.law_range > 0);
 }
 /* m: the farthest that a law is asked about any two, the largest of this radius. Impulses look
    ahead three steps of the fastest body, at most a radius, and no farther than a short period
@@ -243,8 +239,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     const demi_periods p = demi_periods_of(w);
     int k, leading = 0;
     w->domains[last].end = i + 1;
-    /* contacts of impulses are found half a step ahead */
-    if (demi_impulsive(w)) w->margin.gone += w->margin.step_gone/2;
+    if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
     if (count >= w->join_room) return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
@@ -314,7 +309,7 @@ static int demi_effects_take(dem_world *w) {
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
     const int sticks = w->effects.sticks;
     demi_effects(w);
-    if (demi_species_room(w) && (demi_impulsive(w) || !was.normal ||
+    if (demi_species_room(w) && (!demi_response_is(w, DEMI_LAWS) || !was.normal ||
         (was.memory == now->memory && (w->desc.law || (was.tangent == now->tangent &&
                                                        was.rolling == now->rolling))) ||
         demi_memory_move(w, &was))) {

@@ -1,0 +1,79 @@
+/* ---------------------------------------------------------------------------------------------
+   >>responses
+   The table of responses: what springs do and what impulses do where a step, or whoever looks at
+   contacts, calls the response in force. Their traits: DEMI_RESPONSES in >>layout.
+   --------------------------------------------------------------------------------------------- */
+/* Springs: forces of all contacts that a domain owns, one after the other. */
+static void demi_springs(dem_world *w, int d) {
+    w->kernel(w, d);
+    demi_kept_clear(w, d);
+    demi_kept_respond(w, d);
+}
+/* One near pair, if it touches: its force by the law of the run, on a copy of its history. */
+static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                             dem_vec3 *gap) {
+    demi_run r = demi_run_of(w, 0, w->effects.uniform);
+    const demi_span span = demi_span_of(w, d, p, 1);
+    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
+    demi_tile tile;
+    dem_contact c;
+    dem_contact_force f;
+    demi_calling was;
+    int e;
+    tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
+    r.span = &span;
+    demi_tile_fetch(&r, 1, &tile);
+    *gap = demi_rows_at(&tile.gap, 0);
+    demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
+    if (!(tile.touch[0] > 0)) return 0;
+    if (!out) return 1;
+    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
+    demi_span_coefs(w, &span, 0, coef);
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
+    demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
+    demi_who_clear(&c.who);
+    demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
+    was = demi_look_calls(w, "a read of the contacts");
+    demi_law(w, &c, memory, &f);
+    demi_look_called(w, was);
+    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
+    out->normal = demi_row(tile.normal, 0);
+    out->overlap = tile.overlap[0];
+    out->force = demi_row(tile.force, 0);
+    return 1;
+}
+
+typedef struct demi_response_row {
+    dem_result (*settle)(dem_world *w);         /* the time step of the scene as it is */
+    int (*room)(dem_world *w);                  /* for the contacts found; 0: memory ran out */
+    void (*respond)(dem_world *w, int domain);  /* forces of a domain's contacts, */
+    void (*solve)(dem_world *w);                /* or of all contacts at once */
+    void (*book)(dem_world *w);                 /* work and losses, after the forces of a step */
+    /* normal, overlap and force of entry p of a domain's near list, and the way from a's centre to
+       b's; without `out` nothing but the answer. 0: the two do not act on each other */
+    int (*info)(const dem_world *w, int domain, int p, dem_contact_info *out, dem_vec3 *gap);
+} demi_response_row;
+#define DEMI_RESPONSE_ROW(NAME, MEMORY, VECTORS, TRAITS, ...) {__VA_ARGS__},
+static const demi_response_row demi_responses[] = {DEMI_RESPONSES(DEMI_RESPONSE_ROW)};
+/* Settles the time step before stepping, unless it suits the scene already. */
+static dem_result demi_dt_settle(dem_world *w) {
+    return w->stage.dt_valid ? DEM_OK : demi_responses[w->desc.response].settle(w);
+}
+/* Entry p of the near list of domain d as users see it; unless null, *branch receives the way from
+   a's centre to b's. 0: the two do not act on each other. */
+static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
+                              dem_vec3 *branch) {
+    const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)p;
+    const int a = w->near.a[at], b = w->near.b[at];
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const demi_periods periods = demi_periods_of(w);
+    dem_vec3 gap;
+    if (!demi_responses[w->desc.response].info(w, d, p, out, &gap)) return 0;
+    if (!out) return 1;
+    out->a = dem_body_id_get(w, a);
+    out->b = dem_body_id_get(w, b);
+    out->wall = 0;
+    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(gap, x[3]/(x[3] + y[3]))));
+    if (branch) *branch = gap;
+    return 1;
+}
