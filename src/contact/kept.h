@@ -524,18 +524,15 @@ static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
     return p->kind != DEMI_ELLIPSOID || place->overlap > 0 ||
         demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
 }
-/* Contacts of part k with one wall, from candidates first .. last - 1 of its body: all of them,
-   then what each continues. shaped: 0 for a sphere, which has a copy of the code: its places weigh
-   by themselves, as they are found. */
-DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int shaped, int k,
+/* Contacts of part k of a body with one wall: all of them, then what each continues. shaped: 0 for
+   a sphere, which has a copy of the code: its places weigh by themselves, as they are found. */
+DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
                                   const demi_part *p, const demi_kept *old, int olds) {
-    const int base = d*w->wall_stride, body = w->wall_body[base + first];
-    const int id = w->wall_id[base + first];
-    const demi_wall *wall = &w->walls[id];
-    const dem_vec3 at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
-    demi_touching *found = 0;
-    const int places = demi_touches[wall->kind][p->kind](w, d, first, last, demi_walls_gone(w), at,
-                                                         p, &found);
+    const demi_wall *wall = v->wall;
+    const int d = v->d, id = (int)(wall - w->walls);
+    const dem_vec3 at = v->at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
+    demi_touching *found = w->touching + w->domains[d].touching_first;
+    const int places = demi_touches[wall->kind][p->kind](v, p, found);
     demi_kept *fresh = 0, *c;
     int i, e, count = 0;
     for (i = 0; i < places; i++) {
@@ -553,7 +550,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         if (!shaped || p->kind == DEMI_BALL) {  /* the commonest, without a call */
             demi_ball_on_wall(w, wall, p, &found[i], c);
             if (shaped && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED && c->overlap > 0)
-                demi_wall_bend(wall, w->wall_element + base + first, last - first,
+                demi_wall_bend(wall, v->element, v->left,
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
@@ -576,36 +573,34 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
 }
 /* Is a ball clear of what its body may touch of a wall? Told at once for a plane, which most balls
    of a cluster beside it are clear of; 0: to be looked at. */
-DEM_INLINE int demi_ball_clear(const dem_world *w, int candidate, int count, dem_vec3 at,
-                               dem_real r) {
-    const demi_wall *wall = &w->walls[w->wall_id[candidate]];
-    const dem_real *R = wall->pose.rotation;
+DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
+    const dem_real *R = v->wall->pose.rotation;
     dem_vec3 x;
-    if (wall->kind != DEMI_WALL_PLANE || count > 1) return 0;
-    x = demi_sub(demi_add(at, demi_at(w->wall_shift + 3*(size_t)candidate)), wall->pose.position);
-    return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(w, r))*DEM_R(1.001);
+    if (v->wall->kind != DEMI_WALL_PLANE || v->left > 1) return 0;
+    x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
+    return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
 /* Of one body with one wall. */
 static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
                                       const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
+    demi_view v = demi_view_of(w, d, first, last);
     const dem_real *balls;
     dem_real lone[4];
     int k, count;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
-        demi_kept_on_wall(w, d, first, last, 0, 0, &sphere, old, olds);
+        demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
         return;
     }
     balls = demi_balls_of(w, body, lone, &count);
     for (k = 0; k < parts; k++) {
         demi_part p;
-        if (balls && demi_ball_clear(w, d*w->wall_stride + first, last - first,
-                                     demi_add(demi_at(w->bodies.pos + 4*body),
-                                              demi_at(balls + 4*k)), balls[4*k + 3])) continue;
+        if (balls && demi_ball_clear(&v, demi_add(demi_at(w->bodies.pos + 4*body),
+                                                  demi_at(balls + 4*k)), balls[4*k + 3])) continue;
         p = demi_part_now(w, body, k);
-        demi_kept_on_wall(w, d, first, last, 1, k, &p, old, olds);
+        demi_kept_on_wall(w, &v, body, 1, k, &p, old, olds);
     }
     demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
 }

@@ -10,80 +10,108 @@
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
-/* Room in which the places of one body and one wall are found. candidates: how many there are. */
-DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
-    const demi_domain *domain = &w->domains[d];
+/* The candidates of one body on one wall, which it may touch. In a periodic world several
+   images of the body may be near the wall; demi_view_next steps through them in list order. */
+typedef struct demi_view {
+    const dem_world *w;
+    const demi_wall *wall;
+    int d;                         /* domain */
+    dem_real gone;                 /* m: a candidate with a larger gap is not near yet */
+    dem_vec3 at;                   /* m, centre of the part of the body, in the world */
+    const int32_t *element;        /* of the candidates of this image, count of them */
+    const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
+    int count, left;               /* left: count and those of the images to come */
+    dem_vec3 shift, x;             /* m: from body to image; the part in the wall's frame */
+} demi_view;
+/* The view of candidates first .. last - 1 of domain d, before its first image; `at` is not set. */
+DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last) {
+    const int k = d*w->wall_stride + first;
+    demi_view v;
+    v.w = w;
+    v.wall = &w->walls[w->wall_id[k]];
+    v.d = d;
+    v.gone = demi_walls_gone(w);
+    v.element = w->wall_element + k;
+    v.gap = w->wall_gap + k;
+    v.from = w->wall_shift + 3*(size_t)k;
+    v.count = 0;
+    v.left = last - first;
+    return v;
+}
+/* Goes on to the next image; 0: there is none. */
+DEM_INLINE int demi_view_next(demi_view *v) {
+    v->element += v->count;
+    v->gap += v->count;
+    v->from += 3*v->count;
+    v->left -= v->count;
+    v->count = v->left;
+    if (!v->left) return 0;
+    if (v->w->repeating)
+        for (v->count = 1; v->count < v->left &&
+             !memcmp(v->from, v->from + 3*v->count, 3*sizeof *v->from); v->count++) continue;
+    v->shift = demi_at(v->from);
+    v->x = demi_unrotate(v->wall->pose.rotation,
+                         demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
+    return 1;
+}
+/* Room (at) in which the places of one body and one wall are found. */
+DEM_INLINE demi_places demi_places_begin(const demi_view *v, demi_touching *at) {
     demi_places p;
     memset(&p, 0, sizeof p);
-    p.at = w->touching + domain->touching_first;
-    if (candidates > 10) {
+    p.at = at;
+    if (v->left > 10) {
         uint32_t size = 64;
-        while (size < 2*7*(uint32_t)candidates) size *= 2;
-        p.table = w->touching_table + 4*domain->touching_first;
+        while (size < 2*7*(uint32_t)v->left) size *= 2;
+        p.table = v->w->touching_table + 4*v->w->domains[v->d].touching_first;
         p.mask = size - 1;
         memset(p.table, 0, size*sizeof *p.table);
     }
     return p;
 }
-/* Candidates from k on that see the wall from the same image of their body: the end of them. */
-DEM_INLINE int demi_image_end(const dem_world *w, int base, int k, int last) {
-    const dem_real *s = w->wall_shift + 3*(size_t)(base + k);
-    int end = k + 1;
-    if (!w->repeating) return last;
-    while (end < last && !memcmp(s, w->wall_shift + 3*(size_t)(base + end), 3*sizeof *s)) end++;
-    return end;
+/* Can candidate k, a facet, be nearer than `within`? No where its gap has not closed, or its plane
+   is farther off. */
+DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
+    const dem_real *plane = DEMI_AT(v->wall->planes, v->element[k]);
+    const dem_real off = plane[0]*v->x.x + plane[1]*v->x.y + plane[2]*v->x.z - plane[3];
+    return !(v->gap[k] > v->gone) &&
+           !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
-/* Can candidate k, an element of a wall, be nearer than `within` to a place? No where its gap has
-   not closed, or its plane is farther off. */
-DEM_INLINE int demi_facet_near(const dem_world *w, const demi_wall *wall, int k, dem_real gone,
-                               dem_vec3 x, dem_real within) {
-    const dem_real *plane = DEMI_AT(wall->planes, w->wall_element[k]);
-    const dem_real off = plane[0]*x.x + plane[1]*x.y + plane[2]*x.z - plane[3];
-    return !(w->wall_gap[k] > gone) &&
-           !(DEMI_ABS(off) > within*DEM_R(1.001) + wall->plane_slack);
-}
-/* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
-   the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
-   measure, r less the distance or 1 - W0, as overlaps; range: what is nearer than that, too, with
-   overlaps below 0. In the world. */
-static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                             dem_vec3 at, dem_real r, const demi_part *part, dem_real range,
-                             demi_touching **out) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+/* Where an ellipsoid (part; null: a sphere of radius r) touches a surface of facets: normals,
+   points and shares, and what is left of its measure, r less the distance or 1 - W0, as overlaps;
+   range: what is nearer than that, too, with overlaps below 0. In the world. */
+static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part *part,
+                             dem_real range, demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const dem_real *R = wall->pose.rotation;
     const dem_real touch = part ? DEM_R(1) : r;
     const dem_real within = touch + (part ? range/demi_part_thin(part) : range);
-    demi_places p = demi_places_begin(w, d, last - first);
+    demi_places p = demi_places_begin(start, out);
     const int numbers = wall->number_count;
-    int k, q, from, end, one, reached;
-    for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+    int k, q, from, one, reached;
+    for (; demi_view_next(&v); p.offset += numbers) {
         from = p.count;
-        end = demi_image_end(w, base, k, last);
-        for (q = k, one = end, reached = 0; q < end && !part; q++) {
-            if (!demi_facet_near(w, wall, base + q, gone, x, within)) continue;
+        for (q = 0, one = v.count, reached = 0; q < v.count && !part; q++) {
+            if (!demi_facet_near(&v, q, within)) continue;
             if (!reached++) one = q;
         }
         if (reached == 1 && wall->lone) {
-            demi_facet_alone(wall, w->wall_element[base + one], x, within, &p);
-            if (p.count > from) p.at[from].shift = shift;
+            demi_facet_alone(wall, v.element[one], v.x, within, &p);
+            if (p.count > from) p.at[from].shift = v.shift;
             continue;
         }
-        for (q = one; q < end; q++)             /* spheres have a copy of the code for them */
-            if (demi_facet_near(w, wall, base + q, gone, x, within))
-                demi_facet_places(wall, w->wall_element[base + q], x, 0, within, &p);
-        for (q = k; q < end && part; q++)
-            if (!(w->wall_gap[base + q] > gone))
-                demi_facet_places(wall, w->wall_element[base + q], x, part, within, &p);
+        for (q = one; q < v.count; q++)         /* spheres have a copy of the code for them */
+            if (demi_facet_near(&v, q, within))
+                demi_facet_places(wall, v.element[q], v.x, 0, within, &p);
+        for (q = 0; q < v.count && part; q++)
+            if (!(v.gap[q] > v.gone))
+                demi_facet_places(wall, v.element[q], v.x, part, within, &p);
         for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
         if (q < p.count)                        /* something takes away: more than it should? */
-            demi_places_rings(wall, w->wall_element + base + k, end - k, x, part, within,
-                              demi_normal_is(w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
-                              w->touching_links +
-                              w->domains[d].touching_first, &p);
-        for (q = from; q < p.count; q++) p.at[q].shift = shift;
+            demi_places_rings(wall, v.element, v.count, v.x, part, within,
+                              demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
+                              v.w->touching_links + v.w->domains[v.d].touching_first, &p);
+        for (q = from; q < p.count; q++) p.at[q].shift = v.shift;
     }
     if (p.count > 1 || (p.count && p.at->share < 1))
         demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
@@ -99,20 +127,16 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
         n = t->overlap > 0 ? demi_scale(n, 1/demi_length(n)) : demi_v(0, 0, -1);
         t->overlap = touch - t->overlap;
         t->normal = demi_rotate(R, n);
-        t->point = demi_add(at, demi_rotate(R, to));
+        t->point = demi_add(v.at, demi_rotate(R, to));
     }
-    *out = p.at;
     return p.count;
 }
-/* --- where one part of a body, a sphere or an ellipsoid, touches one wall, from the candidates
-       first .. last - 1 of its body, those no farther than `gone`: normals, points, overlaps (of an
-       ellipsoid 1 - W0) and shares, in the world. at: its centre. --- */
-typedef int (*demi_touch_fn)(const dem_world *w, int d, int first, int last, dem_real gone,
-                             dem_vec3 at, const demi_part *part, demi_touching **places);
-static int demi_facets_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0,
-                             demi_range(w, part->radius), places);
+/* --- where one part of a body touches one wall, from its view before the first image: normals,
+       points, overlaps (of an ellipsoid 1 - W0) and shares, in the world, into `out`, the room of
+       its domain. --- */
+typedef int (*demi_touch_fn)(const demi_view *v, const demi_part *part, demi_touching *out);
+static int demi_facets_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_facets_touch(v, part->radius, 0, demi_range(v->w, part->radius), out);
 }
 /* Where a sphere touches a surface of revolution: pieces between their ends, rings where it lies
    beyond the ends of all pieces that meet there; a ring between two pieces that it touches takes
@@ -153,33 +177,27 @@ static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, de
    of so much larger a radius finds them); how: 0: as it is near to them, 1: as
    segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
    are. */
-DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                  dem_vec3 at, dem_real radius, demi_touching **places, int how,
-                                  demi_near_fn near) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const dem_real *R = wall->pose.rotation, range = demi_range(w, radius), r = radius + range;
-    demi_touching *out;
-    int k, q, end, count = 0;
-    *places = out = w->touching + w->domains[d].touching_first;
-    for (k = first; k < last; k = end) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+DEM_INLINE int demi_spheres_touch(const demi_view *start, dem_real radius, demi_touching *out,
+                                  int how, demi_near_fn near) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
+    const dem_real *R = wall->pose.rotation, range = demi_range(v.w, radius), r = radius + range;
+    int k, q, count = 0;
+    while (demi_view_next(&v)) {
         const int from = count;
-        end = demi_image_end(w, base, k, last);
-        if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, range, out + count);
-        else if (how == 3) count += demi_revolved_touch(wall, x, r, out + count);
-        else for (; k < end; k++) {
+        if (how == 2) count += demi_sieve_touch(&wall->sieve, v.x, r, range, out + count);
+        else if (how == 3) count += demi_revolved_touch(wall, v.x, r, out + count);
+        else for (k = 0; k < v.count; k++) {
             demi_touching *c = &out[count];
-            if (w->wall_gap[base + k] > gone) continue;
-            c->element = w->wall_element[base + k];
+            if (v.gap[k] > v.gone) continue;
+            c->element = v.element[k];
             c->share = wall->share;
             if (how == 1) {
-                c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
+                c->share = demi_segment_share(wall, c->element, v.x, r, &c->normal, &c->point,
                                               &c->overlap);
                 if (!(c->share > 0)) continue;
             } else {
-                c->overlap = near(wall, c->element, x, r, &c->normal, &c->point);
+                c->overlap = near(wall, c->element, v.x, r, &c->normal, &c->point);
                 if (!(c->overlap > 0)) continue;
             }
             count++;
@@ -188,40 +206,30 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
             out[q].overlap -= range;
             out[q].normal = demi_rotate(R, out[q].normal);
             out[q].point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, out[q].point)),
-                                    shift);
-            out[q].shift = shift;
+                                    v.shift);
+            out[q].shift = v.shift;
         }
     }
     return count;
 }
-static int demi_plane_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                              dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
-                              demi_plane_near);
+static int demi_plane_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 0, demi_plane_near);
 }
-static int demi_cylinder_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
-                              demi_cylinder_near);
+static int demi_cylinder_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 0, demi_cylinder_near);
 }
 /* Any other wall of elements. */
-static int demi_elements_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int kind = w->walls[w->wall_id[d*w->wall_stride + first]].kind;
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
-                              demi_nears[kind]);
+static int demi_elements_touch(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 0, demi_nears[v->wall->kind]);
 }
-static int demi_segments_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1, 0);
+static int demi_segments_touch(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 1, 0);
 }
-static int demi_revolved_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 3, 0);
+static int demi_revolved_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 3, 0);
 }
-static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                              dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2, 0);
+static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 2, 0);
 }
 
 /* --- an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
@@ -359,56 +367,44 @@ static demi_part demi_part_local(const dem_real *R, const demi_part *p) {
     local.q = demi_quat_unit(dem_quat_multiply(demi_quat_of(turn), p->q));
     return local;
 }
-static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + first]];
-    const demi_part local = demi_part_local(wall->pose.rotation, part);
-    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, demi_range(w, part->radius),
-                             places);
+static int demi_facets_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    const demi_part local = demi_part_local(v->wall->pose.rotation, part);
+    return demi_facets_touch(v, 0, &local, demi_range(v->w, part->radius), out);
 }
 /* An ellipsoid and a wall, element by element. */
-static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places,
+static int demi_ellipsoid_touch(const demi_view *start, const demi_part *part, demi_touching *out,
                                 demi_ellipsoid_fn on) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const dem_real *R = wall->pose.rotation;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const dem_real range = demi_range(w, part->radius);
+    const dem_real range = demi_range(v.w, part->radius);
     const int two = wall->inside;
-    demi_touching *out;
-    dem_vec3 x, shift;
     int i, count = 0;
-    *places = out = w->touching + w->domains[d].touching_first;
-    for (i = first; i < last + two; i++) {
-        demi_touching *c = &out[count];
-        if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
-        shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
-        x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        c->element = i < last ? w->wall_element[base + i] : 1;
-        c->overlap = on(wall, c->element, &local, x, range, &c->normal, &c->point);
-        if (!(c->overlap > 0) && !(c->overlap > -range/demi_part_thin(&local))) continue;
-        c->normal = demi_rotate(R, c->normal);
-        if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
-        c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
-        c->shift = shift;
-        c->share = wall->share;
-        count++;
-    }
+    while (demi_view_next(&v))
+        for (i = 0; i < v.count + two; i++) {
+            demi_touching *c = &out[count];
+            if (v.gap[DEMI_MIN(i, v.count - 1)] > v.gone) continue;
+            c->element = i < v.count ? v.element[i] : 1;
+            c->overlap = on(wall, c->element, &local, v.x, range, &c->normal, &c->point);
+            if (!(c->overlap > 0) && !(c->overlap > -range/demi_part_thin(&local))) continue;
+            c->normal = demi_rotate(R, c->normal);
+            if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
+            c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), v.shift);
+            c->shift = v.shift;
+            c->share = wall->share;
+            count++;
+        }
     return count;
 }
-static int demi_plane_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_plane);
+static int demi_plane_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_plane);
 }
-static int demi_cylinder_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                   dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places,
-                                demi_ellipsoid_on_cylinder);
+static int demi_cylinder_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_cylinder);
 }
-static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
+static int demi_grain_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_grain);
 }
 
 /* --- how the normal of a ball's contact with a wall turns as the ball moves, all in the wall's

@@ -514,30 +514,26 @@ static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec
     }
 }
 /* A cylinder, or a surface of revolution, piece by piece. */
-static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
+                                 demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
     const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
-    const int pressing = demi_response_is(w, DEMI_PRESSING);
-    const double range = (double)demi_range(w, part->radius);
+    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const double range = (double)demi_range(v.w, part->radius);
     double side;
     demi_flats flats, seen[2];
     demi_gaps gaps;
     demi_solid s;
-    int k, i, end, ends, count = 0;
-    *places = w->touching + w->domains[d].touching_first;
+    int i, ends, count = 0;
     gaps.range = range;
     gaps.flat = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    for (k = first; k < last; k = end) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(wall->pose.rotation,
-                                         demi_sub(demi_add(at, shift), wall->pose.position));
+    while (demi_view_next(&v)) {
+        const dem_vec3 x = v.x;
         flats.count = gaps.count = 0;
-        end = demi_image_end(w, base, k, last);
-        if (w->wall_gap[base + k] > gone) continue;
+        if (*v.gap > v.gone) continue;
         side = demi_rings_side(wall, x);
         for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
             ends |= demi_rings_end(wall, i, x, (double)part->radius) << i;
@@ -556,8 +552,7 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
             demi_ring_gaps(wall, i, pieces + i, &s, x, (double)part->radius, &gaps);
-        count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
-                                  shift, *places + count);
+        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
     }
     return count;
 }

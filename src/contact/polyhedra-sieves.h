@@ -342,29 +342,24 @@ static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_so
         }
     }
 }
-static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const dem_sieve_desc *sieve = &wall->sieve;
-    const dem_real *R = wall->pose.rotation;
+static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
+                                 demi_touching *out) {
+    demi_view v = *start;
+    const dem_sieve_desc *sieve = &v.wall->sieve;
+    const dem_real *R = v.wall->pose.rotation;
     const int wires = sieve->kind == DEM_SIEVE_WIRES || sieve->kind == DEM_SIEVE_BARS;
-    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1;
-    const int pressing = demi_response_is(w, DEMI_PRESSING);
-    const double range = (double)demi_range(w, part->radius);
+    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1, pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const double range = (double)demi_range(v.w, part->radius);
     const double reach = (double)part->radius + range;
     demi_flats flats;
     demi_gaps gaps;
     demi_solid s;
-    int k, set, i, e, count = 0;
-    *places = w->touching + w->domains[d].touching_first;
+    int set, i, e, count = 0;
     gaps.range = range;
     gaps.flat = 0;
-    for (k = first; k < last; k++) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-        if (w->wall_gap[base + k] > gone) continue;
+    while (demi_view_next(&v)) {
+        const double x0[3] = {(double)v.x.x, (double)v.x.y, (double)v.x.z};
+        if (*v.gap > v.gone) continue;
         for (set = 0; set < sets; set++) {
             dem_real turn[9];
             demi_part local;
@@ -373,11 +368,10 @@ static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last,
             local = demi_part_local(turn, part);
             demi_solid_of(&local, demi_v(0, 0, 0), &s);
             flats.count = gaps.count = 0;
-            if (wires) demi_wires_touch(sieve, set, &s, x, reach, pressing, &flats, &gaps);
+            if (wires) demi_wires_touch(sieve, set, &s, v.x, reach, pressing, &flats, &gaps);
             else demi_plate_touch(sieve, &s, x0, reach, 1e-3*(double)demi_part_thin(part), pressing,
                                   &flats, &gaps);
-            count += demi_wall_places(w, &flats, &gaps, turn, wall->share, part, at, shift,
-                                      *places + count);
+            count += demi_wall_places(&v, &flats, &gaps, turn, part, out + count);
         }
     }
     return count;

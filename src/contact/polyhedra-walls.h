@@ -64,10 +64,9 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }
-/* Places of all of them, found in a frame of axes R. share: the wall's. */
-static int demi_flats_places(const demi_flats *f, const dem_real *R, dem_real share,
-                             const demi_part *part, dem_vec3 at, dem_vec3 shift,
-                             demi_touching *out) {
+/* Places of all of them, found in a frame of axes R. */
+static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
+                             const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
@@ -85,14 +84,14 @@ static int demi_flats_places(const demi_flats *f, const dem_real *R, dem_real sh
             t->corner = k;
             t->corners = 4;
             t->overlap = (dem_real)overlap;
-            t->share = share*(dem_real)(p.force/(4*force));
+            t->share = v->wall->share*(dem_real)(p.force/(4*force));
             t->slope = (dem_real)demi_shared_slope(force, r, overlap);
             t->deep = (dem_real)f->press[i].deep;
             t->couple = p.couple;
             t->normal = demi_rotate(R, p.normal);
             t->spread = demi_rotate(R, demi_patch_spread(&p, k));
-            t->point = demi_add(demi_add(at, demi_rotate(R, p.point)), t->spread);
-            t->shift = shift;
+            t->point = demi_add(demi_add(v->at, demi_rotate(R, p.point)), t->spread);
+            t->shift = v->shift;
         }
     }
     return count;
@@ -299,11 +298,10 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
 }
 /* Places of all of them: by impulses the four of each direction that count; by a law with a range
    the nearest of all of a direction in which nothing presses, four times. pressed: how many places
-   are there already. */
-static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const dem_real *R, dem_real share,
-                            const demi_part *part, dem_vec3 at, dem_vec3 shift,
-                            const demi_touching *there, int pressed, demi_touching *out) {
-    const int pressing = demi_response_is(w, DEMI_PRESSING);
+   there are before `out`. */
+static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real *R,
+                            const demi_part *part, int pressed, demi_touching *out) {
+    const int pressing = demi_response_is(v->w, DEMI_PRESSING);
     int i, k, e, count = 0;
     for (i = 0; i < gaps->count; i++) {
         demi_gap_group *g = &gaps->group[i];
@@ -321,30 +319,28 @@ static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const dem_real 
             t->corner = k;
             t->corners = places;
             t->overlap = (dem_real)-g->gap[e];
-            t->share = share/(dem_real)places;
+            t->share = v->wall->share/(dem_real)places;
             t->slope = 1;
             t->deep = t->overlap/demi_part_thin(part);
             t->normal = demi_rotate(R, demi_v((dem_real)g->n[e][0], (dem_real)g->n[e][1],
                                               (dem_real)g->n[e][2]));
-            t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)g->x[e][0],
-                                                          (dem_real)g->x[e][1],
-                                                          (dem_real)g->x[e][2])));
-            t->shift = shift;
-            for (e = 0; e < pressed; e++)
-                if (demi_dot(there[e].normal, t->normal) > DEM_R(0.95)) break;
-            if (e < pressed || (pressing && !(t->overlap < 0))) break;
+            t->point = demi_add(v->at, demi_rotate(R, demi_v((dem_real)g->x[e][0],
+                                                             (dem_real)g->x[e][1],
+                                                             (dem_real)g->x[e][2])));
+            t->shift = v->shift;
+            for (e = 1; e <= pressed; e++)
+                if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
+            if (e <= pressed || (pressing && !(t->overlap < 0))) break;
             count++;
         }
     }
     return count;
 }
 /* Places of both, of one image of the body. */
-static int demi_wall_places(const dem_world *w, const demi_flats *flats, demi_gaps *gaps,
-                            const dem_real *R, dem_real share, const demi_part *part, dem_vec3 at,
-                            dem_vec3 shift, demi_touching *out) {
-    const int pressed = demi_flats_places(flats, R, share, part, at, shift, out);
-    return pressed + demi_gaps_places(w, gaps, R, share, part, at, shift, out, pressed,
-                                      out + pressed);
+static int demi_wall_places(const demi_view *v, const demi_flats *flats, demi_gaps *gaps,
+                            const dem_real *R, const demi_part *part, demi_touching *out) {
+    const int pressed = demi_flats_places(v, flats, R, part, out);
+    return pressed + demi_gaps_places(v, gaps, R, part, pressed, out + pressed);
 }
 /* Sides of an element where its sheet ends: bits. There it is alone, or one of three or more; not
    where another lies along part of it. */
@@ -598,95 +594,84 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
     }
 }
 /* Any wall whose elements are flat. */
-static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int pressing = demi_response_is(w, DEMI_PRESSING);
+    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
     demi_sheets sheets;
     demi_sheet sheet;
     demi_solid s;
-    int k, from, end, way, count = 0;
-    *places = w->touching + w->domains[d].touching_first;
-    gaps.range = (double)demi_range(w, part->radius);
+    int k, way, count = 0;
+    gaps.range = (double)demi_range(v.w, part->radius);
     gaps.flat = 0;
     sheet.wall = wall;
-    sheet.gone = gone;
+    sheet.gone = v.gone;
     sheet.within = part->radius*DEM_R(1.001);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    for (k = first; k < last; k = end) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(wall->pose.rotation,
-                                         demi_sub(demi_add(at, shift), wall->pose.position));
+    while (demi_view_next(&v)) {
         flats.count = gaps.count = sheets.count = 0;
-        end = demi_image_end(w, base, k, last);
-        sheet.element = w->wall_element + base + k;
-        sheet.gap = w->wall_gap + base + k;
-        sheet.count = end - k;
-        sheet.x = x;
-        for (from = k; wall->sheet && pressing && from < end; from++)
-            if (!(w->wall_gap[base + from] > gone) && wall->sheet[w->wall_element[base + from]])
-                demi_sheets_add(&sheets, wall, w->wall_element[base + from], x,
-                                (double)sheet.within);
+        sheet.element = v.element;
+        sheet.gap = v.gap;
+        sheet.count = v.count;
+        sheet.x = v.x;
+        for (k = 0; wall->sheet && pressing && k < v.count; k++)
+            if (!(v.gap[k] > v.gone) && wall->sheet[v.element[k]])
+                demi_sheets_add(&sheets, wall, v.element[k], v.x, (double)sheet.within);
         demi_sheets_press(&sheets, &sheet, &s, &flats);
-        for (from = k; k < end; k++) {
-            const int32_t element = w->wall_element[base + k];
+        for (k = 0; k < v.count; k++) {
+            const int32_t element = v.element[k];
             const int which = !pressing || !wall->sheet ? -1
                 : demi_sheets_which(&sheets, wall, element);
-            if (w->wall_gap[base + k] > gone || (wall->sheet && !wall->sheet[element])) continue;
+            if (v.gap[k] > v.gone || (wall->sheet && !wall->sheet[element])) continue;
             if (pressing && (which < 0 || !sheets.ends[which])) {
-                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, x) : 1;
-                demi_solid_on_element(wall, element, &s, x, way, &press);
+                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, v.x) : 1;
+                demi_solid_on_element(wall, element, &s, v.x, way, &press);
                 demi_flats_add(&flats, element, &press);
             }
             if (!(gaps.range > 0)) continue;
-            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)x.z, &gaps);
-            else demi_element_gaps(wall, element, w->wall_element + base + from, end - from, &s, x,
+            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
+            else demi_element_gaps(wall, element, v.element, v.count, &s, v.x,
                                    2*(double)part->radius + gaps.range, &gaps);
         }
-        count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
-                                  shift, *places + count);
+        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
     }
     return count;
 }
 /* A wall of grains, each a ball. */
-static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
+                                 demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const dem_real *R = wall->pose.rotation;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    demi_touching *out = *places = w->touching + w->domains[d].touching_first;
     demi_solid s;
     int k, count = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    for (k = first; k < last; k++) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*w->wall_element[base + k]), x);
+    while (demi_view_next(&v)) for (k = 0; k < v.count; k++) {
+        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*v.element[k]), v.x);
         const double c[3] = {(double)ball.x, (double)ball.y, (double)ball.z};
         double q[3], off;
         demi_touching *t = &out[count];
-        if (w->wall_gap[base + k] > gone) continue;
+        if (v.gap[k] > v.gone) continue;
         off = demi_solid_near(&s, c, q);
-        if (!(off < (double)(wall->radius + demi_range(w, part->radius)))) continue;
+        if (!(off < (double)(wall->radius + demi_range(v.w, part->radius)))) continue;
         memset(t, 0, sizeof *t);
-        t->element = w->wall_element[base + k];
+        t->element = v.element[k];
         t->overlap = wall->radius - (dem_real)off;
         t->deep = t->overlap/wall->radius;
         t->share = wall->share;
         t->slope = 1;
-        t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
-                                                      (dem_real)q[2])));
+        t->point = demi_add(v.at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
+                                                        (dem_real)q[2])));
         t->normal = demi_v((dem_real)(c[0] - q[0]), (dem_real)(c[1] - q[1]),
                            (dem_real)(c[2] - q[2]));
         t->normal = off < 0 || off > 0 ? demi_scale(demi_rotate(R, t->normal), (dem_real)(1/off))
                                        : demi_unit(demi_rotate(R, ball));
-        t->shift = shift;
+        t->shift = v.shift;
         count++;
     }
     return count;
