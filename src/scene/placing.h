@@ -312,18 +312,15 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
    a cylinder touches it; in a sieve's sheet there is no room, holes or not; the inside of a closed
    mesh is a place like any other. */
 static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
-    int j, a, b, c, f[3], l[3];
+    int j, n;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
+        dem_vec3 shift;
         if (wall->kind == DEMI_WALL_NONE) continue;
-        demi_wall_images(w, wall, x, radius, f, l);
-        for (c = f[2]; c <= l[2]; c++)
-            for (b = f[1]; b <= l[1]; b++)
-                for (a = f[0]; a <= l[0]; a++) {
-                    const dem_vec3 at = demi_add(x, demi_wall_shift(w, a, b, c));
-                    if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
-                                             demi_sub(at, wall->pose.position)), radius)) return 0;
-                }
+        for (n = 0; demi_wall_image(w, wall, x, radius, n, &shift); n++)
+            if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
+                                     demi_sub(demi_add(x, shift), wall->pose.position)), radius))
+                return 0;
     }
     return 1;
 }

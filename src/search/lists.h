@@ -84,24 +84,37 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
     }
     if (domain->walls > first) demi_walls_order(w, domain, d, first);
 }
+/* m, into shift: from a place to the n-th of its images from which a wall may be nearer than `far`,
+   n = 0, 1, ... 0: there is none. */
+static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 place, dem_real far,
+                           int n, dem_vec3 *shift) {
+    dem_real x[3];
+    int k;
+    demi_put(x, place);
+    for (k = 0; k < 3; k++) {
+        const dem_real period = w->wall_period[k], lo = wall->span_lo[k] - far - x[k];
+        const dem_real hi = wall->span_hi[k] + far - x[k];
+        const int repeats = wall->repeats[k];
+        const int first = repeats ? (int)ceil((double)lo/(double)period) : 0;
+        const int count = repeats ? (int)floor((double)hi/(double)period) - first + 1 : 1;
+        if (count < 1) return 0;
+        x[k] = (dem_real)(first + n%count)*period;
+        n /= count;
+    }
+    *shift = demi_at(x);
+    return !n;
+}
 /* Elements of all walls near body i. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
-    int j, a, b, c, f[3], l[3];
+    int j, n;
     if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
     for (j = 0; j < w->wall_count; j++) {
-        const demi_wall *wall = &w->walls[j];
-        if (wall->kind == DEMI_WALL_NONE) continue;
-        if (!w->repeating) {
-            demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
-            continue;
-        }
-        demi_wall_images(w, wall, demi_at(w->bodies.pos + 4*i),
-                         w->bodies.pos[4*i + 3] + demi_cover(w), f, l);
-        for (c = f[2]; c <= l[2]; c++)
-            for (b = f[1]; b <= l[1]; b++)
-                for (a = f[0]; a <= l[0]; a++)
-                    demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
+        dem_vec3 shift;
+        if (w->walls[j].kind == DEMI_WALL_NONE) continue;
+        for (n = 0; demi_wall_image(w, &w->walls[j], demi_at(w->bodies.pos + 4*i),
+                                    w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
+            demi_wall_look(w, domain, d, i, j, shift);
     }
 }
 /* Candidates on walls of one domain, body by body; those of a body and wall stand together. */

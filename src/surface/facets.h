@@ -416,21 +416,6 @@ static void demi_walls_repeat(dem_world *w) {
         }
     }
 }
-/* How many periods on, from first[k] to last[k], the images of a place are from which a wall is
-   nearer than `far`. */
-static void demi_wall_images(const dem_world *w, const demi_wall *wall, dem_vec3 place,
-                             dem_real far, int *first, int *last) {
-    dem_real x[3];
-    int k;
-    demi_put(x, place);
-    for (k = 0; k < 3; k++) {
-        const double period = (double)w->wall_period[k];
-        first[k] = last[k] = 0;
-        if (!wall->repeats[k]) continue;
-        first[k] = (int)ceil((double)(wall->span_lo[k] - far - x[k])/period);
-        last[k] = (int)floor((double)(wall->span_hi[k] + far - x[k])/period);
-    }
-}
 static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
     return demi_v((dem_real)a*w->wall_period[0], (dem_real)b*w->wall_period[1],
                   (dem_real)c*w->wall_period[2]);
