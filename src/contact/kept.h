@@ -29,16 +29,19 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     return c;
 }
 
-/* Number in its domain of the old contact with the same partner and parts, or with the same wall,
-   part and element, among those that body a had; -1: none. */
-DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds, int b,
-                              int part_a, int part_b, int wall, int element, int corner) {
+/* --- which contact of a step ago a new one continues: its number in its domain, or -1. old: the
+       contacts that body a had. --- */
+
+/* The one with the same partner and parts, or with the same wall, part, element and corner. */
+DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds,
+                              const demi_kept *c) {
     const int first = (int)(old - demi_kept_of(w, d));
     int *next = &w->domains[d].kept_same, n, i = *next - first;
     if (i < 0 || i >= olds) i = 0;              /* mostly it is the one after the last */
     for (n = 0; n < olds; n++) {
-        if (old[i].element == element && old[i].wall == wall && old[i].part_a == part_a &&
-            old[i].b == b && old[i].part_b == part_b && old[i].corner == corner) {
+        if (old[i].element == c->element && old[i].wall == c->wall &&
+            old[i].part_a == c->part_a && old[i].b == c->b && old[i].part_b == c->part_b &&
+            old[i].corner == c->corner) {
             *next = first + i + 1;
             return first + i;
         }
@@ -46,62 +49,62 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
     }
     return -1;
 }
-/* The same for a polyhedron's contact with a wall by springs: round walls, wires and holes are one
-   element on all sides of the body, so of several the one of the nearest normal, within 45
-   degrees. */
-static int demi_kept_turned(const dem_world *w, int d, const demi_kept *old, int olds,
-                            const demi_kept *c) {
-    dem_real nearest = DEM_R(0.7);
+/* Where that is not enough, the one that fits best:
+       TURNED   a polyhedron on a wall, by springs: of its element and corner the nearest normal
+                within 45 degrees, since round walls, wires and holes are one element on all sides
+       NEAREST  polyhedra by impulses: of the same pair or wall and within about 18 degrees the
+                nearest point that no contact before this one continues
+       SLID     on a wall, where nothing else fits: the body slid on to a neighbouring element */
+enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
+/* How well old contact o, number `from`, fits c, which slid on: by their normals; where those are
+   nearly the same (within some 3 degrees), rather one that nothing continues yet; then the same
+   wall, and the same sign of what they count. A place of a surface that begins at depth has split
+   off another one, and takes a copy of its memory: as often as two come, one that takes away comes
+   with them (>>facets). Walls that do not move against each other are one here. */
+static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
+                               const demi_kept *fresh, int freshs, const demi_kept *c) {
+    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
+    const demi_wall *wall = &w->walls[c->wall];
+    const int crossed = demi_wall_is(wall, DEMI_CROSSED), faceted = demi_faceted(wall);
+    const int alike = (o->weight < 0) == (c->share < 0);
+    int j, taken = 0;
+    if (w->walls[o->wall].group != wall->group || ((crossed || !(c->share < 0)) && !alike))
+        return DEMI_FAR_OFF;
+    for (j = 0; j < freshs && !taken; j++)
+        taken = fresh[j].wall == o->wall && fresh[j].element == o->element;
+    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* one alone may: the nearest */
+        const dem_real nearer = demi_dot(o->normal, demi_sub(fresh[j].normal, c->normal));
+        taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
+            (fresh[j].from == from || (fresh[j].from < 0 &&
+             (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
+    }
+    if (taken && (!faceted || !(2*c->overlap > o->overlap))) return DEMI_FAR_OFF;
+    return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
+        (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
+}
+/* fresh: all new contacts of the pair, or with the wall; NEAREST: those up to c. */
+static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
+                          const demi_kept *fresh, int freshs, const demi_kept *c,
+                          enum demi_fit how) {
+    const int first = (int)(old - demi_kept_of(w, d));
+    dem_real most = DEMI_FAR_OFF;
     int i, best = -1;
     for (i = 0; i < olds; i++) {
-        const dem_real along = demi_dot(old[i].normal, c->normal);
-        if (old[i].element != c->element || old[i].wall != c->wall || old[i].b >= 0 ||
-            old[i].part_a != c->part_a || old[i].corner != c->corner || !(along > nearest))
-            continue;
-        nearest = along;
-        best = (int)(old - demi_kept_of(w, d)) + i;
-    }
-    return best;
-}
-/* How well an old contact fits a new one: by their normals; where those are nearly the same (within
-   some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
-   what they count. */
-DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, int sign) {
-    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    return demi_dot(old, now) + (taken ? 0 : DEM_R(1e-3)) + (wall ? hair : 0) + (sign ? 2*hair : 0);
-}
-/* The same for a contact with a wall where that finds none: the one of the same part and of nearest
-   normal, within about 18 degrees, that nothing else continues: the grain slid on to the neighbour.
-   A place of a surface that begins at depth has split off another one, and takes a copy of its
-   memory: as often as two come, one that takes away comes with them (>>facets). Walls that do not
-   move against each other are one here. fresh: all that are new with this wall. */
-static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int olds,
-                          const demi_kept *fresh, int freshs, const demi_kept *c) {
-    const int first = (int)(old - demi_kept_of(w, d));
-    const int crossed = demi_wall_is(&w->walls[c->wall], DEMI_CROSSED);
-    const int faceted = demi_faceted(&w->walls[c->wall]);
-    dem_real nearest = 0;
-    int i, j, best = -1;
-    for (i = 0; i < olds; i++) {
-        dem_real along;
-        int taken = 0;
-        if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) || old[i].b >= 0 ||
-            old[i].part_a != c->part_a || old[i].corner != c->corner ||
-            w->walls[old[i].wall].group != w->walls[c->wall].group ||
-            ((crossed || !(c->share < 0)) && (old[i].weight < 0) != (c->share < 0))) continue;
-        for (j = 0; j < freshs && !taken; j++)
-            taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
-        for (j = 0; j < freshs && !taken && !faceted; j++) {    /* one alone may: the nearest */
-            const dem_real nearer = demi_dot(old[i].normal, demi_sub(fresh[j].normal, c->normal));
-            taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
-                (fresh[j].from == first + i || (fresh[j].from < 0 &&
-                 (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
+        const demi_kept *o = &old[i], *f = fresh;
+        dem_real fit = demi_dot(o->normal, c->normal);
+        if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
+            o->part_a != c->part_a || o->part_b != c->part_b ||
+            (o->wall != c->wall && how != DEMI_FIT_SLID) ||
+            (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
+            (o->element != c->element && how == DEMI_FIT_TURNED)) continue;
+        if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
+        if (how == DEMI_FIT_NEAREST) {
+            const dem_vec3 way = demi_sub(o->arm_a, c->arm_a);
+            while (f < c && f->from != first + i) f++;
+            fit = f < c ? DEMI_FAR_OFF : -demi_dot(way, way);
         }
-        along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
-                           (old[i].weight < 0) == (c->share < 0));
-        if (!(along > nearest)) continue;
-        if (taken && (!faceted || !(2*c->overlap > old[i].overlap))) continue;
-        nearest = along;
+        if (!(fit > most)) continue;
+        most = fit;
         best = first + i;
     }
     return best;
@@ -262,7 +265,7 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
         if (!at) return 0;
         if (k) memcpy(at, c, offsetof(demi_kept, coef));
         at->corner = k;
-        if (k) at->from = demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k);
+        if (k) at->from = demi_kept_same(w, d, old, olds, at);
         at->spread = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
                               demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
         if (k) {
@@ -273,27 +276,6 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     c->arm_a = demi_add(c->arm_a, c->spread);
     c->arm_b = demi_add(c->arm_b, c->spread);
     return 1;
-}
-/* Where impulses hold polyhedra: which of a step ago each point of one contact continues: the
-   nearest, of the same pair or wall and within about 18 degrees, that none before it does. first:
-   of all points so far; its last is asked about. */
-static int demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, int olds,
-                             const demi_kept *first, const demi_kept *c) {
-    const int begin = (int)(old - demi_kept_of(w, d));
-    dem_real least = DEM_R(1e30);
-    int i, best = -1;
-    for (i = 0; i < olds; i++) {
-        const dem_vec3 way = demi_sub(old[i].arm_a, c->arm_a);
-        const demi_kept *f;
-        if (old[i].b != c->b || old[i].part_a != c->part_a || old[i].part_b != c->part_b ||
-            old[i].wall != c->wall || !(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) ||
-            !(demi_dot(way, way) < least)) continue;
-        for (f = first; f < c && f->from != begin + i; f++) continue;
-        if (f < c) continue;
-        least = demi_dot(way, way);
-        best = begin + i;
-    }
-    return best;
 }
 /* A contact of polyhedra by its points: arm_a and arm_b are to the first one's centre. 0: no room.
    */
@@ -317,8 +299,8 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
         at->from = demi_response_is(w, DEMI_PRESSING)
-            ? demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k)
-            : demi_kept_nearest(w, d, old, olds, c, at);
+            ? demi_kept_same(w, d, old, olds, at)
+            : demi_kept_best(w, d, old, olds, c, k + 1, at, DEMI_FIT_NEAREST);
     }
     return 1;
 }
@@ -330,7 +312,7 @@ DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int sen
     c->a = a; c->b = b; c->part_a = i; c->part_b = j;
     c->wall = c->element = -1;
     c->send = send;
-    c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1, 0);
+    c->from = demi_kept_same(w, d, old, olds, c);
     return c;
 }
 /* The contact of two parts, if they touch: all that touch finds of it. 0: no room. */
@@ -557,12 +539,13 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = !shaped || !c->corners
-            ? demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner)
-            : demi_response_is(w, DEMI_PRESSING) ? demi_kept_turned(w, d, old, olds, c)
-            : demi_kept_nearest(w, d, old, olds, fresh, c);
+        c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
+            : demi_kept_best(w, d, old, olds, fresh, count, c,
+                             demi_response_is(w, DEMI_PRESSING) ? DEMI_FIT_TURNED
+                                                                : DEMI_FIT_NEAREST);
     for (i = 0, c = fresh; i < count; i++, c++) {
-        if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
+        if (c->from < 0 && olds)
+            c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* under way: to the end */
