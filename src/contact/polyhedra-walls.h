@@ -446,20 +446,18 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
 /* The elements of one sheet that are near a body, seen from one side: of the sheet's first facet
-   way. x: of the body, in the wall's frame; within: how far it reaches, m. */
+   way. within: how far the body reaches, m. */
 typedef struct demi_sheet {
+    const demi_view *v;
     const demi_wall *wall;
-    const int32_t *element;
-    const dem_real *gap;
-    dem_real gone, within;
-    int count, way;
+    dem_real within;
+    int way;
     int32_t sheet;
-    dem_vec3 x;
 } demi_sheet;
 /* Is element i of the list one of the sheet's? Then, which way its normal goes; 0: it is not. */
 DEM_INLINE int demi_sheet_turn(const demi_sheet *t, int i) {
-    const int element = t->element[i];
-    if (t->gap[i] > t->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+    const int element = t->v->element[i];
+    if (t->v->gap[i] > t->v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
     return t->wall->sheet[element] < 0 ? -t->way : t->way;
 }
 /* The sheet's mean normals at both corners of a side where it ends; 0: it does not. */
@@ -555,12 +553,12 @@ static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats
     demi_pressure press;
     double sides[3][2][3], n[3], at;
     int i, k, count, ends, beyond;
-    for (i = 0; i < t->count; i++) {
-        const int element = t->element[i], way = demi_sheet_turn(t, i);
+    for (i = 0; i < t->v->count; i++) {
+        const int element = t->v->element[i], way = demi_sheet_turn(t, i);
         const dem_real *plane = t->wall->planes + 4*element;
-        const dem_real off = demi_dot(demi_at(plane), t->x) - plane[3];
+        const dem_real off = demi_dot(demi_at(plane), t->v->x) - plane[3];
         if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
-        count = demi_facet_sides(t->wall, element, t->x, way, n, &at, sides);
+        count = demi_facet_sides(t->wall, element, t->v->x, way, n, &at, sides);
         if (!count) continue;
         ends = demi_facet_ends(t->wall, element);
         beyond = demi_dot3(n, s->corner[demi_solid_far(s, n)]) > at;
@@ -608,16 +606,12 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
     int k, way, count = 0;
     gaps.range = (double)demi_range(v.w, part->radius);
     gaps.flat = 0;
+    sheet.v = &v;
     sheet.wall = wall;
-    sheet.gone = v.gone;
     sheet.within = part->radius*DEM_R(1.001);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     while (demi_view_next(&v)) {
         flats.count = gaps.count = sheets.count = 0;
-        sheet.element = v.element;
-        sheet.gap = v.gap;
-        sheet.count = v.count;
-        sheet.x = v.x;
         for (k = 0; wall->sheet && pressing && k < v.count; k++)
             if (!(v.gap[k] > v.gone) && wall->sheet[v.element[k]])
                 demi_sheets_add(&sheets, wall, v.element[k], v.x, (double)sheet.within);
