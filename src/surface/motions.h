@@ -16,6 +16,19 @@ static double demi_ramp(double t, double ramp, double *part) {
     *part = u*u*(3 - 2*u);
     return u < 1 ? ramp*u*u*u*(1 - u/2) : t - ramp/2;
 }
+/* Rotates a wall by `turn` (3 x 3) from the pose in which its motion started, into pose->rotation;
+   answers where its origin then is, from the point of its motion. */
+static dem_vec3 demi_pose_turn(const demi_wall *wall, const double *turn, dem_pose *pose) {
+    dem_real T[9];
+    int i, j;
+    for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
+                turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
+                turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
+    return demi_rotate(T, demi_sub(wall->home.position, wall->motion.point));
+}
 /* Number c (0..2: position, 3..6: rotation) of row k of a table; rows of one that repeats go on. */
 static double demi_row_number(const dem_motion *m, int k, int c) {
     const dem_motion_row *r = m->table + k;
@@ -55,9 +68,8 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     const int last = m->table_count - 1;
     const double end = m->table[last].time;
     double x[7], v[7], size = 0, along = 0, h, u, R[9], w[3];
-    dem_real T[9];
     dem_vec3 arm, at;
-    int k = 0, c, i, j;
+    int k = 0, c;
     if (m->table_repeats && t > 0) t = fmod(t, end);
     t = DEMI_MIN(DEMI_MAX(t, 0), end);
     while (k + 1 < last && t >= m->table[k + 1].time) k++;
@@ -82,13 +94,7 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     R[4] = 1 - 2*(x[4]*x[4] + x[6]*x[6]); R[5] = 2*(x[5]*x[6] - x[3]*x[4]);
     R[6] = 2*(x[4]*x[6] - x[3]*x[5]);     R[7] = 2*(x[5]*x[6] + x[3]*x[4]);
     R[8] = 1 - 2*(x[4]*x[4] + x[5]*x[5]);
-    for (i = 0; i < 9; i++) T[i] = (dem_real)R[i];
-    for (i = 0; i < 3; i++)
-        for (j = 0; j < 3; j++)
-            pose->rotation[3*i + j] = (dem_real)(R[3*i]*(double)wall->home.rotation[j] +
-                R[3*i + 1]*(double)wall->home.rotation[3 + j] +
-                R[3*i + 2]*(double)wall->home.rotation[6 + j]);
-    arm = demi_rotate(T, demi_sub(wall->home.position, m->point));
+    arm = demi_pose_turn(wall, R, pose);
     at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
     pose->position = demi_add(demi_add(m->point, at), arm);
     pose->spin = demi_v((dem_real)w[0], (dem_real)w[1], (dem_real)w[2]);
@@ -152,21 +158,13 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
         pose->velocity = demi_scale(m->velocity, (dem_real)part);
         break;
     case DEM_MOTION_ROTATING: {
-        const dem_vec3 axis = demi_unit(m->axis), arm = demi_sub(wall->home.position, m->point);
+        const dem_vec3 axis = demi_unit(m->axis);
         double turn[9];
-        dem_real T[9];
-        int i, j;
         if (t <= 0) break;
         gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
                       fmod((double)m->speed*gone, 2*DEMI_PI));
-        for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
-        for (i = 0; i < 3; i++)
-            for (j = 0; j < 3; j++)
-                pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
-                    turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
-                    turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
-        pose->position = demi_add(m->point, demi_rotate(T, arm));
+        pose->position = demi_add(m->point, demi_pose_turn(wall, turn, pose));
         pose->spin = demi_scale(axis, m->speed*(dem_real)part);
         pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
         break;
