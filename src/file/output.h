@@ -112,6 +112,11 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
+/* What writes a file of each kind, in the order of dem_output_kind; 0: demi_output_write knows. */
+static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
+    0, dem_vtp_write, dem_xyz_write, dem_contacts_vtp_write, dem_checkpoint_write, 0,
+    dem_surfaces_vtp_write};
+enum { DEMI_OUTPUTS = (int)(sizeof demi_output_writers/sizeof *demi_output_writers) };
 /* Output `number` of the world as it is. o: a copy, since a call may add outputs. */
 static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t number) {
     const dem_output_desc *d = &o->desc;
@@ -131,15 +136,8 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     at = demi_output_marks(d->path, &marks);
     sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
     sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
-    switch (d->kind) {
-    case DEM_OUTPUT_VTP: result = dem_vtp_write(w, path); break;
-    case DEM_OUTPUT_XYZ: result = dem_xyz_write(w, path); break;
-    case DEM_OUTPUT_CONTACTS: result = dem_contacts_vtp_write(w, path); break;
-    case DEM_OUTPUT_CHECKPOINT: result = dem_checkpoint_write(w, path); break;
-    case DEM_OUTPUT_CSV: result = demi_output_line(w, o, path); break;
-    case DEM_OUTPUT_SURFACES: result = dem_surfaces_vtp_write(w, path); break;
-    case DEM_OUTPUT_CALL: break;
-    }
+    result = d->kind == DEM_OUTPUT_CSV ? demi_output_line(w, o, path)
+                                       : demi_output_writers[d->kind](w, path);
     demi_free(w, path);
     return result;
 }
@@ -228,7 +226,7 @@ static void demi_outputs_again(dem_world *w) {
 }
 /* One sentence on what is wrong with a desc; null: nothing. */
 static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
-    if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_SURFACES)
+    if ((int)d->kind < 0 || (int)d->kind >= DEMI_OUTPUTS)
         return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
     if (!demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end) || d->interval < DEMI_OUTPUT_LEAST || d->end < 0 ||
