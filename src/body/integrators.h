@@ -267,10 +267,12 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
 /* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
    about their axis): half an Euler step for q at the middle, w there from L, a whole step with
    that. */
-static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                    dem_real h) {
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     dem_quat mid, by;
+    (void)inv;
     by = dem_quat_multiply(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
     mid = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
                                        start.z + by.z));
@@ -283,11 +285,13 @@ static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_rea
 }
 /* NO_SQUISH's splitting [DLM97]: free rotation about x, y, z, y, x in turn, each exact; symplectic,
    so that energy swings and does not drift. */
-static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                      dem_real h) {
     static const int order[5] = {0, 1, 2, 1, 0};
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w0 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z), w1;
     int k;
+    (void)inv;
     for (k = 0; k < 5; k++) {
         const double step = (double)(k == 2 ? h : h/2);
         const double rate = order[k] == 0 ? (double)(m.x/I.x) : order[k] == 1 ? (double)(m.y/I.y)
@@ -303,6 +307,16 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
     w1 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     return demi_scale(demi_add(w0, dem_quat_unrotate(start, dem_quat_rotate(*q, w1))), DEM_R(0.5));
 }
+typedef struct demi_rotation_row {
+    const char *name;
+    dem_vec3 (*fly)(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv, dem_real h);
+} demi_rotation_row;
+static const demi_rotation_row demi_rotation_rows[] = {         /* in the order of dem_rotation */
+    {"SPIRAL", demi_flight_spiral},
+    {"Fincham", demi_flight_fincham},
+    {"NO_SQUISH", demi_flight_splitting},
+};
+enum { DEMI_ROTATIONS = (int)(sizeof demi_rotation_rows/sizeof *demi_rotation_rows) };
 /* Spin of a body with angular momentum L. */
 DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
     const dem_vec3 m = dem_quat_unrotate(q, L);
@@ -327,8 +341,7 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
                               t->L[2][l] + T.z*kick);
     const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
-        : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
-        : demi_flight_splitting(&q, L, I, dt);
+        : demi_rotation_rows[rotation].fly(&q, L, I, inv, dt);
     const dem_vec3 half = dem_quat_rotate(start, mean);
     const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
     const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */

@@ -497,9 +497,7 @@ static void demi_knots_ahead(dem_world *w) {
             const dem_vec3 I = demi_at(w->bodies.moment + 4*body);
             const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z), m = dem_quat_unrotate(q, turn);
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
-            if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_flight_spiral(&q, L, I, inv, dt);
-            else if (w->desc.rotation == DEM_ROTATION_FINCHAM) demi_flight_fincham(&q, L, I, dt);
-            else demi_flight_splitting(&q, L, I, dt);
+            demi_rotation_rows[w->desc.rotation].fly(&q, L, I, inv, dt);
         } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
         s->knots[i].turned = q;
     }

@@ -114,7 +114,7 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
         (int)d->search >= DEMI_SEARCHES)
         return "dem_world_create: integrator or search is not one of the enum values; start from "
             "DEM_WORLD_DESC";
-    if ((int)d->rotation < 0 || d->rotation > DEM_ROTATION_NO_SQUISH ||
+    if ((int)d->rotation < 0 || (int)d->rotation >= DEMI_ROTATIONS ||
         (int)d->ellipsoid_overlap < 0 || d->ellipsoid_overlap > DEM_OVERLAP_NORMAL ||
         (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_CLUSTER_CONTACTS_SEPARATE)
         return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is not one of "
@@ -278,12 +278,11 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
 }
 /* A line about bodies that turn, where there are any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
-    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     if (w->bodies.shaped)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
-                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
+                demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
                     : "are separate",
                 w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
