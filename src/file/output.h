@@ -112,7 +112,7 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
-/* What writes a file of each kind, in the order of dem_output_kind; 0: demi_output_write knows. */
+/* What writes a file of each kind, in the order of dem_output_kind; 0: see below. */
 static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
     0, dem_vtp_write, dem_xyz_write, dem_contacts_vtp_write, dem_checkpoint_write, 0,
     dem_surfaces_vtp_write};
