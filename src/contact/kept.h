@@ -476,9 +476,7 @@ static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)}
 static double demi_wall_r_eff(const demi_wall *wall, double r) {
     const double q = (double)wall->sieve.bar/2;
     if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
-    if (wall->sieve.kind == DEM_SIEVE_WIRES || wall->sieve.kind == DEM_SIEVE_BARS)
-        return r*sqrt(q/(r + q));
-    return r;
+    return demi_sieve_wires(&wall->sieve) ? r*sqrt(q/(r + q)) : r;
 }
 /* A sheet, which pushes to both sides, pushes a body on once its centre is through. Then contact c
    has turned round within a step, and nothing is left of the one before: its overlap is what is

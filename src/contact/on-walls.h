@@ -511,7 +511,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
     const dem_sieve_desc *s = &wall->sieve;
     const dem_vec3 n = b->normal, p = b->point;
     const dem_real R = s->radius, hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int wires = demi_sieve_wires(s);
     const int upright = !wires && s->thickness > 0 && DEMI_ABS(n.z) < hair;
     const int corner = b->number == DEMI_SIEVE_RIM + 1;      /* of a strip, or on the rim between */
     const int cross = b->number < DEMI_SIEVE_FACE && (b->number & DEMI_SIEVE_CROSS);

@@ -347,8 +347,8 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
     demi_view v = *start;
     const dem_sieve_desc *sieve = &v.wall->sieve;
     const dem_real *R = v.wall->pose.rotation;
-    const int wires = sieve->kind == DEM_SIEVE_WIRES || sieve->kind == DEM_SIEVE_BARS;
-    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1, pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const int wires = demi_sieve_wires(sieve), sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1;
+    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
     const double range = (double)demi_range(v.w, part->radius);
     const double reach = (double)part->radius + range;
     demi_flats flats;
@@ -383,7 +383,6 @@ static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(D
 /* Why a part does not know a wall, and what to do; 0: it does. */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
     const dem_sieve_desc *s = &wall->sieve;
-    const int plate = s->kind != DEM_SIEVE_WIRES && s->kind != DEM_SIEVE_BARS;
     if (!demi_touches[wall->kind][part])
         return "contacts between the two are not available; make bodies clusters of spheres, or "
                "the wall a mesh or a resolved profile";
@@ -393,7 +392,7 @@ static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int 
     if (s->radius > 0)
         return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
                "cylinder around it";
-    if (plate && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
+    if (!demi_sieve_wires(s) && !(s->thickness > 0) && !demi_impulsive(w))
         return "a sheet without thickness has no inside for springs to act on; give the sieve a "
             "thickness, or use impulses";
     return 0;

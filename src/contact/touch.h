@@ -414,10 +414,13 @@ typedef struct demi_sieve_row {
 /* Where rows a and b cross: nearest point and its distance, m. */
 typedef struct demi_sieve_shared { dem_real distance; int a, b; dem_vec3 foot; } demi_sieve_shared;
 
+/* Is a sieve made of round wires? Others are plates. */
+static int demi_sieve_wires(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+}
 /* Half of how thick it is. */
 static dem_real demi_sieve_half(const dem_sieve_desc *s) {
-    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS ? (s->bar + s->lift)/2
-        : s->thickness/2;
+    return (demi_sieve_wires(s) ? s->bar + s->lift : s->thickness)/2;
 }
 /* A number that tells rows and holes apart; far ones repeat, which does no harm. */
 static int32_t demi_sieve_number(double i, double j, int side) {
@@ -475,7 +478,7 @@ static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u,
 /* Which rows of one set a sphere reaches. */
 static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
                           demi_sieve_row *row, int count) {
-    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int wires = demi_sieve_wires(s);
     const dem_real q = s->bar/2, h = !wires ? 0 : set ? -s->lift/2 : s->lift/2, R = s->radius;
     const dem_real hole = !set && s->kind == DEM_SIEVE_SLOTS ? s->length : s->aperture;
     const dem_real pitch = hole + s->bar, half = wires ? 0 : s->thickness/2;
@@ -592,7 +595,7 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
     const dem_real half = s->thickness/2, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     int rows = demi_sieve_set(s, 0, x, r, row, 0), i, k, crossings = 0, count = 0;
     if (s->kind != DEM_SIEVE_BARS) rows = demi_sieve_set(s, 1, x, r, row, rows);
-    if (s->kind != DEM_SIEVE_BARS && s->kind != DEM_SIEVE_WIRES && s->radius > 0 && S > 0) {
+    if (!demi_sieve_wires(s) && s->radius > 0 && S > 0) {
         demi_sieve_row *ring = &row[rows];
         memset(ring, 0, sizeof *ring);
         ring->foot = demi_v(x.x*s->radius/S, x.y*s->radius/S, demi_clamp(x.z, -half, half));
@@ -635,8 +638,8 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
     }
     for (i = 0; i < rows; i++) {
         if (row[i].edge < 0) continue;
-        if (!(row[i].distance > 0) && half > 0 && s->kind != DEM_SIEVE_WIRES &&
-            s->kind != DEM_SIEVE_BARS) {        /* within the plate: out by the nearer face */
+        if (!(row[i].distance > 0) && half > 0 && !demi_sieve_wires(s)) {
+            /* within the plate: out by the nearer face */
             count += demi_sieve_face(s, x, r, out + count);
             out[count - 1].element = row[i].number;
         } else count = demi_sieve_put(out, count, row[i].number, x, r, row[i].foot, row[i].edge);
