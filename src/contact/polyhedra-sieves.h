@@ -392,7 +392,7 @@ static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int 
     if (s->radius > 0)
         return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
                "cylinder around it";
-    if (!demi_sieve_wires(s) && !(s->thickness > 0) && !demi_impulsive(w))
+    if (!demi_sieve_wires(s) && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
         return "a sheet without thickness has no inside for springs to act on; give the sieve a "
             "thickness, or use impulses";
     return 0;
