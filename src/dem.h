@@ -23,6 +23,7 @@
        >>maths             vectors, poses, random numbers
        >>layout            data structures of the world
        >>memory            arrays of each body, errors, allocation
+       >>rows              a row for each field of a desc: its limits and what is done with it
      law/ - contact laws and materials
        >>laws              table of the built-in contact laws and their coefficients
        >>materials         materials, the pair table, damping from restitution
@@ -166,6 +167,7 @@
 #include "core/maths.h"
 #include "core/layout.h"
 #include "core/memory.h"
+#include "core/rows.h"
 #include "law/laws.h"
 #include "law/materials.h"
 #include "body/shapes.h"

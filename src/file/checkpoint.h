@@ -49,75 +49,7 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
        allow_large_dt, what functions are handed). The file holds their values, so that a refusal
        can name the field and both. --- */
 
-/* type: 'i' int or enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double, 'u' uint64_t, 'p' is it
-   null?, 't' a text, of at most `size` bytes, 'h' the digest of what it points to. */
-typedef struct demi_scene_row {
-    const char *name, *words;       /* as a sentence has them: the field, and values from 0 on */
-    size_t offset, size;            /* of the field in its struct; bytes in the file */
-    char type;
-    uint64_t (*digest)(const void *item);
-} demi_scene_row;
 enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes in the file, of one row */
-#define DEMI_ROW_AS(of, name, field, type) \
-    {name, 0, offsetof(of, field), sizeof ((of *)0)->field, type, 0}
-#define DEMI_ROW(of, field, type) DEMI_ROW_AS(of, #field, field, type)
-#define DEMI_ROW_ENUM(of, field, words) \
-    {#field, words, offsetof(of, field), sizeof ((of *)0)->field, 'i', 0}
-#define DEMI_ROW_NULL(of, field) {#field, "none one", offsetof(of, field), sizeof(int32_t), 'p', 0}
-#define DEMI_ROW_TEXT(of, field, most) {#field, 0, offsetof(of, field), (most)*24, 't', 0}
-#define DEMI_ROW_DIGEST(name, digest) {name, 0, 0, sizeof(uint64_t), 'h', digest}
-
-static const demi_scene_row demi_desc_rows[] = {
-    DEMI_ROW(dem_world_desc, gravity, 'v'), DEMI_ROW(dem_world_desc, domain, 'v'),
-    DEMI_ROW_ENUM(dem_world_desc, boundary, "open periodic outflow"),
-    DEMI_ROW(dem_world_desc, planar, 'i'), DEMI_ROW(dem_world_desc, thickness, 'r'),
-    DEMI_ROW_ENUM(dem_world_desc, response, "springs impulses"),
-    DEMI_ROW_ENUM(dem_world_desc, normal_law, "hertz linear hysteretic"),
-    DEMI_ROW_ENUM(dem_world_desc, tangent_law,
-                  "auto none viscous step spring mindlin mindlin_rescaled"),
-    DEMI_ROW_ENUM(dem_world_desc, rolling_law, "auto none step constant epsd"),
-    DEMI_ROW_ENUM(dem_world_desc, tension, "allowed clipped compensated"),
-    DEMI_ROW_ENUM(dem_world_desc, friction_load, "repulsive elastic magnitude"),
-    DEMI_ROW_ENUM(dem_world_desc, slider, "parallel spring remainder"),
-    DEMI_ROW_ENUM(dem_world_desc, convention, "standard mill"),
-    DEMI_ROW_NULL(dem_world_desc, law), DEMI_ROW(dem_world_desc, law_memory, 'i'),
-    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEM_LAW_MEMORY),
-    DEMI_ROW(dem_world_desc, law_vectors, 'i'), DEMI_ROW(dem_world_desc, law_stiffness, 'r'),
-    DEMI_ROW(dem_world_desc, law_range, 'r'), DEMI_ROW(dem_world_desc, law_range_radii, 'r'),
-    DEMI_ROW(dem_world_desc, law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
-    DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
-    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
-    DEMI_ROW_NULL(dem_world_desc, body_force),
-    DEMI_ROW_ENUM(dem_world_desc, integrator, "velocity_verlet forward_euler symplectic_euler "
-                  "position_verlet leapfrog"),
-    DEMI_ROW(dem_world_desc, dt, 'r'), DEMI_ROW(dem_world_desc, impact_speed, 'r'),
-    DEMI_ROW_ENUM(dem_world_desc, cone, "coulomb convex"),
-    DEMI_ROW_ENUM(dem_world_desc, solver, "gauss_seidel jacobi apgd spectral"),
-    DEMI_ROW(dem_world_desc, sweeps, 'i'), DEMI_ROW(dem_world_desc, tolerance, 'r'),
-    DEMI_ROW(dem_world_desc, cold_start, 'i'),
-    DEMI_ROW_ENUM(dem_world_desc, search, "auto all_pairs grid linked_list hierarchical bins"),
-    DEMI_ROW(dem_world_desc, skin, 'r'),
-    DEMI_ROW_ENUM(dem_world_desc, rotation, "spiral fincham no_squish"),
-    DEMI_ROW_ENUM(dem_world_desc, ellipsoid_overlap, "conservative chord normal"),
-    DEMI_ROW_ENUM(dem_world_desc, cluster_contacts, "merged separate"),
-    DEMI_ROW(dem_world_desc, orientations, 'i'), DEMI_ROW(dem_world_desc, ledger, 'i')};
-static const demi_scene_row demi_material_rows[] = {
-    DEMI_ROW(dem_material_desc, density, 'r'), DEMI_ROW(dem_material_desc, young, 'r'),
-    DEMI_ROW(dem_material_desc, poisson, 'r'), DEMI_ROW(dem_material_desc, restitution, 'r'),
-    DEMI_ROW(dem_material_desc, friction, 'r'), DEMI_ROW(dem_material_desc, friction_static, 'r'),
-    DEMI_ROW(dem_material_desc, rolling_friction, 'r'), DEMI_ROW(dem_material_desc, stiffness, 'r'),
-    DEMI_ROW(dem_material_desc, stiffness_ratio, 'r'),
-    DEMI_ROW(dem_material_desc, stiffness_unloading, 'r'),
-    DEMI_ROW(dem_material_desc, stiffness_adhesion, 'r')};
-static const demi_scene_row demi_pair_rows[] = {
-    DEMI_ROW(dem_pair, young_eff, 'r'), DEMI_ROW(dem_pair, shear_eff, 'r'),
-    DEMI_ROW(dem_pair, restitution, 'r'), DEMI_ROW(dem_pair, friction, 'r'),
-    DEMI_ROW(dem_pair, friction_static, 'r'), DEMI_ROW(dem_pair, rolling_friction, 'r'),
-    DEMI_ROW(dem_pair, stiffness, 'r'), DEMI_ROW(dem_pair, stiffness_ratio, 'r'),
-    DEMI_ROW(dem_pair, tangent_damping, 'r'), DEMI_ROW(dem_pair, stiffness_adhesion, 'r'),
-    DEMI_ROW(dem_pair, normal_damping, 'r'), DEMI_ROW(dem_pair, spinning_friction, 'r'),
-    DEMI_ROW(dem_pair, cohesion, 'r'), DEMI_ROW(dem_pair, compliance, 'r')};
-
 /* What a shape is, not what was worked out from it; pieces field by field: no padding. */
 static uint64_t demi_digest_spheres(const void *item) {
     const demi_shape *s = (const demi_shape *)item;
@@ -140,107 +72,29 @@ static uint64_t demi_digest_pieces(const void *item) {
     }
     return h;
 }
-static const demi_scene_row demi_shape_fields[] = {
+static const demi_field_row demi_shape_fields[] = {
     DEMI_ROW(demi_shape, kind, 'i'), DEMI_ROW_AS(demi_shape, "spheres", count, 'i'),
     DEMI_ROW(demi_shape, axes, 'v'), DEMI_ROW(demi_shape, inertia, 'v'),
     DEMI_ROW(demi_shape, volume, 'd'), DEMI_ROW(demi_shape, corners, 'i'),
     DEMI_ROW(demi_shape, faces, 'i'), DEMI_ROW(demi_shape, pieces, 'i'),
     DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
-    DEMI_ROW_DIGEST("pieces", demi_digest_pieces)};
-
-static uint64_t demi_digest_vertices(const void *item) {
-    const demi_wall *w = (const demi_wall *)item;
-    return demi_hash(DEMI_HASH_START, w->vertices, w->vertices
-                     ? (size_t)w->vertex_count*3*sizeof(dem_real) : 0);
-}
-static uint64_t demi_digest_elements(const void *item) {
-    const demi_wall *w = (const demi_wall *)item;
-    return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
-                     sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
-}
-static uint64_t demi_digest_table(const void *item) {
-    const dem_motion *m = &((const demi_wall *)item)->motion;
-    uint64_t h = DEMI_HASH_START;
-    int k;
-    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
-        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
-        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
-        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
-    }
-    return h;
-}
-/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
-static const demi_scene_row demi_wall_rows[] = {
-    DEMI_ROW_ENUM(demi_wall, kind, "none plane cylinder profile segments mesh grains sieve "
-                  "revolved"),
-    DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
-    DEMI_ROW(demi_wall, inside, 'i'),
-    DEMI_ROW_ENUM(demi_wall, rule, "resolved fraction"), DEMI_ROW(demi_wall, radius, 'r'),
-    DEMI_ROW(demi_wall, share, 'r'), DEMI_ROW(demi_wall, vertex_count, 'i'),
-    DEMI_ROW(demi_wall, element_count, 'i'),
-    DEMI_ROW_AS(demi_wall, "position", first.position, 'v'),
-    DEMI_ROW_AS(demi_wall, "rotation", first.rotation, 'r'),
-    DEMI_ROW_ENUM(demi_wall, sieve.kind, "none wires bars square round slots reduced"),
-    DEMI_ROW(demi_wall, sieve.aperture, 'r'), DEMI_ROW(demi_wall, sieve.bar, 'r'),
-    DEMI_ROW(demi_wall, sieve.length, 'r'), DEMI_ROW(demi_wall, sieve.thickness, 'r'),
-    DEMI_ROW(demi_wall, sieve.lift, 'r'), DEMI_ROW(demi_wall, sieve.staggered, 'i'),
-    DEMI_ROW(demi_wall, sieve.radius, 'r'), DEMI_ROW(demi_wall, sieve.model, 'i'),
-    DEMI_ROW(demi_wall, sieve.clearance, 'r'),
-    DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
-    DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
-    DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'),
-    DEMI_ROW_ENUM(demi_wall, motion.kind,
-                  "fixed translating rotating oscillating user table"),
-    DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
-    DEMI_ROW_DIGEST("vertices", demi_digest_vertices),
-    DEMI_ROW_DIGEST("elements", demi_digest_elements),
-    DEMI_ROW_DIGEST("motion.table", demi_digest_table)};
-static const demi_scene_row demi_field_rows[] = {
-    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
-    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
-    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
-    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
-    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r')};
-
-/* Of the sizes that were copied: what is drawn from. */
-static uint64_t demi_digest_sizes(const void *item) {
-    const demi_feed *f = (const demi_feed *)item;
-    const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
-    return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
-}
-#define DEMI_FEED_ROW(field, type) DEMI_ROW_AS(demi_feed, #field, desc.field, type)
-static const demi_scene_row demi_feed_rows[] = {
-    DEMI_FEED_ROW(material, 'i'), DEMI_FEED_ROW(class_count, 'i'), DEMI_FEED_ROW(radius, 'r'),
-    DEMI_FEED_ROW(amount, 'd'), DEMI_FEED_ROW(limited, 'i'), DEMI_FEED_ROW(by_mass, 'i'),
-    DEMI_FEED_ROW(rate, 'd'), DEMI_FEED_ROW(start, 'd'), DEMI_FEED_ROW(end, 'd'),
-    DEMI_FEED_ROW(box, 'v'), DEMI_FEED_ROW(round, 'i'), DEMI_FEED_ROW(velocity, 'v'),
-    DEMI_FEED_ROW(spread, 'r'), DEMI_FEED_ROW(seed, 'u'), DEMI_FEED_ROW(materials, 'i'),
-    DEMI_FEED_ROW(shapes, 'i'), DEMI_ROW_NULL(demi_feed, desc.inside),
-    DEMI_ROW_DIGEST("sizes", demi_digest_sizes)};
-static const demi_scene_row demi_outlet_rows[] = {
-    DEMI_ROW(dem_outlet_desc, frame, 'i'), DEMI_ROW(dem_outlet_desc, box, 'v'),
-    DEMI_ROW(dem_outlet_desc, beyond, 'r'), DEMI_ROW(dem_outlet_desc, wanted_min, 'r'),
-    DEMI_ROW(dem_outlet_desc, wanted_max, 'r'), DEMI_ROW(dem_outlet_desc, class_count, 'i'),
-    DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
-    DEMI_ROW(dem_outlet_desc, keep, 'i')};
+    DEMI_ROW_DIGEST("pieces", demi_digest_pieces), DEMI_ROW_END};
 
 /* The parts of a scene. */
 typedef struct demi_scene_part {
     const char *name, *many;
-    const demi_scene_row *rows;
-    size_t row_count;
+    const demi_field_row *rows;
 } demi_scene_part;
-#define DEMI_SCENE_PART(name, many, rows) {name, many, rows, sizeof rows/sizeof *rows}
 enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
 static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
-    DEMI_SCENE_PART("", "descs", demi_desc_rows),
-    DEMI_SCENE_PART(" of material", "materials", demi_material_rows),
-    DEMI_SCENE_PART(" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows),
-    DEMI_SCENE_PART(" of shape", "shapes", demi_shape_fields),
-    DEMI_SCENE_PART(" of wall", "walls", demi_wall_rows),
-    DEMI_SCENE_PART(" of field", "fields", demi_field_rows),
-    DEMI_SCENE_PART(" of feed", "feeds", demi_feed_rows),
-    DEMI_SCENE_PART(" of outlet", "outlets", demi_outlet_rows)};
+    {"", "descs", demi_world_desc_rows},
+    {" of material", "materials", demi_material_rows},
+    {" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows},
+    {" of shape", "shapes", demi_shape_fields},
+    {" of wall", "walls", demi_wall_rows},
+    {" of field", "fields", demi_field_rows},
+    {" of feed", "feeds", demi_feed_rows},
+    {" of outlet", "outlets", demi_outlet_rows}};
 /* How many there are of each part, in the order of the rows. */
 static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[0] = 1;
@@ -267,7 +121,7 @@ static const void *demi_scene_item(const dem_world *w, int part, int i) {
     }
 }
 /* What a field is, as the file has it: r->size bytes. */
-static void demi_scene_row_value(const demi_scene_row *r, const void *item, void *out) {
+static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
     const char *at = (const char *)item + r->offset, *text;
     memset(out, 0, r->size);
     if (r->type == 'h') {
@@ -287,13 +141,13 @@ static void demi_visit_scene(const dem_world *w, demi_stream *s) {
     int32_t counts[DEMI_PARTS];
     char value[DEMI_ROW_MOST];
     int part, i;
-    size_t k;
+    const demi_field_row *r;
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = 0; i < counts[part]; i++)
-            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
-                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
-                demi_scene_row_value(r, demi_scene_item(w, part, i), value);
+            for (r = demi_scene_parts[part].rows; r->name; r++) {
+                if (r->how & DEMI_FREE) continue;
+                demi_row_value(r, demi_scene_item(w, part, i), value);
                 demi_visit(s, value, r->size);
             }
 }
@@ -483,13 +337,12 @@ static uint32_t demi_checkpoint_layout(void) {
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
                             sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
-    size_t e;
+    const demi_field_row *r;
     int k;
     for (k = 0; k < DEMI_PARTS; k++)
-        for (e = 0; e < demi_scene_parts[k].row_count; e++) {
-            const demi_scene_row *r = &demi_scene_parts[k].rows[e];
-            h = demi_hash(demi_hash(h, r->name, strlen(r->name)), &r->size, sizeof r->size);
-        }
+        for (r = demi_scene_parts[k].rows; r->name; r++)
+            if (!(r->how & DEMI_FREE))
+                h = demi_hash(demi_hash(h, r->name, strlen(r->name)), &r->size, sizeof r->size);
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const size_t row[] = {demi_body_arrays[k].item, (size_t)demi_body_arrays[k].who,
                               (size_t)demi_body_arrays[k].what};
@@ -592,7 +445,7 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     return DEM_OK;
 }
 /* Element k of a value, as a sentence has it; digits: of reals. */
-static void demi_scene_row_print(const demi_scene_row *r, const char *value, size_t k, int digits,
+static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
                                  char *out, size_t size) {
     const char *word = r->words;
     int32_t i = 0;
@@ -600,9 +453,10 @@ static void demi_scene_row_print(const demi_scene_row *r, const char *value, siz
     dem_real x;
     double d;
     switch (r->type) {
-    case 'i': case 'p':
+    case 'i': case 'e': case 'p':
         memcpy(&i, value + 4*k, sizeof i);
-        for (; word && i > 0; i--) word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
+            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
         if (word) { snprintf(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
         memcpy(&i, value + 4*k, sizeof i);
         snprintf(out, size, "%ld", (long)i);
@@ -622,13 +476,11 @@ static void demi_scene_row_print(const demi_scene_row *r, const char *value, siz
     }
 }
 /* A field that is not the same in a file and in the world. */
-static dem_result demi_scene_row_differs(dem_world *w, const char *path, const demi_scene_row *r,
+static dem_result demi_row_differs(dem_world *w, const char *path, const demi_field_row *r,
                                    const char *there, const char *here, const char *of) {
     static const char *const axes[] = {".x", ".y", ".z", ".lo.x", ".lo.y", ".lo.z", ".hi.x",
                                        ".hi.y", ".hi.z"};
-    const size_t item = r->type == 't' ? r->size : r->type == 'd' || r->type == 'u' ||
-        r->type == 'h' ? 8 : r->type == 'i' || r->type == 'p' ? 4 : sizeof(dem_real);
-    const size_t count = r->size/item;
+    const size_t item = demi_row_item(r), count = r->size/item;
     size_t k = 0;
     char a[48], b[48], which[24] = "";
     const char *advice = "create the world with the same desc, materials, pairs, shapes, walls, "
@@ -640,11 +492,11 @@ static dem_result demi_scene_row_differs(dem_world *w, const char *path, const d
                          r->name, of, advice);
     if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
     else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
-    demi_scene_row_print(r, there, k, 6, a, sizeof a);
-    demi_scene_row_print(r, here, k, 6, b, sizeof b);
+    demi_row_print(r, there, k, 6, a, sizeof a);
+    demi_row_print(r, here, k, 6, b, sizeof b);
     if (!strcmp(a, b)) {
-        demi_scene_row_print(r, there, k, 17, a, sizeof a);
-        demi_scene_row_print(r, here, k, 17, b, sizeof b);
+        demi_row_print(r, there, k, 17, a, sizeof a);
+        demi_row_print(r, here, k, 17, b, sizeof b);
     }
     return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another scene: "
                      "written with %s%s %s%s, this world has %s; %s", path, r->name, which, a, of,
@@ -657,7 +509,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
     int32_t counts[DEMI_PARTS];
     char here[DEMI_ROW_MOST], there[DEMI_ROW_MOST], of[80];
     int part, i, gone;
-    size_t k;
+    const demi_field_row *r;
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
@@ -668,12 +520,12 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                              (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = gone = 0; i < counts[part]; i++)
-            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
-                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
+            for (r = demi_scene_parts[part].rows; r->name; r++) {
                 const int n = w->material_count;
-                demi_scene_row_value(r, demi_scene_item(w, part, i), here);
+                if (r->how & DEMI_FREE) continue;
+                demi_row_value(r, demi_scene_item(w, part, i), here);
                 demi_visit(s, there, r->size);
-                if (part == DEMI_PART_WALLS && !k) {
+                if (part == DEMI_PART_WALLS && r == demi_wall_rows) {
                     int32_t kind;
                     memcpy(&kind, there, sizeof kind);
                     gone = kind == DEMI_WALL_NONE;
@@ -684,7 +536,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                                          "exists there; read before you remove it", path,
                                          (int)w->walls[i].id);
                 }
-                if (part == DEMI_PART_WALLS && k == 1 && gone) {
+                if (gone && r == demi_wall_rows + 1) {
                     dem_wall last;                      /* ids go on from the later of the two */
                     memcpy(&last.id, there, sizeof last.id);
                     if (last.id < 1 || demi_wall_place(last) != i)
@@ -700,7 +552,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                              i%n + 1);
                 else snprintf(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
                               i + 1);
-                return demi_scene_row_differs(w, path, r, there, here, of);
+                return demi_row_differs(w, path, r, there, here, of);
             }
     return DEM_OK;
 }

@@ -110,13 +110,7 @@ static int demi_sane(double x, double least) { return demi_finite_double(x) && x
 static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
-    const double positive[] =
-        {t->margin.skin, t->margin.gone, t->margin.walls_gone, t->margin.skin_auto,
-         t->margin.span, t->margin.age, t->margin.slack, t->margin.change, t->margin.last_change,
-         t->margin.creep, t->margin.reach, t->booked.speed_max, t->clock.assumed_speed,
-         t->clock.half_kick, (double)t->effects.radius_min, (double)t->effects.radius_max,
-        (double)t->clock.dt};
-    size_t i;
+    const demi_field_row *bad;
     int k;
     if (!demi_left(r, t->bodies.count, demi_body_size(t)) ||
         !demi_left(r, t->bodies.slot_count, 8) ||
@@ -157,17 +151,12 @@ static int demi_numbers_check(const demi_reader *r) {
         if (t->effects.species[k].material < 1 ||
             t->effects.species[k].material > t->material_count)
             return demi_lie(r, "table of species", -1);
-    for (i = 0; i < sizeof positive/sizeof *positive; i++)
-        if (!demi_sane(positive[i], 0))
-            return demi_lie(r, "time, time step, skin or other length of the neighbour list", -1);
-    if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_FARTHEST ||
-        !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_FARTHEST ||
-        t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
-        !demi_finite_double(t->clock.run_end) ||
-        !demi_sane((double)t->desc.dt, 0) ||
-            (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
-        (t->stage.dt_valid && t->bodies.count && t->desc.dt > 0 &&
-         (t->clock.dt < t->desc.dt || t->clock.dt > t->desc.dt)))
+    bad = demi_rows_bad(w, demi_number_rows, t, &k);
+    if (!bad) bad = demi_rows_bad(w, demi_booked_rows, &t->booked, &k);
+    if (bad) return demi_lie(r, bad->name, -1);
+    if (t->clock.since.steps > t->clock.steps || (t->stage.dt_valid && t->bodies.count &&
+         (!(t->clock.dt > 0) || (t->desc.dt > 0 && (t->clock.dt < t->desc.dt ||
+                                                    t->clock.dt > t->desc.dt)))))
         return demi_lie(r, "time or time step", -1);
     if (t->bodies.balance.present != (uint64_t)t->bodies.count ||
         t->bodies.balance.inserted != t->bodies.balance.present + t->bodies.balance.removed +

@@ -4,43 +4,53 @@
    the pair table says what holds between two; demi_coefficients turns a pair and two radii into the
    numbers a law multiplies with. Restitution comes first, damping is derived from it.
    --------------------------------------------------------------------------------------------- */
+/* Young's modulus and restitution may be 0 with impulses, and under the laws of these traits (kinds
+   0: all but Hertz's) if the other field, a stiffness, is set. Other fields (kinds < 0) act with
+   impulses alone. */
+static int demi_zero_law(const dem_world *w, const void *item, const demi_field_row *r) {
+    const int acts = r->kinds > 0 ? demi_normal_is(w, r->kinds) : !demi_normal_is(w, DEMI_HERTZIAN);
+    if (r->kinds < 0) return demi_impulsive(w) ? DEMI_0_TOO : DEMI_0_ALONE;
+    return demi_impulsive(w) ||
+        (acts && r->other && demi_row_read(r - r->other, item, 0) > 0) ? DEMI_0_TOO : DEMI_0_NOT;
+}
+static int demi_zero_unloading(const dem_world *w, const void *item, const demi_field_row *r) {
+    (void)w; (void)r;
+    return ((const dem_material_desc *)item)->stiffness > 0 ? DEMI_0_TOO : DEMI_0_ALONE;
+}
+#define DEMI_SI(field, how, unit) DEMI_LIMITED(DEMI_OF, field, 'r', how, DEMI_MOST, unit)
+#define DEMI_RATIO(field) DEMI_LIMITED(DEMI_OF, field, 'r', DEMI_FROM, DEMI_MOST_RATIO, "")
+#define DEMI_ROW_IF(field, how, most, unit, words, other, kinds, zero) \
+    DEMI_LIMITED_IF(DEMI_OF, field, 'r', how, most, unit, words, other, kinds, zero)
+#define DEMI_STATIC DEMI_ROW_IF(friction_static, DEMI_FROM, DEMI_MOST_RATIO, "", \
+    "where the default is 0 (the same as the sliding friction)", 1, 0, 0)
+#define DEMI_OF dem_material_desc
+static const demi_field_row demi_material_rows[] = {
+    DEMI_SI(density, DEMI_OVER, "kg/m3"),
+    DEMI_ROW_IF(young, DEMI_OVER, DEMI_MOST, "Pa", 0, -6, 0, demi_zero_law),
+    DEMI_LIMITED(DEMI_OF, poisson, 'r', DEMI_FROM | DEMI_UNDER, 0.5, ""),
+    DEMI_ROW_IF(restitution, DEMI_OVER, 1, "", 0, -6, DEMI_BRANCHED, demi_zero_law),
+    DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
+    DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio),
+    DEMI_ROW_IF(stiffness_unloading, DEMI_FROM, DEMI_MOST, "N/m", "which must then be set", 2, 0,
+                demi_zero_unloading), DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_ROW_END};
+#undef DEMI_OF
+#define DEMI_OF dem_pair
+#define DEMI_IMPULSES_ALONE(field, unit) DEMI_ROW_IF(field, DEMI_FROM, DEMI_MOST, unit, \
+    "and 0 where springs answer (desc.response)", 0, -1, demi_zero_law)
+static const demi_field_row demi_pair_rows[] = {
+    DEMI_ROW_IF(young_eff, DEMI_OVER, DEMI_MOST, "Pa", 0, -6, 0, demi_zero_law),
+    DEMI_SI(shear_eff, DEMI_FROM, "Pa"),
+    DEMI_ROW_IF(restitution, DEMI_OVER, 1, "", 0, 0, 0, demi_zero_law),
+    DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
+    DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
+    DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
+    DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
+    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    const int linear_k = !demi_normal_is(w, DEMI_HERTZIAN) && d->stiffness > 0;
-    /* restitution may then be left to the two stiffnesses */
-    const int two_k = demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0;
-    struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
-    int i;
-#define DEMI_GOOD(k, field, good, text) \
-    rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
-    DEMI_GOOD(0, density, d->density > 0, "> 0 kg/m3 (required)");
-    DEMI_GOOD(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) &&
-                                        DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
-    DEMI_GOOD(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
-    DEMI_GOOD(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
-                                        DEMI_ABS(d->restitution) <= 0)) &&
-             d->restitution <= 1, "> 0 and <= 1 (required; impulses: >= 0)");
-    DEMI_GOOD(4, friction, d->friction >= 0, ">= 0");
-    DEMI_GOOD(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
-             d->friction_static >= d->friction,
-             "0, or at least the sliding friction");
-    DEMI_GOOD(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
-    DEMI_GOOD(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
-    DEMI_GOOD(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
-    DEMI_GOOD(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
-             (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
-             "0, or at least the stiffness of loading, which must then be set (N/m)");
-    DEMI_GOOD(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (the magnitude of the "
-             "slope)");
-#undef DEMI_GOOD
-    for (i = 0; i < 11; i++) {
-        const double most = (i >= 4 && i <= 6) || i == 8 ? DEMI_MOST_RATIO : DEMI_MOST;
-        if (!rows[i].ok || !((double)rows[i].value <= most))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s, and at most %g; set "
-                             "it in the desc before the call", call, rows[i].name,
-                             (double)rows[i].value, rows[i].limit, most);
-    }
-    if (two_k && d->restitution > 0 && fabs((double)d->restitution*(double)d->restitution*
-        (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
+    if (demi_rows_check(w, call, demi_material_rows, d, "")) return DEM_ERROR_ARGUMENT;
+    if (demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0 && d->restitution > 0 &&
+        fabs((double)d->restitution*(double)d->restitution*
+             (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
                          "stiffness_unloading) is %g; give one of the two and leave the other 0",
                          call, (double)d->restitution,
@@ -210,45 +220,12 @@ DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_mate
 DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
     if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
     int i = 0, j = 0;
-    const char *bad = 0, *limit = "";
-    dem_real value = 0;
-    double most = 0;
+    char of[48];
     if (demi_material_index(w, "dem_pair_set", a, &i) ||
         demi_material_index(w, "dem_pair_set", b, &j))
         return DEM_ERROR_ARGUMENT;
-#define DEMI_BAD(field, good, highest, text) \
-    if (!bad && (!((double)p->field <= (highest)) || !(good))) { \
-        bad = #field; value = p->field; limit = text; most = highest; \
-    }
-    DEMI_BAD(young_eff, p->young_eff > 0 || (demi_impulsive(w) && p->young_eff >= 0) ||
-             (p->young_eff >= 0 && p->stiffness > 0 &&
-             !demi_normal_is(w, DEMI_HERTZIAN)), DEMI_MOST, "> 0 Pa")
-    DEMI_BAD(shear_eff, p->shear_eff >= 0, DEMI_MOST, ">= 0 Pa")
-    DEMI_BAD(restitution, (p->restitution > 0 || (demi_impulsive(w) && p->restitution >= 0)) &&
-             p->restitution <= 1, DEMI_MOST_RATIO, "> 0 (impulses: >= 0) and <= 1")
-    DEMI_BAD(friction, p->friction >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
-             p->friction_static >= p->friction,
-             DEMI_MOST_RATIO, "0 (the same as the sliding friction), or at least the sliding "
-                 "friction")
-    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(stiffness, p->stiffness >= 0, DEMI_MOST, ">= 0 N/m")
-    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, DEMI_MOST, ">= 0 N/m")
-    DEMI_BAD(normal_damping, p->normal_damping >= 0, DEMI_MOST, ">= 0 N s/m")
-#define DEMI_IMPULSES_ALONE(field, unit) \
-    DEMI_BAD(field, p->field >= 0 && (demi_impulsive(w) || !(p->field > 0)), DEMI_MOST, \
-             ">= 0" unit ", and 0 where springs answer (desc.response)")
-    DEMI_IMPULSES_ALONE(spinning_friction, "")
-    DEMI_IMPULSES_ALONE(cohesion, " N")
-    DEMI_IMPULSES_ALONE(compliance, " m/N")
-#undef DEMI_IMPULSES_ALONE
-#undef DEMI_BAD
-    if (bad)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
-                         "must be %s, and at most %g; start from dem_pair_get and change only "
-                         "what differs", bad, i + 1, j + 1, (double)value, limit, most);
+    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
+    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of)) return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
     w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");

@@ -12,12 +12,34 @@ DEM_API const char *dem_result_name_get(dem_result r) {
     return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
 }
 
-/* Why a desc's choices for how contacts answer, and from which gap on, are refused, or "". */
-static const char *demi_answer_error(const dem_world_desc *d) {
-    if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
-        !demi_finite(d->law_range_radii))
-        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; set "
-            "both to 0 to call the law only in contact";
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
+    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
+        "began as DEM_WORLD_DESC";
+    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
+    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
+    int k;
+    const demi_field_row *bad = demi_rows_bad(0, demi_world_desc_rows, d, &k);
+    if (bad) return bad->refusal;
+    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
+        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
+        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
+        return "dem_world_create: a contact law is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
+    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
+        (int)d->search >= DEMI_SEARCHES || (int)d->cone < 0 || d->cone > DEM_CONE_CONVEX ||
+        (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
+        return "dem_world_create: integrator, search, cone or solver is not one of the enum "
+            "values; start from DEM_WORLD_DESC";
+    for (k = 0; k < 3; k++)
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN &&
+            (!(hi[k] > lo[k]) || !demi_bounded((double)lo[k]) || !demi_bounded((double)hi[k])))
+            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
+                "below domain.hi there, or one is beyond 1e15 m; set domain";
+    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
+        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
+            "= 0: leave it open";
+    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
+        "library choose";
     if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
                     d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
@@ -26,55 +48,15 @@ static const char *demi_answer_error(const dem_world_desc *d) {
         return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
             "the rate at which your law changes the numbers of bodies: set all four, or leave it "
             "null";
-    if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
-        d->cone > DEM_CONE_CONVEX || (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
-        return "dem_world_create: response, cone or solver is not one of the enum values; start "
-            "from DEM_WORLD_DESC";
-    if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
-        return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
-            "library choose";
     if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
             "no contact time to choose it from: set a dt in which grains move by less than a "
             "tenth of their radius, such as 1e-3 s";
-    if (d->response == DEM_RESPONSE_IMPULSES && (d->law ||
-                                                 (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
-                                                 d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
+    if (d->response == DEM_RESPONSE_IMPULSES &&
+        (d->law || (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
+                    d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but law or integrator is "
             "set; impulses use neither: leave both 0";
-    return "";
-}
-DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
-    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
-        "began as DEM_WORLD_DESC";
-    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
-    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
-    int k;
-    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or above 1e15 "
-        "m/s2; check how it was computed";
-    for (k = 0; k < 3; k++) {
-        if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
-            return "dem_world_create: a boundary is not a DEM_BOUNDARY_ value; start from "
-                "DEM_WORLD_DESC";
-        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) ||
-                                                    !demi_bounded((double)lo[k]) ||
-                                                    !demi_bounded((double)hi[k])))
-            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
-                "below domain.hi there, or one is beyond 1e15 m; set domain";
-    }
-    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
-        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
-            "= 0: leave it open";
-    if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
-        "must be >= 0 m; 0 means 1 m";
-    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
-        "library choose";
-    if (!(d->impact_speed >= 0) || !((double)d->impact_speed <= DEMI_FARTHEST))
-        return "dem_world_create: impact_speed must be 0 to 1e15 m/s";
-    if (!(d->law_stiffness >= 0) || !((double)d->law_stiffness <= DEMI_MOST))
-        return "dem_world_create: law_stiffness must be 0 to 1e30 N/m; 0 means the stiffness of "
-            "the built-in law";
-    if (*demi_answer_error(d)) return demi_answer_error(d);
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
             "digits and _, separated by one space, such as \"temperature charge\"; null means none";
@@ -88,37 +70,9 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 computes some float expressions "
         "wrongly; compile with gcc or clang, or leave DEM_REAL at double";
 #endif
-    if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
-        "choose, below 0 means no skin";
-    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64, "
-        "where 0 means as many as OpenMP offers";
-    if (d->law_memory < 0 || d->law_memory > DEM_LAW_MEMORY) return "dem_world_create: law_memory "
-        "must be 0 to 16 reals";
     if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
         return "dem_world_create: law_vectors must be 0 to law_memory/3; increase law_memory, "
             "which counts reals";
-    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
-        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
-        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
-        return "dem_world_create: a contact law is not one of the enum values; start from "
-            "DEM_WORLD_DESC";
-    if ((int)d->tension < 0 || d->tension > DEM_TENSION_COMPENSATED || (int)d->convention < 0 ||
-        d->convention > DEM_CONVENTION_MILL)
-        return "dem_world_create: tension or convention is not one of the enum values; start from "
-               "DEM_WORLD_DESC";
-    if ((int)d->friction_load < 0 || d->friction_load > DEM_LOAD_MAGNITUDE || (int)d->slider < 0 ||
-        d->slider > DEM_SLIDER_REMAINDER)
-        return "dem_world_create: friction_load or slider is not one of the enum values; start "
-               "from DEM_WORLD_DESC";
-    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
-        (int)d->search >= DEMI_SEARCHES)
-        return "dem_world_create: integrator or search is not one of the enum values; start from "
-            "DEM_WORLD_DESC";
-    if ((int)d->rotation < 0 || (int)d->rotation >= DEMI_ROTATIONS ||
-        (int)d->ellipsoid_overlap < 0 || d->ellipsoid_overlap > DEM_OVERLAP_NORMAL ||
-        (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_CLUSTER_CONTACTS_SEPARATE)
-        return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is not one of "
-            "the enum values; start from DEM_WORLD_DESC";
     if (!d->allocator.alloc_fn != !d->allocator.free_fn)
         return "dem_world_create: the allocator has only one of alloc_fn and free_fn; give both "
             "or neither";

@@ -219,6 +219,13 @@ static void demi_fields_sample(dem_world *w) {
     }
 }
 
+/* Checked in dem_field_add. */
+static const demi_field_row demi_field_rows[] = {
+    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
+    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
+    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
+    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;

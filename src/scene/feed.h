@@ -99,6 +99,27 @@ static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc
     m = demi_shape_index(w, call, d->shapes[k]);
     return m < 0 || demi_walls_strange(w, call, m);
 }
+/* Of the sizes that were copied: what is drawn from. */
+static uint64_t demi_digest_sizes(const void *item) {
+    const demi_feed *f = (const demi_feed *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
+    return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
+}
+/* Rows of the desc, with which a demi_feed begins; `inside` keeps its name in files. */
+#define DEMI_FED(field, type) DEMI_ROW(dem_feed_desc, field, type)
+static const demi_field_row demi_feed_rows[] = {DEMI_FED(material, 'i'),
+    {"class_count", 0, DEMI_WHERE(dem_feed_desc, class_count), 'i', 0, DEMI_OVER, DEM_CLASSES, "",
+     0, 0, 0, "set it to the number of entries of radius and amount"}, DEMI_FED(radius, 'r'),
+    DEMI_FED(amount, 'd'), DEMI_FED(limited, 'i'), DEMI_FED(by_mass, 'i'),
+    DEMI_LIMITED(dem_feed_desc, rate, 'd', DEMI_FROM | DEMI_UNDER, 1e15, "1/s"),
+    DEMI_LIMITED(dem_feed_desc, start, 'd', DEMI_FROM, DBL_MAX, "s"),
+    DEMI_LIMITED_IF(dem_feed_desc, end, 'd', DEMI_FROM, DBL_MAX, "s", 0, 1, 0, 0),
+    DEMI_FED(box, 'v'), DEMI_FED(round, 'i'),
+    DEMI_LIMITED(dem_feed_desc, velocity, 'v', DEMI_ANY, DEMI_FARTHEST, "m/s"),
+    DEMI_LIMITED(dem_feed_desc, spread, 'r', DEMI_FROM, DEMI_FARTHEST, "m/s"), DEMI_FED(seed, 'u'),
+    DEMI_FED(materials, 'i'), DEMI_FED(shapes, 'i'), DEMI_ROW_NULL(demi_feed, desc.inside),
+    DEMI_ROW_DIGEST("sizes", demi_digest_sizes), DEMI_ROW_FREE(dem_feed_desc, inside_user),
+    DEMI_ROW_FREE(dem_feed_desc, sizes), DEMI_ROW_END};
 DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
     const char *call = "dem_feed_add";
@@ -107,12 +128,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     int k, m = 0, shaped = 0;
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
-    if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required); set "
-                  "it to the number of entries of radius and amount", call, d->class_count,
-                  (int)DEM_CLASSES);
-        return id;
-    }
+    if (demi_rows_check(w, call, demi_feed_rows, d, "")) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
@@ -137,16 +153,9 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
             feed.limit[k] = (uint64_t)count;
         }
     }
-    if (!demi_finite_double(d->rate) || !demi_finite_double(d->start) ||
-        !demi_finite_double(d->end) || !(d->rate >= 0) || !(d->rate < 1e15) ||
-        !(d->start >= 0) || !(d->end >= 0) || !(d->spread >= 0) ||
-        !((double)d->spread <= DEMI_FARTHEST) || !demi_place(d->velocity) ||
-        (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s, "
-                  "velocity up to %g m/s; all must be finite and at most %g, all but the velocity "
-                  ">= 0, the end 0 or after the start; a feed of all grains at once (rate 0) "
-                  "needs `limited`, or it never ends", call, d->rate, d->start, d->end,
-                  (double)d->spread, demi_size(d->velocity), DEMI_FARTHEST);
+    if (!(d->rate > 0) && !d->limited) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is 0, which means all grains at once, and such "
+                  "a feed needs `limited`, or it never ends; set limited or a rate", call);
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
@@ -365,24 +374,28 @@ DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state 
     return DEM_OK;
 }
 
+static const demi_field_row demi_outlet_rows[] = {
+    DEMI_ROW(dem_outlet_desc, frame, 'i'), DEMI_ROW(dem_outlet_desc, box, 'v'),
+    DEMI_LIMITED(dem_outlet_desc, beyond, 'r', DEMI_FROM, DBL_MAX, "m"),
+    DEMI_LIMITED(dem_outlet_desc, wanted_min, 'r', DEMI_FROM, DBL_MAX, "m"),
+    DEMI_LIMITED(dem_outlet_desc, wanted_max, 'r', DEMI_FROM, DBL_MAX, "m"),
+    DEMI_LIMITED(dem_outlet_desc, class_count, 'i', DEMI_FROM, DEM_CLASSES, ""),
+    DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
+    DEMI_ROW(dem_outlet_desc, keep, 'i'), DEMI_ROW_END};
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
     const char *call = "dem_outlet_add";
     demi_outlet outlet;
     dem_outlet id;
-    int kept = 0, k;
-    int bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
-        !demi_finite(d->beyond) || !demi_finite(d->wanted_min) || !demi_finite(d->wanted_max) ||
-        !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
-        (d->wanted_max > 0 && !(d->wanted_max > d->wanted_min));
+    int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
+    if (demi_rows_check(w, call, demi_outlet_rows, d, "")) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, beyond is %g m, wanted is %g to "
-                  "%g m; there must be 0 to %d classes with ascending radii, lengths must be "
-                  ">= 0, and wanted_min below wanted_max", call, d->class_count, (double)d->beyond,
-                  (double)d->wanted_min, (double)d->wanted_max, (int)DEM_CLASSES);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wanted is %g to %g m, and there are %d classes; "
+                  "wanted_min must be below wanted_max, and the radii of classes > 0, finite and "
+                  "ascending", call, (double)d->wanted_min, (double)d->wanted_max, d->class_count);
         return id;
     }
     if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;

@@ -57,25 +57,16 @@ static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_worl
     }
     return 1;
 }
-/* What an outlet has let out, of which nothing is known yet. */
-static void demi_outlet_clear(demi_outlet *o) {
-    const double since = o->state.since, last = o->state.last;
-    memset(&o->state, 0, sizeof o->state);
-    o->state.since = since;
-    o->state.last = last;
-}
-/* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
-static void demi_slab_sums_clear(dem_world *w) {
+/* Sums over time begin in slab 0 with the world's, elsewhere at 0; collecting begins at 0, too.
+   booked: uses of the fields of demi_booked that are cleared. */
+static void demi_slab_sums_clear(dem_world *w, int booked) {
     int i;
-    memset(w->booked.energy, 0, sizeof w->booked.energy);
-    w->booked.removed = w->booked.throughput = w->booked.inserted = 0;
+    demi_rows_clear(demi_booked_rows, &w->booked, booked);
     w->bodies.balance.left = 0;
-    for (i = 0; i < w->wall_count; i++) {
-        const double time = w->walls[i].loads.time;
-        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
-        w->walls[i].loads.time = time;
-    }
-    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
+    for (i = 0; i < w->wall_count; i++)
+        demi_rows_clear(demi_loads_rows, &w->walls[i].loads, DEMI_SUM | DEMI_EITHER);
+    for (i = 0; i < w->outlet_count; i++)
+        demi_rows_clear(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, DEMI_SUM);
 }
 /* Every slab has all outlets: they stand where they stand, and take what is in that slab. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
@@ -119,8 +110,6 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     }
     w = dem_world_create(&desc);
     if (!w) return 0;
-    w->desc.gravity = from->desc.gravity;       /* of now: dem_world_gravity_set, */
-    w->desc.dt = from->desc.dt;                 /* and dem_world_dt_set */
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -142,28 +131,11 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
                       slots*sizeof(uint32_t));
-    w->clock.time = from->clock.time;           w->clock.steps =
-        from->clock.steps;       w->clock.rebuilds = from->clock.rebuilds;
-    w->clock.since = from->clock.since;
-    w->clock.last_rebuild = from->clock.steps;  w->margin.skin_auto = from->margin.skin_auto;
-    w->margin.skin = from->margin.skin;           w->clock.dt =
-        from->clock.dt;             w->stage.dt_valid = from->stage.dt_valid;
-    w->wall_fastest = from->wall_fastest;                         w->margin.span =
-        from->margin.span;
-    w->margin.slack = from->margin.slack;
-    w->clock.assumed_speed = from->clock.assumed_speed;                       w->stage.primed =
-        from->stage.primed;
-    w->booked.overlap_max =
-        from->booked.overlap_max;                           w->booked.speed_max =
-            from->booked.speed_max;
-    w->bodies.balance = from->bodies.balance;     w->booked.removed = from->booked.removed;
-    w->booked.inserted = from->booked.inserted;
-    w->booked.throughput =
-        from->booked.throughput;                             w->clock.half_kick =
-            from->clock.half_kick;
+    demi_rows_copy(demi_number_rows, w, from, DEMI_TO_SLAB);
+    demi_rows_copy(demi_booked_rows, &w->booked, &from->booked, DEMI_TO_SLAB);
+    w->clock.last_rebuild = from->clock.steps;
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
-    memcpy(w->booked.energy, from->booked.energy, sizeof w->booked.energy);
-    if (index > 0) demi_slab_sums_clear(w);
+    if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     return w;
 }
 /* Has it got all it was to get? */
@@ -266,14 +238,8 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->material_count = w->material_count;
     h->wall_count = w->wall_count;
     memcpy(h->materials, w->materials, sizeof h->materials);
-    h->clock.time = w->clock.time;           h->clock.steps =
-        w->clock.steps;         h->clock.rebuilds = w->clock.rebuilds;
-    h->clock.since = w->clock.since;         h->bodies.balance = w->bodies.balance;
-    h->clock.last_rebuild = w->clock.steps;  h->margin.skin_auto =
-        w->margin.skin_auto; h->margin.skin = w->margin.skin;
-    h->clock.dt = w->clock.dt;               h->stage.dt_valid =
-        w->stage.dt_valid;   h->stage.primed = w->stage.primed;
-    h->clock.assumed_speed = w->clock.assumed_speed;
+    demi_rows_copy(demi_number_rows, h, w, DEMI_TO_HEAD);
+    h->clock.last_rebuild = w->clock.steps;
     h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
@@ -375,8 +341,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 typedef struct demi_slab_sums {
     int32_t index, walls;
     uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
-    double energy[DEMI_ENERGIES], removed, inserted, throughput, overlap_max;
-    uint64_t met[DEMI_MATERIALS];
+    demi_booked booked;
 } demi_slab_sums;
 
 /* All that one slab holds, as one message. */
@@ -390,13 +355,8 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.index = b->index;
     sums.walls = w->wall_count;
     sums.left = w->bodies.balance.left;
-    memcpy(sums.energy, w->booked.energy, sizeof sums.energy);
-    sums.removed = w->booked.removed;
-    sums.inserted = w->booked.inserted;
-    sums.throughput = w->booked.throughput;
-    sums.overlap_max = w->booked.overlap_max;
-    memcpy(sums.met, w->booked.met, sizeof sums.met);
-    if (w->stage.list_valid) demi_met_look(w, sums.met);
+    sums.booked = w->booked;
+    if (w->stage.list_valid) demi_met_look(w, sums.booked.met);
     ok = demi_message_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
         ok = demi_message_put(h, out, &w->walls[i].loads, sizeof(dem_wall_loads));
@@ -453,54 +413,17 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
     }
     return 0;
 }
-/* What one slab's outlet has let out, on top of the others'. */
-static const char *demi_outlet_add(demi_outlet *o, const char *from) {
-    dem_outlet_state *to = &o->state, part;
-    int k;
-    demi_unpack(&from, &part, sizeof part);
-    for (k = 0; k < DEM_CLASSES; k++) {
-        to->count[k] += part.count[k];
-        to->mass[k] += part.mass[k];
-        to->back[k] += part.back[k];
-        to->back_mass[k] += part.back_mass[k];
-    }
-    to->back_total += part.back_total;
-    to->back_total_mass += part.back_total_mass;
-    to->total += part.total;
-    to->total_mass += part.total_mass;
-    to->sorted += part.sorted;
-    to->sorted_mass += part.sorted_mass;
-    to->gangue += part.gangue;
-    to->gangue_mass += part.gangue_mass;
-    to->last = DEMI_MAX(to->last, part.last);
-    return from;
-}
 /* Adds a slab's sums to the world's, which were cleared before. Answers where its message
    begins. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
-    int i, k;
-    for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
-    w->booked.removed += sums->removed;
-    w->booked.inserted += sums->inserted;
-    w->booked.throughput += sums->throughput;
+    int i;
+    demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
     w->bodies.balance.left += sums->left;
-    w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
-    for (i = 0; i < DEMI_MATERIALS; i++) w->booked.met[i] |= sums->met[i];
     for (i = 0; i < sums->walls; i++) {
-        dem_wall_loads *c = &w->walls[i].loads, part;
+        dem_wall_loads part;
         demi_unpack(&from, &part, sizeof part);
-        c->force = demi_add(c->force, part.force);
-        c->torque = demi_add(c->torque, part.torque);
-        c->torque_axial += part.torque_axial;
-        c->power += part.power;
-        c->contacts += part.contacts;
-        c->touched |= part.touched;
-        for (k = 0; k < 3; k++) c->impulse[k] += part.impulse[k];
-        c->torque_impulse += part.torque_impulse;
-        c->work += part.work;
-        for (k = 0; k < DEM_BODY_REALS; k++) c->rate[k] += part.rate[k];
-        for (k = 0; k < DEM_BODY_REALS; k++) c->gained[k] += part.gained[k];
-        c->time = part.time;
+        demi_rows_add(demi_loads_rows, &w->walls[i].loads, &part);
+        w->walls[i].loads.time = part.time;
     }
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
@@ -511,7 +434,11 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
             f->sums[n] += part;
         }
     }
-    for (i = 0; i < w->outlet_count; i++) from = demi_outlet_add(demi_outlet_at(w, i), from);
+    for (i = 0; i < w->outlet_count; i++) {
+        dem_outlet_state part;
+        demi_unpack(&from, &part, sizeof part);
+        demi_rows_add(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, &part);
+    }
     return from;
 }
 /* From a slab's sums to its grains. */
@@ -526,31 +453,15 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
-    w->desc.gravity = h->desc.gravity;       w->desc.dt = h->desc.dt;
-    w->clock.time = h->clock.time;           w->clock.steps =
-        h->clock.steps;         w->clock.rebuilds = h->clock.rebuilds;
-    w->clock.since = h->clock.since;
-    w->clock.last_rebuild = h->clock.last_rebuild;                        w->margin.skin_auto =
-        h->margin.skin_auto;
+    demi_rows_copy(demi_number_rows, w, h, DEMI_HEADS);
+    demi_rows_copy(demi_number_rows, w, from, DEMI_FIRSTS);
+    demi_rows_copy(demi_booked_rows, &w->booked, &h->booked, DEMI_HEADS);
     if (s->count == 1) w->margin.skin_auto = from->margin.skin_auto;
-    w->margin.skin = h->margin.skin;           w->clock.dt =
-        h->clock.dt;               w->stage.dt_valid = h->stage.dt_valid;
-    w->clock.assumed_speed = h->clock.assumed_speed;                      w->stage.primed =
-        h->stage.primed;
-    w->booked.speed_max = h->booked.speed_max; w->stage.moved =
-        h->stage.moved;         w->stage.synced = from->stage.synced;
-    w->clock.half_kick = from->clock.half_kick;
-    w->margin.gone = h->margin.gone;         w->margin.walls_gone = h->margin.walls_gone;
-    w->stage.forces_valid = h->stage.forces_valid;
-    w->bodies.balance.left = 0;
-    w->booked.removed = w->booked.inserted = w->booked.throughput = w->booked.overlap_max = 0;
-    memset(w->booked.energy, 0, sizeof w->booked.energy);
+    demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
     for (i = 0; i < w->wall_count; i++) {
-        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].mid = from->walls[i].mid;
     }
-    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_desc desc = w->feeds[i].desc;           /* pointers are the world's own */
         w->feeds[i] = h->feeds[i];
@@ -717,12 +628,7 @@ DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
         w->booked.overlap_max = 0;
-        for (i = 0; i < w->wall_count; i++) {
-            dem_wall_loads *c = &w->walls[i].loads;
-            memset(c->impulse, 0, sizeof c->impulse);
-            memset(c->gained, 0, sizeof c->gained);
-            c->torque_impulse = c->work = c->time = 0;
-        }
+        for (i = 0; i < w->wall_count; i++) demi_loads_reset(&w->walls[i].loads);
     }
 }
 

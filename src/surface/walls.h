@@ -478,44 +478,73 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int co
     return demi_wall_adopt(w, "dem_wall_grains_add", &wall);
 }
 
+static uint64_t demi_digest_vertices(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->vertices, w->vertices
+                     ? (size_t)w->vertex_count*3*sizeof(dem_real) : 0);
+}
+static uint64_t demi_digest_elements(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
+                     sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
+}
+static uint64_t demi_digest_table(const void *item) {
+    const dem_motion *m = &((const demi_wall *)item)->motion;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
+        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
+        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
+        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
+    }
+    return h;
+}
+/* A field that only some kinds of sieves have. */
+static int demi_zero_sieve(const dem_world *w, const void *item, const demi_field_row *r) {
+    (void)w;
+    return r->kinds >> ((const demi_wall *)item)->sieve.kind & 1 ? DEMI_0_TOO : DEMI_0_ALONE;
+}
+#define DEMI_ROW_SIEVE(field, type, how, most, unit, other, which, kinds) DEMI_LIMITED_IF( \
+    demi_wall, sieve.field, type, how, most, unit, "and 0 except for " which, other, kinds, \
+    demi_zero_sieve)
+/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
+static const demi_field_row demi_wall_rows[] = {
+    DEMI_ROW_ENUM(demi_wall, kind, 0, 0, "none plane cylinder profile segments mesh grains sieve "
+                  "revolved"), DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
+    DEMI_ROW(demi_wall, inside, 'i'), DEMI_ROW_ENUM(demi_wall, rule, 0, 0, "resolved fraction"),
+    DEMI_ROW(demi_wall, radius, 'r'), DEMI_ROW(demi_wall, share, 'r'),
+    DEMI_ROW(demi_wall, vertex_count, 'i'), DEMI_ROW(demi_wall, element_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "position", first.position, 'v'),
+    DEMI_ROW_AS(demi_wall, "rotation", first.rotation, 'r'),
+    DEMI_ROW_ENUM(demi_wall, sieve.kind, DEMI_OVER, 0,
+                  "none wires bars square round slots reduced"),
+    DEMI_LIMITED(demi_wall, sieve.aperture, 'r', DEMI_OVER, DEMI_FARTHEST, "m"),
+    DEMI_LIMITED(demi_wall, sieve.bar, 'r', DEMI_OVER, DEMI_FARTHEST, "m"),
+    DEMI_ROW_SIEVE(length, 'r', DEMI_FROM, DEMI_FARTHEST, "m", 2, "slots", 1 << DEM_SIEVE_SLOTS),
+    DEMI_ROW_SIEVE(thickness, 'r', DEMI_FROM, DEMI_FARTHEST, "m", 0, "plates",
+                   1 << DEM_SIEVE_SQUARE | 1 << DEM_SIEVE_ROUND | 1 << DEM_SIEVE_SLOTS),
+    DEMI_ROW_SIEVE(lift, 'r', DEMI_FROM, DEMI_FARTHEST, "m", 0, "wires", 1 << DEM_SIEVE_WIRES),
+    DEMI_ROW_SIEVE(staggered, 'i', DEMI_ANY, INT_MAX, "", 0, "round holes", 1 << DEM_SIEVE_ROUND),
+    DEMI_LIMITED(demi_wall, sieve.radius, 'r', DEMI_FROM, DEMI_FARTHEST, "m"),
+    DEMI_ROW_SIEVE(model, 'i', DEMI_FROM, 2, "", 0, "reduced holes", 1 << DEM_SIEVE_REDUCED),
+    DEMI_ROW_SIEVE(clearance, 'r', DEMI_FROM, 1, "", 0, "reduced holes", 1 << DEM_SIEVE_REDUCED),
+    DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
+    DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'), DEMI_ROW_ENUM(demi_wall, motion.kind, 0, 0,
+                  "fixed translating rotating oscillating user table"),
+    DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
+    DEMI_ROW_DIGEST("vertices", demi_digest_vertices), DEMI_ROW_DIGEST("elements",
+    demi_digest_elements), DEMI_ROW_DIGEST("motion.table", demi_digest_table), DEMI_ROW_END};
 DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
     if (demi_null(w, "dem_wall_sieve_add", d, "desc")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
-    const char *bad = 0, *limit = "";
-    dem_real value = 0;
     dem_vec3 n = d->normal, t = d->along;
     dem_real *R = wall.home.rotation;
-    const int plate = d->kind == DEM_SIEVE_SQUARE || d->kind == DEM_SIEVE_ROUND ||
-                      d->kind == DEM_SIEVE_SLOTS;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
-#define DEMI_BAD(field, good, text) \
-    if (!bad && (!demi_bounded((double)d->field) || !(good))) { \
-        bad = #field; value = (dem_real)d->field; limit = text; \
-    }
-    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value")
-    DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
-    DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
-    DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
-             d->length >= d->aperture), "0, or for slots at least the aperture (m)")
-    DEMI_BAD(thickness, DEMI_ABS(d->thickness) <= 0 || (plate && d->thickness > 0),
-             ">= 0 m, and 0 except for plates")
-    DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
-             ">= 0 m, and 0 except for a weave of wires")
-    DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
-    DEMI_BAD(staggered, !d->staggered || d->kind == DEM_SIEVE_ROUND, "0 except for round holes")
-    DEMI_BAD(model, !d->model || (d->kind == DEM_SIEVE_REDUCED && d->model > 0 && d->model <= 2),
-             "0, or for reduced holes 1 or 2")
-    DEMI_BAD(clearance, DEMI_ABS(d->clearance) <= 0 || (d->kind == DEM_SIEVE_REDUCED &&
-             d->clearance > 0 && d->clearance <= 1), "0, or for reduced holes up to 1")
-#undef DEMI_BAD
-    if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: %s is %g, must be %s, at most %g; "
-                  "start from DEM_SIEVE_DESC and set only what differs", bad, (double)value, limit,
-                  DEMI_FARTHEST);
-        return none;
-    }
+    wall.sieve = *d;
+    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "")) return none;
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
                   "finite, or point is farther than %g m from the origin; check how it was "
@@ -535,7 +564,6 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     R[2] = n.x; R[5] = n.y; R[8] = n.z;
     t = demi_cross(n, t);
     R[1] = t.x; R[4] = t.y; R[7] = t.z;
-    wall.sieve = *d;
     wall.element_count = 1;
     wall.radius = d->radius;
     wall.home.position = wall.motion.point = d->point;
@@ -713,14 +741,15 @@ DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_w
     *loads = world->walls[i].loads;
     return DEM_OK;
 }
+static void demi_loads_reset(dem_wall_loads *loads) {
+    memset(loads->impulse, 0, sizeof loads->impulse);
+    memset(loads->gained, 0, sizeof loads->gained);
+    loads->torque_impulse = loads->work = loads->time = 0;
+}
 DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
     if (demi_null(w, "dem_wall_loads_reset", w, "world")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
-    demi_wall *wall;
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    wall = &w->walls[i];
-    memset(wall->loads.impulse, 0, sizeof wall->loads.impulse);
-    memset(wall->loads.gained, 0, sizeof wall->loads.gained);
-    wall->loads.torque_impulse = wall->loads.work = wall->loads.time = 0;
+    demi_loads_reset(&w->walls[i].loads);
     return DEM_OK;
 }
