@@ -114,15 +114,16 @@ static inline demi_part scene_part(const dem_world *world, dem_shape shape, dem_
 static inline double scene_sampled(const demi_solid *s, double (*off)(const double *x)) {
     const int32_t *loops = s->rim + s->faces + 1;
     double least = 1e300;
-    int f, i, j, k, e;
+    int f, i, j, e;
     for (f = 0; f < s->faces; f++)
         for (e = s->rim[f] + 1; e + 1 < s->rim[f + 1]; e++)
             for (i = 0; i <= 60; i++)
                 for (j = 0; j <= 60 - i; j++) {
+                    demi_d3 sum = demi_d3_scale(s->corner[loops[s->rim[f]]], i);
                     double x[3];
-                    for (k = 0; k < 3; k++)
-                        x[k] = (s->corner[loops[s->rim[f]]][k]*i + s->corner[loops[e]][k]*j +
-                                s->corner[loops[e + 1]][k]*(60 - i - j))/60;
+                    sum = demi_d3_plus(sum, j, s->corner[loops[e]]);
+                    sum = demi_d3_plus(sum, 60 - i - j, s->corner[loops[e + 1]]);
+                    demi_d3_put(x, demi_d3_over(sum, 60));
                     least = fmin(least, off(x));
                 }
     return least;

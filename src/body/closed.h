@@ -179,15 +179,19 @@ static int demi_closed_find(dem_world *w, const dem_mesh *mesh, demi_closed *c) 
     demi_free(w, turned);
     return 1;
 }
-static void demi_mesh_corner(const dem_mesh *mesh, int triangle, int k, double *x) {
-    const dem_vec3 v = demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]);
-    x[0] = (double)v.x; x[1] = (double)v.y; x[2] = (double)v.z;
+static demi_d3 demi_mesh_corner(const dem_mesh *mesh, int triangle, int k) {
+    return demi_d3_of(demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]));
+}
+static void demi_mesh_triangle(const dem_mesh *mesh, int triangle, demi_d3 *corner) {
+    int k;
+    for (k = 0; k < 3; k++) corner[k] = demi_mesh_corner(mesh, triangle, k);
 }
 /* Shells that are to be a body, outward ones with a positive volume. */
 typedef struct demi_shells {
     int count;
     int32_t *order, *start;        /* triangles by shell; count + 1 */
-    double *volume, *box;          /* m3, as written; m: 3 lowest and 3 highest coordinates */
+    double *volume;                /* m3, as written */
+    demi_d3 *box;                  /* m: lowest and highest coordinates of each */
     int32_t *around, *depth;       /* the innermost shell around it, -1: none; how many are */
 } demi_shells;
 static void demi_shells_free(dem_world *w, demi_shells *s) {
@@ -223,44 +227,40 @@ static int demi_closed_loose(dem_world *w, demi_closed *c, int *first_side) {
 static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
     const int n = c->mesh->triangle_count;
     int32_t *number = (int32_t *)demi_alloc(w, (size_t)n, sizeof *number);
-    int i, k, turned;
+    int i, k, e, turned;
     s->count = c->shells;
     s->order = (int32_t *)demi_alloc(w, (size_t)n, sizeof *s->order);
     s->start = (int32_t *)demi_alloc(w, (size_t)c->shells + 2, sizeof *s->start);
     s->volume = (double *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->volume);
-    s->box = (double *)demi_alloc(w, 6*((size_t)c->shells + 1), sizeof *s->box);
+    s->box = (demi_d3 *)demi_alloc(w, 2*((size_t)c->shells + 1), sizeof *s->box);
     s->around = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->around);
     s->depth = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->depth);
     if (!number || !s->order || !s->start || !s->volume || !s->box || !s->around || !s->depth) {
         demi_free(w, number);
         return 0;
     }
-    for (k = 0; k < 6*s->count; k++) s->box[k] = k%6 < 3 ? 1e300 : -1e300;
+    for (k = 0; k < 2*s->count; k++) {
+        const double far = k & 1 ? -1e300 : 1e300;
+        s->box[k] = demi_d(far, far, far);
+    }
     for (i = k = 0; i < n; i++)
         if (c->sign[i] && demi_closed_shell(c, i, &turned) == i) number[i] = k++;
     for (i = 0; i < n; i++)
         if (c->sign[i]) s->start[number[demi_closed_shell(c, i, &turned)] + 2]++;
     for (k = 2; k <= s->count; k++) s->start[k] += s->start[k - 1];
     for (i = 0; i < n; i++) {
-        double p[3], q[3], r[3], o[3];
-        int e;
+        demi_d3 x[3], o;
         if (!c->sign[i]) continue;
         k = number[demi_closed_shell(c, i, &turned)];
         s->order[s->start[k + 1]++] = i;
-        demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0, o);  /* near: round-off */
-        demi_mesh_corner(c->mesh, i, 0, p);
-        demi_mesh_corner(c->mesh, i, 1, q);
-        demi_mesh_corner(c->mesh, i, 2, r);
+        o = demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0); /* near: round-off */
+        demi_mesh_triangle(c->mesh, i, x);
         for (e = 0; e < 3; e++) {
-            double *lo = s->box + 6*k + e, *hi = lo + 3;
-            *lo = DEMI_MIN(*lo, DEMI_MIN(p[e], DEMI_MIN(q[e], r[e])));
-            *hi = DEMI_MAX(*hi, DEMI_MAX(p[e], DEMI_MAX(q[e], r[e])));
-            p[e] -= o[e];
-            q[e] -= o[e];
-            r[e] -= o[e];
+            s->box[2*k] = demi_d3_lowest(s->box[2*k], x[e]);
+            s->box[2*k + 1] = demi_d3_highest(s->box[2*k + 1], x[e]);
+            x[e] = demi_d3_sub(x[e], o);
         }
-        s->volume[k] += c->sign[i]*(p[0]*(q[1]*r[2] - q[2]*r[1]) + p[1]*(q[2]*r[0] - q[0]*r[2]) +
-                                    p[2]*(q[0]*r[1] - q[1]*r[0]))/6;
+        s->volume[k] += c->sign[i]*demi_d3_dot(x[0], demi_d3_cross(x[1], x[2]))/6;
     }
     demi_free(w, number);
     return 1;
@@ -268,21 +268,19 @@ static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
 /* How often a shell goes round a point: about 0 outside, 1 or -1 inside. Sum of the solid angles of
    its triangles, each by tan(angle/2) = a.(b x c)/(abc + a.b c + b.c a + c.a b), over 4 pi. */
 static double demi_shells_winding(const demi_closed *c, const demi_shells *s, int shell,
-                                  const double *x) {
+                                  demi_d3 x) {
     double sum = 0;
-    int i, k, e;
+    int i, k;
     for (i = s->start[shell]; i < s->start[shell + 1]; i++) {
-        double p[3][3], l[3], top, bottom;
+        demi_d3 p[3];
+        double l[3], top, bottom;
         for (k = 0; k < 3; k++) {
-            demi_mesh_corner(c->mesh, s->order[i], k, p[k]);
-            for (e = 0; e < 3; e++) p[k][e] -= x[e];
-            l[k] = sqrt(demi_dot3(p[k], p[k]));
+            p[k] = demi_d3_sub(demi_mesh_corner(c->mesh, s->order[i], k), x);
+            l[k] = demi_d3_length(p[k]);
         }
-        top = p[0][0]*(p[1][1]*p[2][2] - p[1][2]*p[2][1]) +
-            p[0][1]*(p[1][2]*p[2][0] - p[1][0]*p[2][2]) +
-            p[0][2]*(p[1][0]*p[2][1] - p[1][1]*p[2][0]);
-        bottom = l[0]*l[1]*l[2] + demi_dot3(p[0], p[1])*l[2] + demi_dot3(p[1], p[2])*l[0] +
-            demi_dot3(p[2], p[0])*l[1];
+        top = demi_d3_dot(p[0], demi_d3_cross(p[1], p[2]));
+        bottom = l[0]*l[1]*l[2] + demi_d3_dot(p[0], p[1])*l[2] + demi_d3_dot(p[1], p[2])*l[0] +
+            demi_d3_dot(p[2], p[0])*l[1];
         sum += c->sign[s->order[i]]*2*demi_atan2(top, bottom);
     }
     return sum/(4*DEMI_PI);
@@ -290,13 +288,14 @@ static double demi_shells_winding(const demi_closed *c, const demi_shells *s, in
 /* Is shell a inside shell b? By some of its corners, those off b's surface. -1: they cross. */
 static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a, int b) {
     const int n = s->start[a + 1] - s->start[a], looks = DEMI_MIN(n, (int)DEMI_CLOSED_LOOKS);
-    const double *mine = s->box + 6*a, *its = s->box + 6*b;
+    const demi_d3 lo = demi_d3_highest(s->box[2*a], s->box[2*b]);
+    const demi_d3 hi = demi_d3_lowest(s->box[2*a + 1], s->box[2*b + 1]);
     int i, in = 0, out = 0;
-    for (i = 0; i < 3; i++) if (mine[i] > its[i + 3] || its[i] > mine[i + 3]) return 0;
+    if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) return 0;
     for (i = 0; i < looks; i++) {
-        double x[3], wind;
-        demi_mesh_corner(c->mesh, s->order[s->start[a] + (int)((int64_t)i*n/looks)], i%3, x);
-        wind = fabs(demi_shells_winding(c, s, b, x));
+        const int triangle = s->order[s->start[a] + (int)((int64_t)i*n/looks)];
+        const double wind = fabs(demi_shells_winding(c, s, b, demi_mesh_corner(c->mesh, triangle,
+                                                                               i%3)));
         in += wind > 0.9;
         out += wind < 0.1;
     }
@@ -306,17 +305,17 @@ static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a,
    cross, or one faces as that around it. */
 static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
                             demi_shells *s) {
-    double x[3];
+    demi_d3 x;
     int a, b;
     for (a = 0; a < s->count; a++)
         for (b = 0; b < s->count; b++) {
             const int in = a == b ? 0 : demi_shells_inside(c, s, a, b);
             if (in < 0) {
-                demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+                x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
                 demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
                           "begins at (%g, %g, %g) m), must be apart or one inside the other; "
                           "unite them in the program that exported them, or pass them as separate "
-                          "meshes", call, x[0], x[1], x[2]);
+                          "meshes", call, x.x, x.y, x.z);
                 return 0;
             }
             s->depth[a] += in;
@@ -326,11 +325,11 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
             if (b != a && s->depth[b] == s->depth[a] - 1 && demi_shells_inside(c, s, a, b) > 0)
                 s->around[a] = b;
         if (s->around[a] < 0 || s->volume[a]*s->volume[s->around[a]] < 0) continue;
-        demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+        x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
                   "lies inside another and faces the same way, must face the other way to be a "
                   "cavity; reverse its triangles, or leave it out if it is a second body", call,
-                  x[0], x[1], x[2]);
+                  x.x, x.y, x.z);
         return 0;
     }
     return 1;
@@ -339,11 +338,11 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
    error message: the mesh does not bound a body. */
 static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     demi_shells s;
-    double x[3] = {0, 0, 0};
+    demi_d3 x;
     int side = 0, a, i, good = 0;
     const int loose = demi_closed_loose(w, c, &side);
     if (loose < 0) { demi_no_memory(w, call); return 0; }
-    demi_mesh_corner(c->mesh, side/3, side%3, x);
+    x = demi_mesh_corner(c->mesh, side/3, side%3);
     if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
         if (c->twisted)
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is one-sided, as a Moebius strip is "
@@ -353,7 +352,7 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or has more than "
                       "two triangles there (first near (%.4g, %.4g, %.4g) m), so it has no "
                       "inside; close it in the program that exported it (dem_mesh_health counts "
-                      "such edges)", call, loose, x[0], x[1], x[2]);
+                      "such edges)", call, loose, x.x, x.y, x.z);
         else
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
                       "%d; if it holds several bodies, pass them as separate meshes", call,

@@ -11,40 +11,25 @@
 typedef struct demi_hull_face {
     int32_t corner[3], beside[3];  /* points, counterclockwise from outside; across k to k + 1 */
     int32_t state, face;           /* 0: free, 1: of the hull, 2: seen by the point that comes */
-    double n[3], at;               /* unit, outward; m: n.x of its plane */
+    demi_d3 n;                     /* unit, outward */
+    double at;                     /* m: n.x of its plane */
 } demi_hull_face;
 /* Corners of a polyhedron of as many faces are 2 faces - 4 at most, its triangles 2 corners - 4;
    room for those that come before those that they replace go. */
 enum { DEMI_HULL_CORNERS = 2*DEM_POLYHEDRON_FACES - 4, DEMI_HULL_ROOM = 4*DEMI_HULL_CORNERS };
 typedef struct demi_hull {
     int count, used, corners;      /* points; triangles; points that are corners */
-    const double *x;               /* count x 3 */
+    const demi_d3 *x;              /* count */
     double near;                   /* m: what is nearer than that to a plane lies in it */
     int32_t *first;                /* count: a new triangle by the first corner of its outer side */
     demi_hull_face *faces;         /* DEMI_HULL_ROOM */
 } demi_hull;
 
-static void demi_cross3(const double *a, const double *b, double *out) {
-    const double x = a[1]*b[2] - a[2]*b[1], y = a[2]*b[0] - a[0]*b[2], z = a[0]*b[1] - a[1]*b[0];
-    out[0] = x; out[1] = y; out[2] = z;
-}
-static void demi_sub3(const double *a, const double *b, double *out) {
-    out[0] = a[0] - b[0]; out[1] = a[1] - b[1]; out[2] = a[2] - b[2];
-}
-/* Makes n a unit vector; answers its length. */
-static double demi_unit3(double *n) {
-    const double l = sqrt(demi_dot3(n, n));
-    int k;
-    for (k = 0; k < 3; k++) n[k] = l > 0 ? n[k]/l : 0;
-    return l;
-}
 static double demi_hull_above(const demi_hull *h, const demi_hull_face *f, int point) {
-    return demi_dot3(f->n, h->x + 3*point) - f->at;
+    return demi_d3_dot(f->n, h->x[point]) - f->at;
 }
 /* A new triangle; null: no room. */
 static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
-    const double *x = h->x + 3*a;
-    double u[3], v[3];
     demi_hull_face *f;
     int i;
     for (i = 0; i < h->used && h->faces[i].state; i++) continue;
@@ -52,11 +37,8 @@ static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
     h->used = DEMI_MAX(h->used, i + 1);
     f = h->faces + i;
     f->corner[0] = a; f->corner[1] = b; f->corner[2] = c;
-    demi_sub3(h->x + 3*b, x, u);
-    demi_sub3(h->x + 3*c, x, v);
-    demi_cross3(u, v, f->n);
-    demi_unit3(f->n);
-    f->at = demi_dot3(f->n, x);
+    f->n = demi_d3_unit(demi_d3_normal(h->x[a], h->x[b], h->x[c]));
+    f->at = demi_d3_dot(f->n, h->x[a]);
     f->state = 1;
     f->face = -1;
     return f;
@@ -64,21 +46,14 @@ static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
 /* The point farthest from the line through a and b (from a, where they are one), or from the plane
    through a, b and c where that is not one of the two; m. */
 static double demi_hull_far(const demi_hull *h, int a, int b, int c, int *far) {
-    double u[3], v[3], n[3], most = 0;
+    demi_d3 u = demi_d3_unit(demi_d3_sub(h->x[b], h->x[a]));
+    double most = 0;
     int i;
-    demi_sub3(h->x + 3*b, h->x + 3*a, u);
-    demi_unit3(u);
-    if (c != a) {
-        demi_sub3(h->x + 3*c, h->x + 3*a, v);
-        demi_cross3(u, v, u);
-        demi_unit3(u);
-    }
+    if (c != a) u = demi_d3_unit(demi_d3_cross(demi_d3_sub(h->x[c], h->x[a]), u));
     for (i = 0; i < h->count; i++) {
-        double d;
-        demi_sub3(h->x + 3*i, h->x + 3*a, v);
-        demi_cross3(u, v, n);
-        d = c != a ? fabs(demi_dot3(u, v)) : a == b ? sqrt(demi_dot3(v, v))
-                                                    : sqrt(demi_dot3(n, n));
+        const demi_d3 v = demi_d3_sub(h->x[i], h->x[a]);
+        const double d = c != a ? fabs(demi_d3_dot(u, v))
+            : demi_d3_length(a == b ? v : demi_d3_cross(u, v));
         if (d > most) { most = d; *far = i; }
     }
     return most;
@@ -167,7 +142,7 @@ static int demi_hull_flush(const demi_hull *h, const demi_hull_face *f, int k) {
     int e;
     for (e = 0; e < 3; e++)
         if (fabs(demi_hull_above(h, f, h->faces[k].corner[e])) > h->near) return 0;
-    return demi_dot3(f->n, h->faces[k].n) > 0.5;
+    return demi_d3_dot(f->n, h->faces[k].n) > 0.5;
 }
 /* Numbers the faces: triangles in one plane, one beside the other, the largest first. Answers how
    many there are. */
@@ -179,12 +154,10 @@ static int demi_hull_faces(demi_hull *h) {
         int from = -1;
         for (i = 0; i < h->used; i++) {
             const demi_hull_face *f = h->faces + i;
-            double u[3], v[3], n[3], area;
+            double area;
             if (f->state != 1 || f->face >= 0) continue;
-            demi_sub3(h->x + 3*f->corner[1], h->x + 3*f->corner[0], u);
-            demi_sub3(h->x + 3*f->corner[2], h->x + 3*f->corner[0], v);
-            demi_cross3(u, v, n);
-            area = demi_dot3(n, n);
+            area = demi_d3_square(demi_d3_normal(h->x[f->corner[0]], h->x[f->corner[1]],
+                                                 h->x[f->corner[2]]));
             if (area > most) { most = area; from = i; }
         }
         if (from < 0) return faces;
@@ -214,33 +187,29 @@ static int demi_hull_loop(const demi_hull *h, int face, int32_t *loop) {
     for (i = 1; i < count; i++) if (loop[i] == begin) return 0;
     return k == begin && sides > 2 ? sides : 0;
 }
-/* Normal and height of a loop of corners (Newell): twice its area. */
-static double demi_loop_plane(const double *x, const int32_t *loop, int n, double *plane) {
-    double twice;
-    int i, k;
-    for (k = 0; k < 4; k++) plane[k] = 0;
-    for (i = 1; i + 1 < n; i++) {
-        double u[3], v[3], c[3];
-        demi_sub3(x + 3*loop[i], x + 3*loop[0], u);
-        demi_sub3(x + 3*loop[i + 1], x + 3*loop[0], v);
-        demi_cross3(u, v, c);
-        for (k = 0; k < 3; k++) plane[k] += c[k];
-    }
-    twice = demi_unit3(plane);
-    for (i = 0; i < n; i++) plane[3] += demi_dot3(plane, x + 3*loop[i])/n;
-    return twice;
+/* Unit normal and height of a loop of corners (Newell). Answers twice its area. */
+static double demi_loop_plane(const demi_d3 *x, const int32_t *loop, int n, demi_d3 *normal,
+                              double *high) {
+    demi_d3 twice = demi_d(0, 0, 0);
+    int i;
+    for (i = 1; i + 1 < n; i++)
+        twice = demi_d3_add(twice, demi_d3_normal(x[loop[0]], x[loop[i]], x[loop[i + 1]]));
+    *normal = demi_d3_unit(twice);
+    for (i = 0, *high = 0; i < n; i++) *high += demi_d3_dot(*normal, x[loop[i]])/n;
+    return demi_d3_length(twice);
 }
 /* Is no point outside, and every corner of a face in its plane, but for some round-off? */
 static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
     const int32_t *loops = rim + faces + 1;
     int f, i;
     for (f = 0; f < faces; f++) {
-        double plane[4];
-        if (!(demi_loop_plane(h->x, loops + rim[f], rim[f + 1] - rim[f], plane) > 0)) return 0;
+        demi_d3 n;
+        double at;
+        if (!(demi_loop_plane(h->x, loops + rim[f], rim[f + 1] - rim[f], &n, &at) > 0)) return 0;
         for (i = 0; i < h->count; i++)
-            if (demi_dot3(plane, h->x + 3*i) - plane[3] > 20*h->near) return 0;
+            if (demi_d3_dot(n, h->x[i]) - at > 20*h->near) return 0;
         for (i = rim[f]; i < rim[f + 1]; i++)
-            if (demi_dot3(plane, h->x + 3*loops[i]) - plane[3] < -20*h->near) return 0;
+            if (demi_d3_dot(n, h->x[loops[i]]) - at < -20*h->near) return 0;
     }
     return 1;
 }
@@ -266,78 +235,77 @@ static int demi_hull_of(demi_hull *h, int32_t *rim) {
     rim[faces] = n;
     return demi_hull_holds(h, rim, faces) ? faces : 0;
 }
+/* Rows and columns of a symmetric tensor: xx yy zz xy xz yz. */
+static const int demi_sym_row[6] = {0, 1, 2, 0, 0, 1}, demi_sym_column[6] = {0, 1, 2, 1, 2, 2};
 /* Adds the tetrahedron of the origin and a triangle: exact moments. */
-static void demi_moments_tetrahedron(demi_moments *m, const double *a, const double *b,
-                                     const double *c) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
-    double n[3], v, s[3];
+static void demi_moments_tetrahedron(demi_moments *m, demi_d3 x, demi_d3 y, demi_d3 z) {
+    const double v = demi_d3_dot(x, demi_d3_cross(y, z))/6;
+    double a[3], b[3], c[3], s[3];
     int k;
-    demi_cross3(b, c, n);
-    v = demi_dot3(a, n)/6;
+    demi_d3_put(a, x);
+    demi_d3_put(b, y);
+    demi_d3_put(c, z);
+    demi_d3_put(s, demi_d3_add(demi_d3_add(x, y), z));
     m->one += v;
-    for (k = 0; k < 3; k++) {
-        s[k] = a[k] + b[k] + c[k];
-        m->x[k] += v*s[k]/4;
+    for (k = 0; k < 3; k++) m->x[k] += v*s[k]/4;
+    for (k = 0; k < 6; k++) {
+        const int p = demi_sym_row[k], r = demi_sym_column[k];
+        m->xx[k] += v*(s[p]*s[r] + a[p]*a[r] + b[p]*b[r] + c[p]*c[r])/20;
     }
-    for (k = 0; k < 6; k++)
-        m->xx[k] += v*(s[one[k]]*s[two[k]] + a[one[k]]*a[two[k]] + b[one[k]]*b[two[k]] +
-                       c[one[k]]*c[two[k]])/20;
 }
-static void demi_polyhedron_moments(const double *x, const int32_t *rim, int faces,
+static void demi_polyhedron_moments(const demi_d3 *x, const int32_t *rim, int faces,
                                     demi_moments *m) {
     const int32_t *loops = rim + faces + 1;
     int f, i;
     memset(m, 0, sizeof *m);
     for (f = 0; f < faces; f++)
         for (i = rim[f] + 1; i + 1 < rim[f + 1]; i++)
-            demi_moments_tetrahedron(m, x + 3*loops[rim[f]], x + 3*loops[i], x + 3*loops[i + 1]);
+            demi_moments_tetrahedron(m, x[loops[rim[f]]], x[loops[i]], x[loops[i + 1]]);
 }
 /* Corners that are in use, numbered anew, into the principal frame; then the planes. */
-static void demi_polyhedron_lay(demi_shape *s, const double *x, int32_t *number) {
+static void demi_polyhedron_lay(demi_shape *s, const demi_d3 *x, int32_t *number) {
     int32_t *loops = s->rim + s->faces + 1;
-    int i, k, f;
+    demi_d3 corner[DEMI_HULL_CORNERS], n;
+    int i, f;
     for (i = 0; i < s->rim[s->faces]; i++) {
-        const double *at = x + 3*loops[i];
-        double *corner = s->hull + 4*s->faces + 3*s->corners;
-        dem_vec3 c;
         if (number[loops[i]] < 0) {
-            number[loops[i]] = s->corners++;
-            c = dem_quat_unrotate(s->frame, demi_sub(demi_v((dem_real)at[0], (dem_real)at[1],
-                                                            (dem_real)at[2]), s->centre));
-            corner[0] = (double)c.x; corner[1] = (double)c.y; corner[2] = (double)c.z;
+            const dem_vec3 at = demi_sub(demi_d3_real(x[loops[i]]), s->centre);
+            number[loops[i]] = s->corners;
+            corner[s->corners++] = demi_d3_of(dem_quat_unrotate(s->frame, at));
         }
         loops[i] = number[loops[i]];
     }
+    for (i = 0; i < s->corners; i++) demi_d3_put(s->hull + 4*s->faces + 3*i, corner[i]);
     for (f = 0; f < s->faces; f++) {
         double *plane = s->hull + 4*f;
-        demi_loop_plane(s->hull + 4*s->faces, loops + s->rim[f], s->rim[f + 1] - s->rim[f], plane);
-        for (k = 0; k < 3; k++) plane[k] /= plane[3];
+        demi_loop_plane(corner, loops + s->rim[f], s->rim[f + 1] - s->rim[f], &n, plane + 3);
+        demi_d3_put(plane, demi_d3_over(n, plane[3]));
     }
 }
 /* Radii, arms, and how light it may seem: where a face lies on a plane the overlap grows with
    slope^2 = area/(2 (4 pi/3)^(1/3) r h) for every m (>>polyhedra), and by turning with its arms. */
 static void demi_polyhedron_bounds(demi_shape *s) {
-    const double *corners = s->hull + 4*s->faces;
     const int32_t *loops = s->rim + s->faces + 1;
     const dem_vec3 I = s->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
     const double r = demi_pow(s->volume*3/(4*DEMI_PI), 1.0/3);
+    demi_d3 corner[DEMI_HULL_CORNERS], n;
     int f, i;
     s->radius = s->moment_arm = 0;
     s->thin = (dem_real)r;
     s->blunt = (dem_real)r;
     s->light = 1;
-    for (i = 0; i < s->corners; i++)
-        s->radius = DEMI_MAX(s->radius, (dem_real)sqrt(demi_dot3(corners + 3*i, corners + 3*i)));
+    for (i = 0; i < s->corners; i++) {
+        corner[i] = demi_d3_at(s->hull + 4*s->faces + 3*i);
+        s->radius = DEMI_MAX(s->radius, (dem_real)demi_d3_length(corner[i]));
+    }
     for (f = 0; f < s->faces; f++) {
         const double h = s->hull[4*f + 3];
-        double plane[4], arm = 0, slope;
-        const double area = demi_loop_plane(corners, loops + s->rim[f], s->rim[f + 1] - s->rim[f],
-                                            plane)/2;
-        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const double *x = corners + 3*loops[i];
-            arm = DEMI_MAX(arm, demi_dot3(x, x) - h*h);
-        }
+        double high, arm = 0, slope;
+        const double area = demi_loop_plane(corner, loops + s->rim[f], s->rim[f + 1] - s->rim[f],
+                                            &n, &high)/2;
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++)
+            arm = DEMI_MAX(arm, demi_d3_square(corner[loops[i]]) - h*h);
         slope = area/(2*DEMI_POLYHEDRON_SCALE*r*h);
         s->thin = DEMI_MIN(s->thin, (dem_real)h);
         s->moment_arm = DEMI_MAX(s->moment_arm, (dem_real)sqrt(arm));
@@ -390,8 +358,8 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
                               demi_shape *shape) {
     dem_vec3 lo, hi, middle;
     demi_hull h;
-    double *x;
-    int i, k, made = 0;
+    demi_d3 *x;
+    int i, made = 0;
     if (count < 4 || count > 10000 || !points) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
                   "3)", call, count);
@@ -413,16 +381,14 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     shape->kind = DEMI_POLYHEDRON;
     h.count = count;
     middle = demi_scale(demi_add(lo, hi), DEM_R(0.5));
-    x = (double *)demi_alloc(w, 3*(size_t)count, sizeof(double));
+    x = (demi_d3 *)demi_alloc(w, (size_t)count, sizeof *x);
     h.x = x;
     h.first = (int32_t *)demi_alloc(w, (size_t)count, sizeof(int32_t));
     h.faces = (demi_hull_face *)demi_alloc(w, DEMI_HULL_ROOM, sizeof(demi_hull_face));
     if (!x || !h.first || !h.faces) demi_no_memory(w, call);
     else {
         for (i = 0; i < count; i++)
-            for (k = 0; k < 3; k++)
-                x[3*i + k] = (double)points[3*i + k] -
-                    (double)(k == 0 ? middle.x : k == 1 ? middle.y : middle.z);
+            x[i] = demi_d3_sub(demi_d3_of(demi_at(points + 3*i)), demi_d3_of(middle));
         made = demi_polyhedron_make(w, call, &h, (double)demi_length(demi_sub(hi, lo)), shape);
     }
     demi_free(w, x);
@@ -442,14 +408,12 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_re
 }
 /* How far below the faces of a shape a place of its own frame is, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
-    const dem_vec3 x = dem_quat_unrotate(s->frame, demi_sub(at, s->centre));
+    const demi_d3 x = demi_d3_of(dem_quat_unrotate(s->frame, demi_sub(at, s->centre)));
+    const double *a = s->hull;
     double least = 1e300;
     int f;
-    for (f = 0; f < s->faces; f++) {
-        const double *a = s->hull + 4*f;
-        const double u = 1 - (a[0]*(double)x.x + a[1]*(double)x.y + a[2]*(double)x.z);
-        least = DEMI_MIN(least, u*a[3]);
-    }
+    for (f = 0; f < s->faces; f++, a += 4)
+        least = DEMI_MIN(least, (1 - demi_d3_dot(demi_d3_at(a), x))*a[3]);
     return (dem_real)least;
 }
 /* 0 with a sentence where vertices are none, far off, or not there. */
@@ -579,10 +543,11 @@ static int demi_shape_copy(dem_world *to, demi_shape *shape) {
 /* --- what it tells of itself (DEMI_SHAPES) --- */
 
 static dem_real demi_polyhedron_support(const demi_shape *s, dem_vec3 n) {
-    const double e[3] = {(double)n.x, (double)n.y, (double)n.z}, *x = s->hull + 4*s->faces;
+    const demi_d3 e = demi_d3_of(n);
+    const double *x = s->hull + 4*s->faces;
     double far = -1e300;
     int i;
-    for (i = 0; i < s->corners; i++) far = DEMI_MAX(far, demi_dot3(e, x + 3*i));
+    for (i = 0; i < s->corners; i++, x += 3) far = DEMI_MAX(far, demi_d3_dot(e, demi_d3_at(x)));
     return (dem_real)far;
 }
 static dem_real demi_polyhedron_thin(const demi_part *p) { return p->shape->thin*p->scale; }

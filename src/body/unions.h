@@ -33,9 +33,8 @@ static void demi_union_bounds(const dem_world *w, demi_shape *s) {
         const double *x = one->faces ? one->hull + 4*one->faces : 0;
         dem_real far = one->faces ? 0 : demi_length(piece->at) + one->radius;
         for (k = 0; k < one->corners; k++, x += 3) {
-            const dem_vec3 at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
-            const dem_vec3 arm = demi_add(piece->at, dem_quat_rotate(piece->q, at));
-            far = DEMI_MAX(far, demi_length(arm));
+            const dem_vec3 at = dem_quat_rotate(piece->q, demi_d3_real(demi_d3_at(x)));
+            far = DEMI_MAX(far, demi_length(demi_add(piece->at, at)));
         }
         s->radius = DEMI_MAX(s->radius, far);
         s->thin = DEMI_MIN(s->thin, one->thin);

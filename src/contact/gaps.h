@@ -15,61 +15,57 @@
    --------------------------------------------------------------------------------------------- */
 
 /* A corner of D: B's corner b less A's corner a. */
-typedef struct demi_lead { double x[3]; int a, b; } demi_lead;
+typedef struct demi_lead { demi_d3 x; int a, b; } demi_lead;
 /* Corners of D; the point nearest to the origin is the sum of part x, parts are 1 in all. */
 typedef struct demi_simplex { int count; demi_lead at[4]; double part[4]; } demi_simplex;
 
 /* The corner of a body that is farthest along n. */
-static int demi_solid_far(const demi_solid *s, const double *n) {
+static int demi_solid_far(const demi_solid *s, demi_d3 n) {
     double most = -1e300;
     int i, far = 0;
     for (i = 0; i < s->corners; i++) {
-        const double d = demi_dot3(n, s->corner[i]);
+        const double d = demi_d3_dot(n, s->corner[i]);
         if (d > most) { most = d; far = i; }
     }
     return far;
 }
 /* The corner of D that is farthest along n. */
-static void demi_lead_along(const demi_solid *a, const demi_solid *b, const double *n,
-                            demi_lead *out) {
-    const double back[3] = {-n[0], -n[1], -n[2]};
-    out->a = demi_solid_far(a, back);
-    out->b = demi_solid_far(b, n);
-    demi_sub3(b->corner[out->b], a->corner[out->a], out->x);
+static demi_lead demi_lead_along(const demi_solid *a, const demi_solid *b, demi_d3 n) {
+    demi_lead lead;
+    lead.a = demi_solid_far(a, demi_d3_scale(n, -1));
+    lead.b = demi_solid_far(b, n);
+    lead.x = demi_d3_sub(b->corner[lead.b], a->corner[lead.a]);
+    return lead;
 }
-/* Parts of the corners of a segment, or of a triangle, in its point nearest to the origin. */
-static void demi_near_segment(const double *p, const double *q, double *part) {
-    double e[3], t;
-    demi_sub3(q, p, e);
-    t = -demi_dot3(p, e)/demi_dot3(e, e);
-    t = t > 0 ? t < 1 ? t : 1 : 0;              /* 0 of a point */
-    part[0] = 1 - t;
-    part[1] = t;
+/* Parts of the corners of a segment in its point nearest to the origin; how far off it is, squared.
+   */
+static double demi_near_segment(demi_d3 p, demi_d3 q, double *part) {
+    const demi_d3 e = demi_d3_sub(q, p);
+    const double t = -demi_d3_dot(p, e)/demi_d3_square(e);
+    part[1] = t > 0 ? t < 1 ? t : 1 : 0;        /* 0 of a point */
+    part[0] = 1 - part[1];
+    return demi_d3_square(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q));
 }
-static void demi_near_triangle(const double *p, const double *q, const double *r, double *part) {
-    const double *corner[3];
-    double e[3], f[3], n[3], ep, fp, eq, fq, er, fr, a, b, c;
-    int i, k;
-    corner[0] = p; corner[1] = q; corner[2] = r;
+/* The point of a triangle with these parts; and the parts of the one nearest to the origin. */
+static demi_d3 demi_triangle_point(const double *part, demi_d3 p, demi_d3 q, demi_d3 r) {
+    return demi_d3_plus(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q), part[2], r);
+}
+static void demi_near_triangle(demi_d3 p, demi_d3 q, demi_d3 r, double *part) {
+    const demi_d3 corner[3] = {p, q, r}, e = demi_d3_sub(q, p), f = demi_d3_sub(r, p);
+    const double ep = -demi_d3_dot(e, p), eq = -demi_d3_dot(e, q), er = -demi_d3_dot(e, r);
+    const double fp = -demi_d3_dot(f, p), fq = -demi_d3_dot(f, q), fr = -demi_d3_dot(f, r);
+    const double a = eq*fr - er*fq;             /* areas over the sides opposite to p, q and r */
+    const double b = er*fp - ep*fr, c = ep*fq - eq*fp;
+    int i;
     part[0] = part[1] = part[2] = 0;
-    demi_sub3(q, p, e);
-    demi_sub3(r, p, f);
-    demi_cross3(e, f, n);
-    ep = -demi_dot3(e, p); fp = -demi_dot3(f, p);
-    eq = -demi_dot3(e, q); fq = -demi_dot3(f, q);
-    er = -demi_dot3(e, r); fr = -demi_dot3(f, r);
-    a = eq*fr - er*fq;                          /* areas over the sides opposite to p, q and r */
-    b = er*fp - ep*fr;
-    c = ep*fq - eq*fp;
-    if (!(demi_dot3(n, n) > 1e-16*demi_dot3(e, e)*demi_dot3(f, f))) {   /* a line */
+    if (!(demi_d3_square(demi_d3_cross(e, f)) >
+          1e-16*demi_d3_square(e)*demi_d3_square(f))) {         /* a line */
         double least = 1e300;
         for (i = 0; i < 3; i++) {
-            const double *from = corner[i], *to = corner[(i + 1)%3];
-            double t[2], x[3];
-            demi_near_segment(from, to, t);
-            for (k = 0; k < 3; k++) x[k] = t[0]*from[k] + t[1]*to[k];
-            if (!(demi_dot3(x, x) < least)) continue;
-            least = demi_dot3(x, x);
+            double t[2];
+            const double d2 = demi_near_segment(corner[i], corner[(i + 1)%3], t);
+            if (!(d2 < least)) continue;
+            least = d2;
             part[i] = t[0];
             part[(i + 1)%3] = t[1];
             part[(i + 2)%3] = 0;
@@ -89,59 +85,50 @@ static void demi_near_triangle(const double *p, const double *q, const double *r
         part[2] = c/(a + b + c);
     }
 }
+/* Of a tetrahedron: the corners of each side, and the one opposite. */
+static const int demi_sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
 /* The point of a simplex nearest to the origin, which corners without part in it leave; how far off
    it is, squared. All four stay where the origin is inside. */
-static double demi_simplex_near(demi_simplex *s, double *v) {
-    static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
-    double part[4] = {1, 0, 0, 0}, tried[3], x[3];
-    double least = 1e300;
+static double demi_simplex_near(demi_simplex *s, demi_d3 *v) {
+    double part[4] = {1, 0, 0, 0}, tried[3], least = 1e300;
     int i, k, left = 0;
     if (s->count == 2) demi_near_segment(s->at[0].x, s->at[1].x, part);
     else if (s->count == 3)
         demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, part);
     for (i = 0; i < 4 && s->count == 4; i++) {
-        const double *p = s->at[sides[i][0]].x, *q = s->at[sides[i][1]].x;
-        const double *r = s->at[sides[i][2]].x;
-        double e[3], f[3], n[3], d[3], high;
-        demi_sub3(q, p, e);
-        demi_sub3(r, p, f);
-        demi_cross3(e, f, n);
-        demi_sub3(s->at[sides[i][3]].x, p, d);
-        high = demi_dot3(n, d);
-        if (high*high > 1e-20*demi_dot3(n, n)*demi_dot3(d, d) &&       /* not flat */
-            -demi_dot3(n, p)*high > 0) continue;        /* on the fourth one's side */
+        const int *side = demi_sides[i];
+        const demi_d3 p = s->at[side[0]].x, q = s->at[side[1]].x, r = s->at[side[2]].x;
+        const demi_d3 n = demi_d3_normal(p, q, r), d = demi_d3_sub(s->at[side[3]].x, p);
+        const double high = demi_d3_dot(n, d);
+        double d2;
+        if (high*high > 1e-20*demi_d3_square(n)*demi_d3_square(d) &&   /* not flat */
+            -demi_d3_dot(n, p)*high > 0) continue;      /* on the fourth one's side */
         demi_near_triangle(p, q, r, tried);
-        for (k = 0; k < 3; k++) x[k] = tried[0]*p[k] + tried[1]*q[k] + tried[2]*r[k];
-        if (!(demi_dot3(x, x) < least)) continue;
-        least = demi_dot3(x, x);
-        part[sides[i][3]] = 0;
-        for (k = 0; k < 3; k++) part[sides[i][k]] = tried[k];
+        d2 = demi_d3_square(demi_triangle_point(tried, p, q, r));
+        if (!(d2 < least)) continue;
+        least = d2;
+        part[side[3]] = 0;
+        for (k = 0; k < 3; k++) part[side[k]] = tried[k];
     }
     if (s->count == 4 && least > 1e299) return 0;
-    v[0] = v[1] = v[2] = 0;
+    *v = demi_d(0, 0, 0);
     for (i = 0; i < s->count; i++) {
         if (!(part[i] > 0)) continue;
-        for (k = 0; k < 3; k++) v[k] += part[i]*s->at[i].x[k];
+        *v = demi_d3_plus(*v, part[i], s->at[i].x);
         s->at[left] = s->at[i];
         s->part[left++] = part[i];
     }
     s->count = left;
-    return demi_dot3(v, v);
+    return demi_d3_square(*v);
 }
 /* The normal of a simplex's triangle where it has three corners, to the side of v; else v itself,
    unit. */
-static void demi_simplex_normal(const demi_simplex *s, const double *v, double *n) {
-    double e[3], f[3], side;
-    int k;
-    memcpy(n, v, 3*sizeof *n);
+static demi_d3 demi_simplex_normal(const demi_simplex *s, demi_d3 v) {
     if (s->count == 3) {
-        demi_sub3(s->at[1].x, s->at[0].x, e);
-        demi_sub3(s->at[2].x, s->at[0].x, f);
-        demi_cross3(e, f, n);
-        side = demi_dot3(n, v);
-        for (k = 0; k < 3; k++) n[k] = side < 0 ? -n[k] : n[k];
+        const demi_d3 n = demi_d3_normal(s->at[0].x, s->at[1].x, s->at[2].x);
+        v = demi_d3_dot(n, v) < 0 ? demi_d3_scale(n, -1) : n;
     }
-    demi_unit3(n);
+    return demi_d3_unit(v);
 }
 static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
     int i;
@@ -149,37 +136,35 @@ static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
     return 0;
 }
 /* Are the two apart, by more than tiny, m? n: where to begin, then from a to b, unit. */
-static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, double *n,
+static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, demi_d3 *n,
                              demi_simplex *s) {
-    double v[3], had_v[3], far = 1e300;
+    demi_d3 v = *n, had_v;
+    double far = 1e300;
     demi_simplex had;
-    int turn, k;
-    memcpy(v, n, sizeof v);
-    if (!(demi_dot3(v, v) > 0)) demi_sub3(b->centre, a->centre, v);
-    if (!(demi_dot3(v, v) > 0)) v[2] = 1;
+    int turn;
+    if (!(demi_d3_square(v) > 0)) v = demi_d3_sub(b->centre, a->centre);
+    if (!(demi_d3_square(v) > 0)) v.z = 1;
     s->count = 0;
     for (turn = 0; turn < 100; turn++) {
-        const double back[3] = {-v[0], -v[1], -v[2]};
         double now;
         demi_lead *w = &s->at[s->count];
-        demi_lead_along(a, b, back, w);
-        if (turn && (far - demi_dot3(v, w->x) <= 1e-14*far ||
+        *w = demi_lead_along(a, b, demi_d3_scale(v, -1));
+        if (turn && (far - demi_d3_dot(v, w->x) <= 1e-14*far ||
                      demi_lead_known(s->at, s->count, w))) break;
         had = *s;
-        memcpy(had_v, v, sizeof v);
+        had_v = v;
         s->count++;
-        now = demi_simplex_near(s, v);
+        now = demi_simplex_near(s, &v);
         if (!(now > tiny*tiny)) return 0;
         if (!(now < far)) {                     /* rounding: no nearer */
             *s = had;
-            memcpy(v, had_v, sizeof v);
+            v = had_v;
             break;
         }
         far = now;
     }
-    demi_simplex_normal(s, v, n);
-    for (k = 0; k < 3; k++) if (!(n[k] >= -1 && n[k] <= 1)) return 0;
-    return 1;
+    *n = demi_simplex_normal(s, v);
+    return fabs(n->x) <= 1 && fabs(n->y) <= 1 && fabs(n->z) <= 1;
 }
 
 /* --- overlapping: a polytope that grows about the origin --- */
@@ -190,49 +175,41 @@ typedef struct demi_polytope {
     double size;                   /* m, of both bodies: round-off of corners goes by it */
     demi_lead at[DEMI_POLYTOPE];
     struct {
-        double n[3], at;           /* n unit, outward; n.x */
+        demi_d3 n;                 /* unit, outward; 0 of a face without an area */
+        double at;                 /* n.x */
         double blur;               /* error of n, rad: large where the face is thin or small */
         int corner[3];
     } face[2*DEMI_POLYTOPE];
 } demi_polytope;
 /* A face; one without an area is never the nearest, and seen from nowhere. */
 static void demi_polytope_face(demi_polytope *p, int i, int a, int b, int c) {
-    double e[3], f[3], g[3], *n = p->face[i].n, sides, area;
-    demi_sub3(p->at[b].x, p->at[a].x, e);
-    demi_sub3(p->at[c].x, p->at[a].x, f);
-    demi_cross3(e, f, n);
+    const demi_d3 e = demi_d3_sub(p->at[b].x, p->at[a].x), f = demi_d3_sub(p->at[c].x, p->at[a].x);
+    const demi_d3 n = demi_d3_cross(e, f);
+    const double ee = demi_d3_square(e), ff = demi_d3_square(f), area = demi_d3_length(n);
     p->face[i].corner[0] = a; p->face[i].corner[1] = b; p->face[i].corner[2] = c;
+    p->face[i].n = demi_d(0, 0, 0);
+    p->face[i].at = 1e300;
     p->face[i].blur = 0;
-    sides = demi_dot3(e, e)*demi_dot3(f, f);
-    area = demi_unit3(n);
-    if (area > 1e-15*sqrt(sides)) {
-        demi_sub3(f, e, g);
-        sides = DEMI_MAX(demi_dot3(e, e), DEMI_MAX(demi_dot3(f, f), demi_dot3(g, g)));
-        p->face[i].at = demi_dot3(n, p->at[a].x);
-        p->face[i].blur = 1e-15*p->size*sqrt(sides)/area;       /* over the least height */
-    } else {
-        n[0] = n[1] = n[2] = 0;
-        p->face[i].at = 1e300;
+    if (area > 1e-15*sqrt(ee*ff)) {
+        const double gg = demi_d3_square(demi_d3_sub(f, e));
+        p->face[i].n = demi_d3_unit(n);
+        p->face[i].at = demi_d3_dot(p->face[i].n, p->at[a].x);
+        /* over the least height */
+        p->face[i].blur = 1e-15*p->size*sqrt(DEMI_MAX(ee, DEMI_MAX(ff, gg)))/area;
     }
 }
 /* How far x is from the point, the line or the plane of the first corners. */
-static double demi_polytope_off(const demi_polytope *p, const double *x) {
-    double d[3], e[3], f[3], n[3];
-    demi_sub3(x, p->at[0].x, d);
-    if (p->corners == 1) return sqrt(demi_dot3(d, d));
-    demi_sub3(p->at[1].x, p->at[0].x, e);
-    demi_cross3(e, d, n);
-    if (p->corners == 2) return sqrt(demi_dot3(n, n)/demi_dot3(e, e));
-    demi_sub3(p->at[2].x, p->at[0].x, f);
-    demi_cross3(e, f, n);
-    demi_unit3(n);
-    return fabs(demi_dot3(n, d));
+static double demi_polytope_off(const demi_polytope *p, demi_d3 x) {
+    const demi_d3 d = demi_d3_sub(x, p->at[0].x);
+    if (p->corners == 1) return demi_d3_length(d);
+    const demi_d3 e = demi_d3_sub(p->at[1].x, p->at[0].x);
+    if (p->corners == 2) return sqrt(demi_d3_square(demi_d3_cross(e, d))/demi_d3_square(e));
+    return fabs(demi_d3_dot(demi_d3_unit(demi_d3_normal(p->at[0].x, p->at[1].x, p->at[2].x)), d));
 }
 /* The first tetrahedron, from the simplex at which the walk has ended. 0: D is flat. */
 static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const demi_simplex *s,
                                double size, demi_polytope *p) {
-    static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
-    int i, k;
+    int i;
     p->corners = s->count;
     p->size = size;
     for (i = 0; i < s->count; i++) p->at[i] = s->at[i];
@@ -241,20 +218,16 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
         if (demi_polytope_off(p, p->at[3].x) > 1e-9*size) p->corners = 4;
     }
     while (p->corners < 4) {
-        double e[3] = {0, 0, 0}, f[3] = {0, 0, 0}, most = 0;
-        demi_lead best, w;
+        double most = 0;
+        demi_lead best;
         memset(&best, 0, sizeof best);
-        if (p->corners > 1) demi_sub3(p->at[1].x, p->at[0].x, e);
-        if (p->corners > 2) demi_sub3(p->at[2].x, p->at[0].x, f);
         for (i = 0; i < 6; i++) {
-            double way[3] = {0, 0, 0}, off;
-            way[i/2] = i & 1 ? -1 : 1;
-            if (p->corners == 2) demi_cross3(e, way, way);
-            if (p->corners == 3) {
-                demi_cross3(e, f, way);
-                for (k = 0; k < 3 && i & 1; k++) way[k] = -way[k];
-            }
-            demi_lead_along(a, b, way, &w);
+            demi_d3 way = demi_d(i/2 == 0, i/2 == 1, i/2 == 2);
+            demi_lead w;
+            double off;
+            if (p->corners == 2) way = demi_d3_cross(demi_d3_sub(p->at[1].x, p->at[0].x), way);
+            if (p->corners == 3) way = demi_d3_normal(p->at[0].x, p->at[1].x, p->at[2].x);
+            w = demi_lead_along(a, b, demi_d3_scale(way, i & 1 ? -1 : 1));
             off = demi_polytope_off(p, w.x);
             if (off > most) { most = off; best = w; }
         }
@@ -262,9 +235,9 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
         p->at[p->corners++] = best;
     }
     for (i = 0; i < 4; i++) {
-        const int *c = sides[i];
+        const int *c = demi_sides[i];
         demi_polytope_face(p, i, c[0], c[1], c[2]);
-        if (demi_dot3(p->face[i].n, p->at[c[3]].x) > p->face[i].at)
+        if (demi_d3_dot(p->face[i].n, p->at[c[3]].x) > p->face[i].at)
             demi_polytope_face(p, i, c[0], c[2], c[1]);
     }
     p->faces = 4;
@@ -274,9 +247,8 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
    that are coplanar with it some would see it otherwise and some not, and what joins it to their
    rim would be folded. most: of that, m. */
 static double demi_polytope_over(const demi_polytope *p, int i, const demi_lead *w, double most) {
-    double d[3];
-    demi_sub3(w->x, p->at[p->face[i].corner[0]].x, d);
-    return demi_dot3(p->face[i].n, d) - DEMI_MIN(p->face[i].blur*sqrt(demi_dot3(d, d)), most);
+    const demi_d3 d = demi_d3_sub(w->x, p->at[p->face[i].corner[0]].x);
+    return demi_d3_dot(p->face[i].n, d) - DEMI_MIN(p->face[i].blur*demi_d3_length(d), most);
 }
 /* Takes a corner in: faces that see it, the nearest at least, give way to those that join it to
    their rim. 0: no room. */
@@ -305,27 +277,25 @@ static int demi_polytope_take(demi_polytope *p, int nearest, const demi_lead *w)
 }
 /* The least way that parts two that overlap: n, from a to b. What ends it early (rounding, no room)
    leaves the least one seen, which parts them, too. */
-static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, double *n,
+static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, demi_d3 *n,
                              demi_simplex *s) {
     demi_polytope p;
     demi_lead w;
     double least = 1e300;
     int i, k, best;
     if (!demi_polytope_begin(a, b, s, size, &p)) {
-        if (!(demi_dot3(n, n) > 0)) n[2] = 1;
-        demi_unit3(n);
+        if (!(demi_d3_square(*n) > 0)) n->z = 1;
+        *n = demi_d3_unit(*n);
         return;
     }
     do {
         double way;
         for (i = 1, best = 0; i < p.faces; i++)
             if (p.face[i].at < p.face[best].at) best = i;
-        demi_lead_along(a, b, p.face[best].n, &w);
-        way = demi_dot3(p.face[best].n, w.x);
-        for (k = 0; k < 3 && way < least; k++) {
-            s->at[k] = p.at[p.face[best].corner[k]];
-            n[k] = -p.face[best].n[k];
-        }
+        w = demi_lead_along(a, b, p.face[best].n);
+        way = demi_d3_dot(p.face[best].n, w.x);
+        for (k = 0; k < 3 && way < least; k++) s->at[k] = p.at[p.face[best].corner[k]];
+        if (way < least) *n = demi_d3_scale(p.face[best].n, -1);
         least = DEMI_MIN(least, way);
     } while (demi_polytope_over(&p, best, &w, 1e-9*size) > 1e-13*size &&
              !demi_lead_known(p.at, p.corners, &w) && demi_polytope_take(&p, best, &w));
@@ -333,35 +303,29 @@ static void demi_solids_part(const demi_solid *a, const demi_solid *b, double si
     demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, s->part);
 }
 /* Width of the slab across n that keeps them apart, m; < 0: by how much none does. */
-static double demi_solids_slab(const demi_solid *a, const demi_solid *b, const double *n) {
-    const double back[3] = {-n[0], -n[1], -n[2]};
-    double x[3];
-    demi_sub3(b->corner[demi_solid_far(b, back)], a->corner[demi_solid_far(a, n)], x);
-    return demi_dot3(n, x);
+static double demi_solids_slab(const demi_solid *a, const demi_solid *b, demi_d3 n) {
+    const int far_a = demi_solid_far(a, n), far_b = demi_solid_far(b, demi_d3_scale(n, -1));
+    return demi_d3_dot(n, demi_d3_sub(b->corner[far_b], a->corner[far_a]));
+}
+/* m: how far the farthest corner is from the centre. */
+static double demi_solid_radius(const demi_solid *s) {
+    double far2 = 0;
+    int i;
+    for (i = 0; i < s->corners; i++)
+        far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(s->corner[i], s->centre)));
+    return sqrt(far2);
 }
 /* How far the two are apart, m, < 0: how deep in each other; n: in: where to begin, or 0; out:
    unit, from a to b. s: corners that tell it. */
-static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double *n,
+static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 *n,
                               demi_simplex *s) {
-    double x[3], size = 0, least = 1e300, gap;
-    const demi_solid *bodies[2];
-    int i, k;
-    bodies[0] = a; bodies[1] = b;
-    for (i = 0; i < 2; i++) {
-        double most = 0;
-        for (k = 0; k < bodies[i]->corners; k++) {
-            demi_sub3(bodies[i]->corner[k], bodies[i]->centre, x);
-            most = DEMI_MAX(most, demi_dot3(x, x));
-        }
-        size += sqrt(most);
-        least = DEMI_MIN(least, sqrt(most));
-    }
-    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*least, 1e-14*size), n, s)) {
-        gap = demi_solids_slab(a, b, n);
+    const double ra = demi_solid_radius(a), rb = demi_solid_radius(b), size = ra + rb;
+    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*DEMI_MIN(ra, rb), 1e-14*size), n, s)) {
+        const double gap = demi_solids_slab(a, b, *n);
         if (gap > 0) return gap;
     }
     demi_solids_part(a, b, size, n, s);
-    return demi_solids_slab(a, b, n);
+    return demi_solids_slab(a, b, *n);
 }
 
 /* --- the points by which two keep each other off --- */
@@ -369,15 +333,15 @@ static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double *
 /* No more than four: x in the middle between both surfaces, gaps along the normal. */
 typedef struct demi_spots {
     int count;
-    double normal[3];              /* unit, from a to b */
-    double x[4][3], gap[4];        /* m */
+    demi_d3 normal, x[4];          /* unit, from a to b; m */
+    double gap[4];                 /* m */
 } demi_spots;
 /* Of many points across n those that keep most: the deepest, the farthest from it, and on either
    side of the line through both the farthest from that. */
-static int demi_spots_pick(double (*x)[3], const double *gap, int count, const double *n,
-                           int *out) {
-    double d[3], e[3], f[3], most = -1, side[2] = {0, 0};
-    int i, k, picked = 1, far[2] = {-1, -1};
+static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
+    demi_d3 across;
+    double most = -1, side[2] = {0, 0};
+    int i, k, picked = 2, far[2] = {-1, -1};
     if (count <= 4) {
         for (i = 0; i < count; i++) out[i] = i;
         return count;
@@ -385,29 +349,41 @@ static int demi_spots_pick(double (*x)[3], const double *gap, int count, const d
     out[0] = out[1] = 0;
     for (i = 1; i < count; i++) if (gap[i] < gap[out[0]]) out[0] = i;
     for (i = 0; i < count; i++) {
-        demi_sub3(x[i], x[out[0]], d);
-        if (demi_dot3(d, d) > most) { most = demi_dot3(d, d); out[1] = i; }
+        const double d2 = demi_d3_square(demi_d3_sub(x[i], x[out[0]]));
+        if (d2 > most) { most = d2; out[1] = i; }
     }
     if (!(most > 0)) return 1;
-    picked = 2;
-    demi_sub3(x[out[1]], x[out[0]], e);
-    demi_cross3(n, e, f);
+    across = demi_d3_cross(n, demi_d3_sub(x[out[1]], x[out[0]]));
     for (i = 0; i < count; i++) {
-        double off;
-        demi_sub3(x[i], x[out[0]], d);
-        off = demi_dot3(f, d);
+        const double off = demi_d3_dot(across, demi_d3_sub(x[i], x[out[0]]));
         k = off < 0;
         if (fabs(off) > side[k] + 1e-9*most) { side[k] = fabs(off); far[k] = i; }
     }
     for (k = 0; k < 2; k++) if (far[k] >= 0) out[picked++] = far[k];
     return picked;
 }
+/* Those of count points across n whose gaps are below range, at most four. Answers how many. */
+static int demi_spots_take(demi_spots *out, demi_d3 *x, double *gap, int count, double range,
+                           demi_d3 n) {
+    int i, left = 0, picked[4];
+    for (i = 0; i < count; i++) {
+        if (!(gap[i] < range)) continue;
+        x[left] = x[i];
+        gap[left++] = gap[i];
+    }
+    out->count = demi_spots_pick(x, gap, left, n, picked);
+    for (i = 0; i < out->count; i++) {
+        out->x[i] = x[picked[i]];
+        out->gap[i] = gap[picked[i]];
+    }
+    return out->count;
+}
 /* The face whose normal is most along n; by how much. */
-static int demi_solid_facing(const demi_solid *s, const double *n, double *along) {
+static int demi_solid_facing(const demi_solid *s, demi_d3 n, double *along) {
     int f, best = -1;
     *along = -2;
     for (f = 0; f < s->faces; f++) {
-        const double c = demi_dot3(s->plane[f], n)*s->plane[f][3];
+        const double c = demi_d3_dot(s->face[f].slope, n)*s->face[f].high;
         if (c > *along) { *along = c; best = f; }
     }
     return best;
@@ -416,70 +392,49 @@ static int demi_solid_facing(const demi_solid *s, const double *n, double *along
 #define DEMI_FLUSH 0.9995
 /* Of body b's face that faces face f of a most, what lies over f: points, and gaps over its plane.
    */
-static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, double (*x)[3],
-                           double *gap, double *n) {
-    const int32_t *loop = a->rim + a->faces + 1 + a->rim[f];
-    const int sides = a->rim[f + 1] - a->rim[f];
-    const int32_t *other;
-    double along, back[3], d[3];
-    int g, i, k, count = 0;
-    for (k = 0; k < 3; k++) {
-        n[k] = a->plane[f][k]*a->plane[f][3];
-        back[k] = -n[k];
-    }
-    g = demi_solid_facing(b, back, &along);
+static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi_d3 *x,
+                           double *gap, demi_d3 *n) {
+    const demi_d3 up = *n = demi_d3_scale(a->face[f].slope, a->face[f].high);
+    double along;
+    const int g = demi_solid_facing(b, demi_d3_scale(up, -1), &along);
+    int i, count = 0;
     if (g < 0) return 0;
-    other = b->rim + b->faces + 1;
-    for (i = b->rim[g]; i < b->rim[g + 1]; i++)
-        memcpy(x[count++], b->corner[other[i]], sizeof *x);
-    for (i = 0; i < sides && count; i++) {
-        double e[3], in[3];
-        demi_sub3(a->corner[loop[i + 1 < sides ? i + 1 : 0]], a->corner[loop[i]], e);
-        demi_cross3(n, e, in);
-        count = demi_polygon_clip(x, count, in, a->corner[loop[i]]);
+    for (i = b->rim[g]; i < b->rim[g + 1]; i++) x[count++] = demi_solid_corner(b, g, i);
+    for (i = a->rim[f]; i < a->rim[f + 1] && count; i++) {
+        const demi_d3 o = demi_solid_corner(a, f, i);
+        const demi_d3 e = demi_d3_sub(demi_solid_corner(a, f, i + 1), o);
+        count = demi_polygon_clip(x, count, demi_d3_cross(up, e), o);
     }
     for (i = 0; i < count; i++) {
-        demi_sub3(x[i], a->corner[loop[0]], d);
-        gap[i] = demi_dot3(n, d);
-        for (k = 0; k < 3; k++) x[i][k] -= gap[i]*n[k]/2;
+        gap[i] = demi_d3_dot(up, demi_d3_sub(x[i], demi_solid_corner(a, f, a->rim[f])));
+        x[i] = demi_d3_plus(x[i], -gap[i]/2, up);
     }
     return count;
 }
 /* The contact of two that are no farther apart than range: 0: they are. facet: b is flat, and its
    plane comes first. guess: normal of a step ago, or 0. s: corners that told the gap. */
 static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
-                             const double *guess, demi_simplex *s, demi_spots *out) {
-    double x[DEMI_SECTION][3], gap[DEMI_SECTION], n[3], back[3], on_a, on_b, all, to_b[3];
-    int fa, fb, i, k, second, count = 0, left, picked[4];
-    memcpy(n, guess, sizeof n);
+                             demi_d3 guess, demi_simplex *s, demi_spots *out) {
+    demi_d3 x[DEMI_SECTION], n = guess, back;
+    double gap[DEMI_SECTION], on_a, on_b;
+    const double all = demi_solids_gap(a, b, &n, s);
+    int fa, fb, i, count = 0;
     out->count = 0;
-    all = demi_solids_gap(a, b, n, s);
+    out->normal = n;
     if (!(all < range)) return 0;
-    for (k = 0; k < 3; k++) back[k] = -n[k];
     fa = demi_solid_facing(a, n, &on_a);
-    fb = demi_solid_facing(b, back, &on_b);
-    second = on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9);
-    if (second) {
-        count = demi_faces_over(b, fb, a, x, gap, back);
-        for (k = 0; k < 3; k++) to_b[k] = -back[k];
-    } else if (on_a >= DEMI_FLUSH) count = demi_faces_over(a, fa, b, x, gap, to_b);
-    for (i = 0, left = 0; i < count; i++) {
-        if (!(gap[i] < range)) continue;
-        memmove(x[left], x[i], sizeof *x);
-        gap[left++] = gap[i];
+    fb = demi_solid_facing(b, demi_d3_scale(n, -1), &on_b);
+    if (on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9)) {
+        count = demi_faces_over(b, fb, a, x, gap, &back);
+        out->normal = demi_d3_scale(back, -1);
+    } else if (on_a >= DEMI_FLUSH) count = demi_faces_over(a, fa, b, x, gap, &out->normal);
+    if (demi_spots_take(out, x, gap, count, range, out->normal)) return out->count;
+    out->normal = n;                            /* corners, edges */
+    out->x[0] = demi_d(0, 0, 0);
+    for (i = 0; i < s->count; i++) {
+        const demi_d3 twice = demi_d3_add(a->corner[s->at[i].a], b->corner[s->at[i].b]);
+        out->x[0] = demi_d3_plus(out->x[0], s->part[i]/2, twice);
     }
-    memcpy(out->normal, left ? to_b : n, sizeof n);
-    if (!left) {                                /* corners, edges */
-        for (k = 0; k < 3; k++)
-            for (i = 0, x[0][k] = 0; i < s->count; i++)
-                x[0][k] += s->part[i]*(a->corner[s->at[i].a][k] + b->corner[s->at[i].b][k])/2;
-        gap[0] = all;
-        left = 1;
-    }
-    out->count = demi_spots_pick(x, gap, left, out->normal, picked);
-    for (i = 0; i < out->count; i++) {
-        memcpy(out->x[i], x[picked[i]], sizeof *x);
-        out->gap[i] = gap[picked[i]];
-    }
-    return out->count;
+    out->gap[0] = all;
+    return out->count = 1;
 }

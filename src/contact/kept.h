@@ -288,8 +288,7 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
     c->share /= (dem_real)spots->count;
     c->corners = spots->count;
     for (k = 0; k < spots->count; k++) {
-        const dem_vec3 x = demi_v((dem_real)spots->x[k][0], (dem_real)spots->x[k][1],
-                                  (dem_real)spots->x[k][2]);
+        const dem_vec3 x = demi_d3_real(spots->x[k]);
         demi_kept *at = k ? demi_kept_new(w, d) : c;
         if (!at) return 0;
         if (k) memcpy(at, c, offsetof(demi_kept, coef));

@@ -93,19 +93,19 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
                                  dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_BALL;
     const demi_part *ball = first ? p : q;
-    const double x[3] = {0, 0, 0};
-    double at[3], off;
+    demi_d3 at;
+    double off;
     demi_solid s;
     demi_solid_of(first ? q : p, first ? gap : demi_scale(gap, -1), &s);
-    off = demi_solid_near(&s, x, at);
+    off = demi_solid_near(&s, demi_d(0, 0, 0), &at);
     c->overlap = ball->radius - (dem_real)off;
     if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
-    c->normal = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    c->normal = demi_d3_real(at);
     c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
                                    : demi_unit(gap);
     c->deep = c->overlap/ball->radius;
     c->r_eff = ball->radius;
-    c->arm_a = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    c->arm_a = demi_d3_real(at);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -118,18 +118,17 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
                                 dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
     const demi_part *egg = first ? p : q;
-    const double x[3] = {0, 0, 0};
     dem_vec3 at, n;
-    double near[3], W0;
+    demi_d3 near;
+    double W0;
     demi_solid s;
     demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
-    W0 = demi_solid_near(&s, x, near);
+    W0 = demi_solid_near(&s, demi_d(0, 0, 0), &near);
     if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
         return 0;
-    at = demi_v((dem_real)near[0]*egg->axes.x, (dem_real)near[1]*egg->axes.y,
-                (dem_real)near[2]*egg->axes.z);
-    n = demi_v((dem_real)near[0]/egg->axes.x, (dem_real)near[1]/egg->axes.y,
-               (dem_real)near[2]/egg->axes.z);
+    at = demi_d3_real(near);
+    n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
+    at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
     c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the gradient passes through the polyhedron's point */
@@ -157,22 +156,20 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     const double ra = demi_part_equal(p), rb = demi_part_equal(q);
     const double range = (double)demi_range(w, p->radius + q->radius);
     const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
-    const double guess[3] = {(double)from.x, (double)from.y, (double)from.z};
     demi_simplex tells;
     demi_solid a, b;
     int k, nearest = 0;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
-    if (!demi_solids_spots(&a, &b, 0, range, guess, &tells, spots)) return 0;
-    c->normal = demi_v((dem_real)spots->normal[0], (dem_real)spots->normal[1],
-                       (dem_real)spots->normal[2]);
+    if (!demi_solids_spots(&a, &b, 0, range, demi_d3_of(from), &tells, spots)) return 0;
+    c->normal = demi_d3_real(spots->normal);
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = p->centre;
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
     if (!demi_response_is(w, DEMI_PRESSING)) return 1;
     for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
     for (k = 0; k < 4; k++) {
-        if (k != nearest) memcpy(spots->x[k], spots->x[nearest], sizeof *spots->x);
+        spots->x[k] = spots->x[nearest];
         spots->gap[k] = spots->gap[nearest];
     }
     spots->count = 4;

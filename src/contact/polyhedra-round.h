@@ -14,20 +14,17 @@ typedef struct demi_generator {
     int open[2];                   /* 1: at that end the surface stops, or bends away */
 } demi_generator;
 static void demi_generator_press(const demi_solid *s, const demi_generator *l, double angle,
-                                 double width, const double *x0, demi_pressure *out) {
-    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    static const double part[3] = {5.0/18, 8.0/18, 5.0/18};
+                                 double width, demi_d3 x0, demi_pressure *out) {
     const double c = demi_cos(angle), sn = demi_sin(angle);
     const double out_by = l->b - l->a, up_by = l->h - l->g;
-    const double size = sqrt(out_by*out_by + up_by*up_by);
-    const double e[3] = {out_by*c, out_by*sn, up_by};
-    const double o[3] = {l->a*c - x0[0], l->a*sn - x0[1], l->g - x0[2]};
-    const double n[3] = {l->side*e[2]/size*c, l->side*e[2]/size*sn,
-                         -l->side*out_by/size};
+    const double size = sqrt(out_by*out_by + up_by*up_by), tilt = l->side*up_by/size;
+    const demi_d3 e = demi_d(out_by*c, out_by*sn, up_by);
+    const demi_d3 o = demi_d3_sub(demi_d(l->a*c, l->a*sn, l->g), x0);
+    const demi_d3 n = demi_d(tilt*c, tilt*sn, -l->side*out_by/size);
     double lo = 0, hi = 1, from;
-    int f, i, k, face = -1;
+    int f, i, face = -1;
     for (f = 0; f < s->faces; f++) {            /* where it is inside */
-        const double u = demi_solid_in(s, f, o), slope = -demi_dot3(s->plane[f], e);
+        const double u = demi_solid_in(s, f, o), slope = -demi_d3_dot(s->face[f].slope, e);
         if (slope > 0) lo = DEMI_MAX(lo, -u/slope);
         else if (slope < 0) hi = DEMI_MIN(hi, -u/slope);
         else if (u < 0) return;
@@ -36,7 +33,7 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
         double to = hi, least = 1e300, steep = 0;
         int next = -1;
         for (f = 0; f < s->faces && face < 0; f++) {    /* the one in force at its beginning */
-            const double slope = -demi_dot3(s->plane[f], e);
+            const double slope = -demi_d3_dot(s->face[f].slope, e);
             const double u = demi_solid_in(s, f, o) + slope*from;
             if (u < least - 1e-12 || (u < least + 1e-12 && slope < steep)) {
                 least = u; steep = slope; next = f;
@@ -45,17 +42,17 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
         if (face < 0) face = next;
         next = -1;
         for (f = 0; f < s->faces; f++) {        /* until another one takes over */
-            const double slope = demi_dot3(s->plane[face], e) - demi_dot3(s->plane[f], e);
+            const double slope = demi_d3_dot(s->face[face].slope, e) -
+                demi_d3_dot(s->face[f].slope, e);
             const double over = demi_solid_in(s, f, o) - demi_solid_in(s, face, o);
             if (!(slope < 0)) continue;
             if (-over/slope > from && -over/slope < to) { to = -over/slope; next = f; }
         }
         for (i = 0; i < 3; i++) {
-            const double t = from + at[i]*(to - from), r = l->a + t*out_by;
-            double x[3];
-            for (k = 0; k < 3; k++) x[k] = o[k] + t*e[k];
-            demi_pressure_point(out, x, DEMI_MAX(demi_solid_in(s, face, x), 0),
-                             part[i]*(to - from)*size*r*width, n, demi_dot3(x, n));
+            const double t = from + demi_gauss3_at[i]*(to - from), r = l->a + t*out_by;
+            const demi_d3 x = demi_d3_plus(o, t, e);
+            demi_pressure_point(out, s, face, x, demi_gauss3[i]*(to - from)*size*r*width, n,
+                                demi_d3_dot(x, n));
         }
         from = to;
         face = next;
@@ -63,20 +60,19 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
     }
 }
 /* Angles at which the line from p to q crosses the surface, into angle: how many, 0 to 2. */
-static int demi_generator_cross(const demi_generator *l, const double *p, const double *q,
-                                double *angle) {
-    const double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+static int demi_generator_cross(const demi_generator *l, demi_d3 p, demi_d3 q, double *angle) {
+    const demi_d3 d = demi_d3_sub(q, p);
     const int level = !(l->h > l->g || l->h < l->g);
     const double flat = level ? 0 : (l->b - l->a)/(l->h - l->g);
-    const double r0 = l->a + flat*(p[2] - l->g), dr = flat*d[2];
-    const double A = d[0]*d[0] + d[1]*d[1] - dr*dr, B = p[0]*d[0] + p[1]*d[1] - r0*dr;
-    const double C = p[0]*p[0] + p[1]*p[1] - r0*r0, D = B*B - A*C;
+    const double r0 = l->a + flat*(p.z - l->g), dr = flat*d.z;
+    const double A = d.x*d.x + d.y*d.y - dr*dr, B = p.x*d.x + p.y*d.y - r0*dr;
+    const double C = p.x*p.x + p.y*p.y - r0*r0, D = B*B - A*C;
     double t[2];
     int i, count = 0;
     if (level) {
-        if ((p[2] > l->g) == (q[2] > l->g)) return 0;
-        t[0] = (l->g - p[2])/d[2];
-        *angle = demi_atan2(p[1] + t[0]*d[1], p[0] + t[0]*d[0]);
+        if ((p.z > l->g) == (q.z > l->g)) return 0;
+        t[0] = (l->g - p.z)/d.z;
+        *angle = demi_atan2(p.y + t[0]*d.y, p.x + t[0]*d.x);
         return 1;
     }
     if (!(D > 0)) return 0;
@@ -84,7 +80,7 @@ static int demi_generator_cross(const demi_generator *l, const double *p, const 
     t[1] = B > 0 ? C/(-B - sqrt(D)) : (-B + sqrt(D))/A;
     for (i = 0; i < 2; i++)
         if (t[i] >= 0 && t[i] <= 1)
-            angle[count++] = demi_atan2(p[1] + t[i]*d[1], p[0] + t[i]*d[0]);
+            angle[count++] = demi_atan2(p.y + t[i]*d.y, p.x + t[i]*d.x);
     return count;
 }
 /* Does the surface go on from a ring to another one into the wall, as a piece l's side has it? */
@@ -115,20 +111,27 @@ static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x
     }
     return l;
 }
+/* How far off the axis, m. */
+DEM_INLINE double demi_off_axis(demi_d3 x) { return sqrt(x.x*x.x + x.y*x.y); }
+/* The point of a line from (a, g) to (a + e, g + f), out and up, nearest to a point that is u out
+   and v up from its beginning: how far off that is, squared. */
+static double demi_line_off2(double u, double v, double e, double f) {
+    double t = (u*e + v*f)/(e*e + f*f);
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f);
+}
 /* The side of a surface of revolution on which x is: by the piece nearest to it, of equally near
    ones by that from whose line it is farthest. */
-static double demi_rings_side(const demi_wall *wall, dem_vec3 x) {
-    const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
+static double demi_rings_side(const demi_wall *wall, demi_d3 x) {
+    const double out = demi_off_axis(x);
     double least = 1e300, far = 0, side = 1;
     int i;
     for (i = 0; i + 1 < wall->ring_count; i++) {
         const double a = (double)wall->ring_radius[i], g = (double)wall->ring_height[i];
         const double e = (double)wall->ring_radius[i + 1] - a;
         const double f = (double)wall->ring_height[i + 1] - g;
-        const double u = out - a, v = (double)x.z - g, over = (v*e - u*f)/sqrt(e*e + f*f);
-        double t = (u*e + v*f)/(e*e + f*f), d2;
-        t = t < 0 ? 0 : t > 1 ? 1 : t;
-        d2 = (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f);
+        const double u = out - a, v = x.z - g, over = (v*e - u*f)/sqrt(e*e + f*f);
+        const double d2 = demi_line_off2(u, v, e, f);
         if (d2 > least*(1 + 1e-9) || (d2 > least*(1 - 1e-9) && !(fabs(over) > fabs(far)))) continue;
         least = DEMI_MIN(least, d2);
         far = over;
@@ -138,11 +141,10 @@ static double demi_rings_side(const demi_wall *wall, dem_vec3 x) {
 }
 /* Does a surface of revolution end at its first ring (end 0) or last (1), near a body of this
    radius about x? Not on its axis, nor where it closes. */
-static int demi_rings_end(const demi_wall *wall, int end, dem_vec3 x, double radius) {
+static int demi_rings_end(const demi_wall *wall, int end, demi_d3 x, double radius) {
     const int ring = end ? wall->ring_count - 1 : 0, other = end ? 0 : wall->ring_count - 1;
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
-    const double off = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y) - r;
-    const double up = (double)x.z - z;
+    const double off = demi_off_axis(x) - r, up = x.z - z;
     return r > 0 && off*off + up*up < radius*radius &&
         !(fabs((double)wall->ring_radius[other] - r) + fabs((double)wall->ring_height[other] - z) <
           1e-9*r);
@@ -167,21 +169,16 @@ static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double 
     return l;
 }
 /* Does a body of this radius about x reach it? */
-static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radius) {
-    const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
-    const double e = l->b - l->a, f = l->h - l->g, u = out - l->a, v = (double)x.z - l->g;
-    double t = (u*e + v*f)/(e*e + f*f);
-    t = t < 0 ? 0 : t > 1 ? 1 : t;
-    return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f) < radius*radius;
+static int demi_generator_near(const demi_generator *l, demi_d3 x, double radius) {
+    const double out = demi_off_axis(x);
+    return demi_line_off2(out - l->a, x.z - l->g, l->b - l->a, l->h - l->g) < radius*radius;
 }
 /* Is x on its far side? Then n is the way into the wall. */
-static int demi_generator_beyond(const demi_generator *l, const double *x, double *n) {
-    const double out = sqrt(x[0]*x[0] + x[1]*x[1]), e = l->b - l->a, f = l->h - l->g;
-    const double size = sqrt(e*e + f*f);
-    n[0] = l->side*f/size*(out > 0 ? x[0]/out : 1);
-    n[1] = l->side*f/size*(out > 0 ? x[1]/out : 0);
-    n[2] = -l->side*e/size;
-    return l->side*((l->a - out)*f - (l->g - x[2])*e) < 0;
+static int demi_generator_beyond(const demi_generator *l, demi_d3 x, demi_d3 *n) {
+    const double out = demi_off_axis(x), e = l->b - l->a, f = l->h - l->g;
+    const double size = sqrt(e*e + f*f), flat = l->side*f/size;
+    *n = demi_d(flat*(out > 0 ? x.x/out : 1), flat*(out > 0 ? x.y/out : 0), -l->side*e/size);
+    return l->side*((l->a - out)*f - (l->g - x.z)*e) < 0;
 }
 /* How far out the surface is at a height. */
 static double demi_generator_radius(const demi_generator *l, double z) {
@@ -189,22 +186,23 @@ static double demi_generator_radius(const demi_generator *l, double z) {
 }
 /* Angles at which lines of the surface come into the plane of a face, at its lowest and highest
    corners: how many, 0 to 4. */
-static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f,
-                               const double *x0, double *angle) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    const double *a = s->plane[f], size = sqrt(a[0]*a[0] + a[1]*a[1]);
+static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f, demi_d3 x0,
+                               double *angle) {
+    const demi_d3 a = s->face[f].slope;
+    const double size = demi_off_axis(a);
     double z[2] = {1e300, -1e300};
     int i, count = 0;
     for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-        z[0] = DEMI_MIN(z[0], s->corner[loops[i]][2] + x0[2]);
-        z[1] = DEMI_MAX(z[1], s->corner[loops[i]][2] + x0[2]);
+        const double up = demi_solid_corner(s, f, i).z + x0.z;
+        z[0] = DEMI_MIN(z[0], up);
+        z[1] = DEMI_MAX(z[1], up);
     }
     for (i = 0; i < 2; i++) {
         const double to = size*demi_generator_radius(l, z[i]);
-        const double c = 1 + a[0]*x0[0] + a[1]*x0[1] - a[2]*(z[i] - x0[2]);
+        const double c = 1 + a.x*x0.x + a.y*x0.y - a.z*(z[i] - x0.z);
         double half, mid;
         if (!(fabs(c) < to)) continue;
-        mid = demi_atan2(a[1], a[0]);
+        mid = demi_atan2(a.y, a.x);
         half = demi_atan2(sqrt((to - c)*(to + c)), c);
         angle[count++] = mid - half;
         angle[count++] = mid + half;
@@ -213,38 +211,36 @@ static int demi_generator_face(const demi_generator *l, const demi_solid *s, int
 }
 /* Angles at which a ring, where a piece ends, comes through a plane n.y = c, y from the centre,
    within the body: how many, 0 to 2. */
-static int demi_ring_cross(const demi_solid *s, double r, double z, const double *n, double c,
-                           const double *x0, double *angle) {
-    const double to = r*sqrt(n[0]*n[0] + n[1]*n[1]);
-    const double over = c + n[0]*x0[0] + n[1]*x0[1] - n[2]*(z - x0[2]);
+static int demi_ring_cross(const demi_solid *s, double r, double z, demi_d3 n, double c,
+                           demi_d3 x0, double *angle) {
+    const double to = r*demi_off_axis(n);
+    const double over = c + n.x*x0.x + n.y*x0.y - n.z*(z - x0.z);
     double mid, half;
     int i, f, count = 0;
     if (!(fabs(over) < to)) return 0;
-    mid = demi_atan2(n[1], n[0]);
+    mid = demi_atan2(n.y, n.x);
     half = demi_atan2(sqrt((to - over)*(to + over)), over);
     for (i = -1; i < 2; i += 2) {
         const double at = mid + i*half;
-        const double y[3] = {r*demi_cos(at) - x0[0], r*demi_sin(at) - x0[1], z - x0[2]};
+        const demi_d3 y = demi_d3_sub(demi_d(r*demi_cos(at), r*demi_sin(at), z), x0);
         for (f = 0; f < s->faces && demi_solid_in(s, f, y) > -1e-9; f++) continue;
         if (f == s->faces) angle[count++] = at;
     }
     return count;
 }
 /* Those of all its faces, and of the sides of its pyramids; radius: of the body. */
-static int demi_generator_end(const demi_solid *s, double r, double z, const double *x0,
-                              double radius, double *angle) {
-    const double off = sqrt(x0[0]*x0[0] + x0[1]*x0[1]) - r, up = x0[2] - z;
-    const int32_t *loops = s->rim + s->faces + 1;
+static int demi_generator_end(const demi_solid *s, double r, double z, demi_d3 x0, double radius,
+                              double *angle) {
+    const double off = demi_off_axis(x0) - r, up = x0.z - z;
     int f, i, count = 0;
     if (!(r > 0) || !(off*off + up*up < radius*radius)) return 0;
     for (f = 0; f < s->faces; f++) {
-        count += demi_ring_cross(s, r, z, s->plane[f], 1, x0, angle + count);
+        count += demi_ring_cross(s, r, z, s->face[f].slope, 1, x0, angle + count);
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            double n[3];
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
             if (a > b) continue;
-            demi_cross3(s->corner[a], s->corner[b], n);
-            count += demi_ring_cross(s, r, z, n, 0, x0, angle + count);
+            count += demi_ring_cross(s, r, z, demi_d3_cross(s->corner[a], s->corner[b]), 0, x0,
+                                     angle + count);
         }
     }
     return count;
@@ -254,14 +250,14 @@ enum { DEMI_CROSSINGS = 2*(3*DEM_POLYHEDRON_FACES + DEMI_HULL_CORNERS) +
        4*DEM_POLYHEDRON_FACES + 4*4*DEM_POLYHEDRON_FACES + 4 };
 /* Is the body wholly above or below a piece, or beyond the plane that touches its widest ring where
    that is nearest to the body's centre? */
-static int demi_generator_apart(const demi_solid *s, const demi_generator *l, const double *x0) {
-    const double wide = DEMI_MAX(l->a, l->b)*sqrt(x0[0]*x0[0] + x0[1]*x0[1]);
+static int demi_generator_apart(const demi_solid *s, const demi_generator *l, demi_d3 x0) {
+    const double wide = DEMI_MAX(l->a, l->b)*demi_off_axis(x0);
     int i, above = 0, below = 0, beyond = 0;
     for (i = 0; i < s->corners; i++) {
-        const double *c = s->corner[i], z = x0[2] + c[2];
-        above += z > DEMI_MAX(l->g, l->h);
-        below += z < DEMI_MIN(l->g, l->h);
-        beyond += x0[0]*(x0[0] + c[0]) + x0[1]*(x0[1] + c[1]) > wide;
+        const demi_d3 c = demi_d3_add(x0, s->corner[i]);
+        above += c.z > DEMI_MAX(l->g, l->h);
+        below += c.z < DEMI_MIN(l->g, l->h);
+        beyond += x0.x*c.x + x0.y*c.y > wide;
     }
     return above == s->corners || below == s->corners || beyond == s->corners;
 }
@@ -269,53 +265,40 @@ static int demi_generator_apart(const demi_solid *s, const demi_generator *l, co
    or of its pyramids, cross it, what they share changes smoothly. Seen from inside, where it is
    convex, only corners reach it, and what leads to them. x: of its centre; whole: it must not be
    beyond. */
-static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, dem_vec3 x,
+static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, demi_d3 x0,
                                     int whole, int32_t element, demi_flats *flats) {
-    static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
-                                 0.9305681557970263};
-    static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
-                                   0.17392742256872692};
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-    const int32_t *loops = s->rim + s->faces + 1;
-    const int inside = (l->h > l->g || l->h < l->g) &&
-        x0[0]*x0[0] + x0[1]*x0[1] <
-        demi_generator_radius(l, x0[2])*demi_generator_radius(l, x0[2]);
+    const double here = demi_generator_radius(l, x0.z), radius = demi_solid_radius(s);
+    const int level = !(l->h > l->g || l->h < l->g);
+    const int inside = !level && x0.x*x0.x + x0.y*x0.y < here*here;
     unsigned char beyond[DEMI_HULL_CORNERS];
-    double angle[DEMI_CROSSINGS], p[3], q[3], radius = 0;
+    demi_d3 p[DEMI_HULL_CORNERS], n;
+    double angle[DEMI_CROSSINGS];
     demi_pressure press;
     int f, i, k, count = 0, any = 0;
     memset(&press, 0, sizeof press);
-    if (whole && demi_generator_beyond(l, x0, p)) {
-        demi_pressure_beyond(s, p, &press);
+    if (whole && demi_generator_beyond(l, x0, &n)) {
+        demi_pressure_beyond(s, n, &press);
         demi_flats_add(flats, element, &press);
         return;
     }
     if (demi_generator_apart(s, l, x0)) return;
     for (i = 0; i < s->corners; i++) {
-        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
-        const double r = demi_generator_radius(l, x0[2] + s->corner[i][2]);
-        radius = DEMI_MAX(radius, demi_dot3(s->corner[i], s->corner[i]));
-        beyond[i] = !inside || !(r > 0) || u*u + v*v > r*r;
+        double r;
+        p[i] = demi_d3_add(x0, s->corner[i]);
+        r = demi_generator_radius(l, p[i].z);
+        beyond[i] = !inside || !(r > 0) || p[i].x*p[i].x + p[i].y*p[i].y > r*r;
         any |= beyond[i];
     }
     if (!any) return;
-    radius = sqrt(radius);
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            if (a > b || (!beyond[a] && !beyond[b])) continue;  /* once: two faces have it */
-            for (k = 0; k < 3; k++) {
-                p[k] = x0[k] + s->corner[a][k];
-                q[k] = x0[k] + s->corner[b][k];
-            }
-            count += demi_generator_cross(l, p, q, angle + count);
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
+            if (a < b && (beyond[a] || beyond[b]))      /* once: two faces have it */
+                count += demi_generator_cross(l, p[a], p[b], angle + count);
         }
-    for (i = 0; i < s->corners; i++) {
-        if (!beyond[i]) continue;
-        for (k = 0; k < 3; k++) p[k] = x0[k] + s->corner[i][k];
-        count += demi_generator_cross(l, x0, p, angle + count);
-    }
-    for (f = 0; f < s->faces && !inside && (l->h > l->g || l->h < l->g); f++)
+    for (i = 0; i < s->corners; i++)
+        if (beyond[i]) count += demi_generator_cross(l, x0, p[i], angle + count);
+    for (f = 0; f < s->faces && !inside && !level; f++)
         count += demi_generator_face(l, s, f, x0, angle + count);
     count += demi_generator_end(s, l->a, l->g, x0, radius, angle + count);
     count += demi_generator_end(s, l->b, l->h, x0, radius, angle + count);
@@ -329,8 +312,8 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         const int pieces = 1 + (int)(width/0.2);
         for (f = 0; f < pieces && (!f || press.sum > had); f++)     /* none of its lines, or all */
             for (k = 0; k < 4 && width > 1e-15; k++)
-                demi_generator_press(s, l, angle[i] + (f + at[k])*width/pieces,
-                                     part[k]*width/pieces, x0, &press);
+                demi_generator_press(s, l, angle[i] + (f + demi_gauss4_at[k])*width/pieces,
+                                     demi_gauss4[k]*width/pieces, x0, &press);
         if (width > 1e-9 && press.sum > had) continue;
         if (width > 1e-9 || i == count) {       /* a gap: what is beyond is another contact */
             demi_flats_add(flats, element, &press);
@@ -340,43 +323,37 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
 }
 /* A point of a body near one piece of a surface of revolution, if it lies over it; its gap, m. n:
    unit, into the wall, at the point's line; out, up, level: as below. */
-static double demi_generator_add(const demi_generator *l, const double *n, const double *x0,
-                                 const double *x, double out, double up, double level,
-                                 int32_t element, demi_gaps *gaps) {
-    const double e = l->b - l->a, f = l->h - l->g, z = x0[2] + x[2];
-    const double across = sqrt(n[0]*n[0] + n[1]*n[1]), size = sqrt(e*e + f*f);
-    const double r = across > 0 ? fabs(n[0]*(x0[0] + x[0]) + n[1]*(x0[1] + x[1]))/across
-        : sqrt((x0[0] + x[0])*(x0[0] + x[0]) + (x0[1] + x[1])*(x0[1] + x[1]));
-    const double gap = out*r + up*z - level, along = (r - l->a)*e + (z - l->g)*f;
-    double o[3];
-    int k;
+static double demi_generator_add(const demi_generator *l, demi_d3 n, demi_d3 x0, demi_d3 x,
+                                 double out, double up, double level, int32_t element,
+                                 demi_gaps *gaps) {
+    const demi_d3 y = demi_d3_add(x0, x);
+    const double e = l->b - l->a, f = l->h - l->g, across = demi_off_axis(n);
+    const double size = sqrt(e*e + f*f);
+    const double r = across > 0 ? fabs(n.x*y.x + n.y*y.y)/across : demi_off_axis(y);
+    const double gap = out*r + up*y.z - level, along = (r - l->a)*e + (y.z - l->g)*f;
     if (along < 0 || along > e*e + f*f) return 1e300;
     /* deeper than it is far from an end: that one's ring, or the next piece, tells of it */
     if (gap < 0 && ((l->open[0] && along < -gap*size) ||
                     (l->open[1] && e*e + f*f - along < -gap*size))) return 1e300;
-    for (k = 0; k < 3; k++) o[k] = x[k] + n[k]*gap/2;
-    demi_gaps_add(gaps, element, n, o, gap);
+    demi_gaps_add(gaps, element, n, demi_d3_plus(x, gap/2, n), gap);
     return gap;
 }
 /* One piece of a surface of revolution that bends away from the body: the plane through one of its
    lines that keeps most of it off, sought by the side on which its nearest corner lies; then where
    the body is cut by the plane through that line and the axis. x0: of the centre. m: of the
    surface's normal, towards the body, out and up; level: m.x of its points. */
-static void demi_generator_line(const demi_solid *s, const double *x0, double out, double up,
+static void demi_generator_line(const demi_solid *s, demi_d3 x0, double out, double up,
                                 double level, const demi_generator *l, int32_t element,
                                 demi_gaps *gaps) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    double lo = 0, hi = 0, c = 1, sn = 0, least = 0, lowest = 1e300;
-    double at[DEMI_HULL_CORNERS][3], off[DEMI_HULL_CORNERS], n[3], o[3];
-    const double middle = sqrt(x0[0]*x0[0] + x0[1]*x0[1]);
-    const double ax = middle > 0 ? x0[0]/middle : 1, ay = middle > 0 ? x0[1]/middle : 0;
-    int i, k, f, turn, nearest = 0;
+    double lo = 0, hi = 0, c = 1, sn = 0, least = 0, lowest = 1e300, off[DEMI_HULL_CORNERS];
+    const double middle = demi_off_axis(x0);
+    const double ax = middle > 0 ? x0.x/middle : 1, ay = middle > 0 ? x0.y/middle : 0;
+    demi_d3 at[DEMI_HULL_CORNERS], n;
+    int i, f, turn, nearest = 0;
     for (i = 0; i < s->corners; i++) {          /* seen from the axis: out, aside, up */
-        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
-        at[i][0] = ax*u + ay*v;
-        at[i][1] = ax*v - ay*u;
-        at[i][2] = x0[2] + s->corner[i][2];
-        off[i] = demi_atan2(at[i][1], at[i][0]);
+        const demi_d3 y = demi_d3_add(x0, s->corner[i]);
+        at[i] = demi_d(ax*y.x + ay*y.y, ax*y.y - ay*y.x, y.z);
+        off[i] = demi_atan2(at[i].y, at[i].x);
         lo = DEMI_MIN(lo, off[i]);
         hi = DEMI_MAX(hi, off[i]);
     }
@@ -386,7 +363,7 @@ static void demi_generator_line(const demi_solid *s, const double *x0, double ou
         sn = demi_sin(angle);
         least = 1e300;
         for (i = 0; i < s->corners; i++) {
-            const double d = out*(at[i][0]*c + at[i][1]*sn) + up*at[i][2] - level;
+            const double d = out*(at[i].x*c + at[i].y*sn) + up*at[i].z - level;
             if (d < least) { least = d; nearest = i; }
         }
         if (!turn && !(lo < 0 || hi > 0)) break;
@@ -395,25 +372,24 @@ static void demi_generator_line(const demi_solid *s, const double *x0, double ou
         if (!(hi - lo > 1e-15)) break;
     }
     if (!(least < gaps->range)) return;
-    n[0] = -out*(ax*c - ay*sn); n[1] = -out*(ay*c + ax*sn); n[2] = -up;
+    n = demi_d(-out*(ax*c - ay*sn), -out*(ay*c + ax*sn), -up);
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            const double p = at[a][1]*c - at[a][0]*sn, q = at[b][1]*c - at[b][0]*sn, t = p/(p - q);
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
+            const double p = at[a].y*c - at[a].x*sn, q = at[b].y*c - at[b].x*sn;
             double gap;
             if (a > b || (p > 0) == (q > 0)) continue;
-            for (k = 0; k < 3; k++)
-                o[k] = s->corner[a][k] + t*(s->corner[b][k] - s->corner[a][k]);
-            gap = demi_generator_add(l, n, x0, o, out, up, level, element, gaps);
+            gap = demi_generator_add(l, n, x0, demi_d3_between(s->corner[a], s->corner[b],
+                                                               p/(p - q)), out, up, level,
+                                     element, gaps);
             lowest = DEMI_MIN(lowest, gap);
         }
     if (lowest > least + 1e-9*middle)           /* a corner that is cut nowhere */
         demi_generator_add(l, n, x0, s->corner[nearest], out, up, level, element, gaps);
 }
 /* One piece of a surface of revolution: where it bends round the body, corners. */
-static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, dem_vec3 x,
+static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, demi_d3 x0,
                                 int32_t element, demi_gaps *gaps) {
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
     const double e = l->b - l->a, f = l->h - l->g, size = sqrt(e*e + f*f);
     const double out = -l->side*f/size, up = l->side*e/size, level = out*l->a + up*l->g;
     int i;
@@ -422,37 +398,34 @@ static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, de
         return;
     }
     for (i = 0; i < s->corners; i++) {
-        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
-        const double r = sqrt(u*u + v*v);
-        const double n[3] = {r > 0 ? -out*u/r : -out, r > 0 ? -out*v/r : 0, -up};
+        const demi_d3 y = demi_d3_add(x0, s->corner[i]);
+        const double r = demi_off_axis(y);
+        const demi_d3 n = demi_d(r > 0 ? -out*y.x/r : -out, r > 0 ? -out*y.y/r : 0, -up);
         demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
     }
 }
-/* The point of a ring at an angle about the axis, and the body's point nearest to it, to. Where
-   tell is not null, it is told as that element where neither piece that ends in the ring goes on
-   towards the body. How far apart, m. */
-static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s,
-                              const double *x0, double angle, const int32_t *tell, double *to,
-                              demi_gaps *gaps) {
+/* How far the point of a ring at an angle about the axis is from the body, m. Where tell is not
+   null, it is told as that element where neither piece that ends in the ring goes on towards the
+   body. */
+static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s, demi_d3 x0,
+                              double angle, const int32_t *tell, demi_gaps *gaps) {
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
     const double c = demi_cos(angle), sn = demi_sin(angle);
-    const double y[3] = {r*c - x0[0], r*sn - x0[1], z - x0[2]};
-    const double off = demi_solid_near(s, y, to);
-    double n[3], o[3], along;
-    int i, k;
+    const demi_d3 y = demi_d3_sub(demi_d(r*c, r*sn, z), x0);
+    demi_d3 to, n;
+    const double off = demi_solid_near(s, y, &to);
+    int i;
     if (!tell || !(off < gaps->range) || !(off > 0 || off < 0)) return off;
-    for (k = 0; k < 3; k++) {
-        n[k] = (y[k] - to[k])/off;
-        o[k] = (y[k] + to[k])/2;
-    }
+    n = demi_d3_over(demi_d3_sub(y, to), off);
     for (i = -1; i < 2; i += 2) {
         const int other = ring + i;
+        double along;
         if (other < 0 || other >= wall->ring_count) continue;
-        along = (n[0]*c + n[1]*sn)*((double)wall->ring_radius[other] - r) +
-            n[2]*((double)wall->ring_height[other] - z);
+        along = (n.x*c + n.y*sn)*((double)wall->ring_radius[other] - r) +
+            n.z*((double)wall->ring_height[other] - z);
         if (-along > 1e-9*r) return off;
     }
-    demi_gaps_add(gaps, *tell, n, o, off);
+    demi_gaps_add(gaps, *tell, n, demi_d3_scale(demi_d3_add(y, to), 0.5), off);
     return off;
 }
 /* A ring of a surface of revolution, at the end of a piece: points all round as far as a body of
@@ -460,20 +433,18 @@ static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid 
    deeper, than its neighbours the one that is most so (golden section). */
 enum { DEMI_RING_POINTS = 17 };
 static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, const demi_solid *s,
-                           dem_vec3 x, double radius, demi_gaps *gaps) {
+                           demi_d3 x0, double radius, demi_gaps *gaps) {
     static const double golden = 0.6180339887498949;
     const double r = (double)wall->ring_radius[ring], reach = (radius + gaps->range)/r;
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-    const double off = sqrt(x0[0]*x0[0] + x0[1]*x0[1]) - r;
-    const double up = x0[2] - (double)wall->ring_height[ring], angle = demi_atan2(x0[1], x0[0]);
+    const double off = demi_off_axis(x0) - r, angle = demi_atan2(x0.y, x0.x);
+    const double up = x0.z - (double)wall->ring_height[ring];
     const double half = reach < 1 ? demi_atan2(reach, sqrt(1 - reach*reach)) : DEMI_PI;
     const double step = 2*half/(DEMI_RING_POINTS - 1);
-    double far[DEMI_RING_POINTS], q[3];
+    double far[DEMI_RING_POINTS];
     int i, turn;
     if (!(off*off + up*up < (radius + gaps->range)*(radius + gaps->range))) return;
     for (i = 0; i < DEMI_RING_POINTS; i++)
-        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, &element, q,
-                                 gaps);
+        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, &element, gaps);
     for (i = 0; i < DEMI_RING_POINTS; i++) {
         const int last = i + 1 == DEMI_RING_POINTS;
         double lo = angle - half + (i - 1)*step, hi = lo + 2*step, at[2], found[2];
@@ -481,7 +452,7 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
             !(far[i] < gaps->range + step*r)) continue;
         for (turn = 0; turn < 2; turn++) {
             at[turn] = turn ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
-            found[turn] = demi_ring_point(wall, ring, s, x0, at[turn], 0, q, gaps);
+            found[turn] = demi_ring_point(wall, ring, s, x0, at[turn], 0, gaps);
         }
         for (turn = 0; turn < 30; turn++) {
             const int less = found[1] < found[0];
@@ -490,9 +461,9 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
             at[!less] = at[less];
             found[!less] = found[less];
             at[less] = less ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
-            found[less] = demi_ring_point(wall, ring, s, x0, at[less], 0, q, gaps);
+            found[less] = demi_ring_point(wall, ring, s, x0, at[less], 0, gaps);
         }
-        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, q, gaps);
+        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, gaps);
     }
 }
 /* All of a cylinder, or of a surface of revolution seen from one side, with the curtains at its
@@ -500,17 +471,18 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
 static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec3 x,
                              dem_real radius, double side, int ends, demi_flats *flats) {
     const int round = wall->kind == DEMI_WALL_CYLINDER, pieces = round ? 1 : wall->ring_count - 1;
+    const demi_d3 x0 = demi_d3_of(x);
     int i;
     for (i = 0; i < pieces; i++) {
         const demi_generator l = demi_generator_of(wall, i, x, radius, side);
-        if (round || demi_generator_near(&l, x, (double)radius))
-            demi_solid_on_generator(s, &l, x, round, i, flats);
+        if (round || demi_generator_near(&l, x0, (double)radius))
+            demi_solid_on_generator(s, &l, x0, round, i, flats);
     }
     for (i = 0; i < 2; i++) {
         demi_generator l;
         if (!(ends >> i & 1)) continue;
         l = demi_rings_curtain(wall, i, (double)radius, side);
-        demi_solid_on_generator(s, &l, x, 0, i ? 2*pieces : pieces, flats);
+        demi_solid_on_generator(s, &l, x0, 0, i ? 2*pieces : pieces, flats);
     }
 }
 /* A cylinder, or a surface of revolution, piece by piece. */
@@ -532,11 +504,12 @@ static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     while (demi_view_next(&v)) {
         const dem_vec3 x = v.x;
+        const demi_d3 x0 = demi_d3_of(x);
         flats.count = gaps.count = 0;
         if (*v.gap > v.gone) continue;
-        side = demi_rings_side(wall, x);
+        side = demi_rings_side(wall, x0);
         for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            ends |= demi_rings_end(wall, i, x, (double)part->radius) << i;
+            ends |= demi_rings_end(wall, i, x0, (double)part->radius) << i;
         if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
         for (i = 0; i < 2 && pressing && ends; i++) {
             seen[i].count = 0;
@@ -547,11 +520,11 @@ static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
         for (i = 0; i < pieces && range > 0; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
             if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */
-                demi_generator_near(&l, x, (double)part->radius + range))
-                demi_generator_gaps(&s, &l, x, i, &gaps);
+                demi_generator_near(&l, x0, (double)part->radius + range))
+                demi_generator_gaps(&s, &l, x0, i, &gaps);
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            demi_ring_gaps(wall, i, pieces + i, &s, x, (double)part->radius, &gaps);
+            demi_ring_gaps(wall, i, pieces + i, &s, x0, (double)part->radius, &gaps);
         count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
     }
     return count;

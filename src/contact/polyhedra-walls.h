@@ -17,13 +17,13 @@ typedef struct demi_flats {
     demi_pressure press[DEMI_FLATS];
 } demi_flats;
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
-    const double size = sqrt(demi_dot3(s->force, s->force));
+    const double size = demi_d3_length(s->force);
     double most = -2;
     int i, best = 0;
     if (!(s->sum > 0) || !(size > 0)) return;
     for (i = 0; i < f->count; i++) {
-        const double *F = f->press[i].force;
-        const double along = demi_dot3(F, s->force)/(size*sqrt(demi_dot3(F, F)));
+        const demi_d3 F = f->press[i].force;
+        const double along = demi_d3_dot(F, s->force)/(size*demi_d3_length(F));
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && f->count < DEMI_FLATS) {
@@ -73,7 +73,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     int i, k, count = 0;
     for (i = 0; i < f->count; i++) {
         shared += f->press[i].shared;
-        force += sqrt(demi_dot3(f->press[i].force, f->press[i].force));
+        force += demi_d3_length(f->press[i].force);
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
@@ -96,41 +96,37 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     }
     return count;
 }
+/* Writes the corners of an element, about an origin in the wall's frame, and returns their number.
+   A line of a profile, which goes on along z, gets a third one above its first, so that it has the
+   normal of a triangle. */
+static int demi_facet_corners(const demi_wall *wall, int element, dem_vec3 origin, demi_d3 *x) {
+    const int corners = demi_wall_kinds[wall->kind].corners;
+    dem_vec3 y[3];
+    int i;
+    demi_wall_corners(wall, element, y);
+    for (i = 0; i < corners; i++) x[i] = demi_d3_of(demi_sub(y[i], origin));
+    if (corners == 3) return 3;
+    x[0].z = x[1].z = 0;
+    x[2] = demi_d(x[0].x, x[0].y, 1);
+    return 2;
+}
 /* The sides of an element of a surface, as half spaces: how many; its plane into n and at, n along
    or (way < 0) against the way its corners turn. 0: it is too thin. origin: of the axes, in the
    wall's frame. */
-static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, int way, double *n,
-                            double *at, double (*sides)[2][3]) {
-    const int corners = demi_wall_kinds[wall->kind].corners;
-    dem_vec3 y[3];
-    double x[3][3], e[3], f[3], up[3];
-    int i, k;
-    demi_wall_corners(wall, element, y);
+static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, int way,
+                            demi_d3 *n, double *at, demi_half *sides) {
+    demi_d3 x[3], up;
+    const int corners = demi_facet_corners(wall, element, origin, x);
+    int i;
+    up = demi_d3_normal(x[0], x[1], x[2]);
     for (i = 0; i < corners; i++) {
-        const dem_vec3 d = demi_sub(y[i], origin);
-        x[i][0] = (double)d.x; x[i][1] = (double)d.y; x[i][2] = (double)d.z;
+        const demi_d3 e = demi_d3_sub(x[(i + 1)%corners], x[i]);
+        sides[i].n = corners == 2 ? e : demi_d3_cross(up, e);   /* a line is drawn out along z */
+        sides[i].o = x[i];
     }
-    demi_sub3(x[1], x[0], e);
-    if (corners == 2) {                         /* a line, drawn out along z */
-        up[0] = e[1]; up[1] = -e[0]; up[2] = 0;
-        for (i = 0; i < 2; i++)
-            for (k = 0; k < 3; k++) {
-                sides[i][0][k] = i ? -e[k] : e[k];
-                sides[i][1][k] = x[i][k];
-            }
-        sides[0][0][2] = sides[1][0][2] = 0;
-    } else {
-        demi_sub3(x[2], x[0], f);
-        demi_cross3(e, f, up);
-        for (i = 0; i < 3; i++) {
-            demi_sub3(x[(i + 1)%3], x[i], e);
-            demi_cross3(up, e, sides[i][0]);
-            memcpy(sides[i][1], x[i], sizeof x[i]);
-        }
-    }
-    if (!(demi_unit3(up) > 0)) return 0;
-    for (k = 0; k < 3; k++) n[k] = way < 0 ? -up[k] : up[k];
-    *at = demi_dot3(n, x[0]);
+    if (!(demi_d3_length(up) > 0)) return 0;
+    *n = demi_d3_scale(demi_d3_unit(up), way < 0 ? -1 : 1);
+    *at = demi_d3_dot(*n, x[0]);
     return corners;
 }
 /* --- by how much a polyhedron is apart from walls, and the points that keep it off: for impulses,
@@ -141,7 +137,8 @@ enum { DEMI_GAP_POINTS = 24 };
 typedef struct demi_gap_group {
     int32_t element;                           /* the first */
     int count;
-    double x[DEMI_GAP_POINTS][3], n[DEMI_GAP_POINTS][3], gap[DEMI_GAP_POINTS];
+    demi_d3 x[DEMI_GAP_POINTS], n[DEMI_GAP_POINTS];
+    double gap[DEMI_GAP_POINTS];
 } demi_gap_group;
 typedef struct demi_gaps {
     int count, flat;               /* flat: what pushes within 60 degrees of z alone (of plates) */
@@ -154,20 +151,19 @@ static void demi_gap_group_pick(demi_gap_group *g) {
     int picked[4], i;
     g->count = demi_spots_pick(g->x, g->gap, g->count, g->n[0], picked);
     for (i = 0; i < g->count; i++) {
-        memcpy(g->x[i], all.x[picked[i]], sizeof *g->x);
-        memcpy(g->n[i], all.n[picked[i]], sizeof *g->n);
+        g->x[i] = all.x[picked[i]];
+        g->n[i] = all.n[picked[i]];
         g->gap[i] = all.gap[picked[i]];
     }
 }
 /* n: unit, from the polyhedron into the wall. */
-static void demi_gaps_add(demi_gaps *gaps, int32_t element, const double *n, const double *x,
-                          double gap) {
+static void demi_gaps_add(demi_gaps *gaps, int32_t element, demi_d3 n, demi_d3 x, double gap) {
     demi_gap_group *g;
     double most = -2;
     int i, best = 0;
-    if (!(gap < gaps->range) || (gaps->flat && fabs(n[2]) < 0.5)) return;
+    if (!(gap < gaps->range) || (gaps->flat && fabs(n.z) < 0.5)) return;
     for (i = 0; i < gaps->count; i++) {
-        const double along = demi_dot3(gaps->group[i].n[0], n);
+        const double along = demi_d3_dot(gaps->group[i].n[0], n);
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && gaps->count < DEMI_FLATS) {
@@ -177,18 +173,17 @@ static void demi_gaps_add(demi_gaps *gaps, int32_t element, const double *n, con
     }
     g = &gaps->group[best];
     if (g->count == DEMI_GAP_POINTS) demi_gap_group_pick(g);
-    memcpy(g->x[g->count], x, sizeof *g->x);
-    memcpy(g->n[g->count], n, sizeof *g->n);
+    g->x[g->count] = x;
+    g->n[g->count] = n;
     g->gap[g->count++] = gap;
 }
 /* A plane z = 0 of the wall's frame: corners. height: of the origin over it. */
 static void demi_plane_gaps(const demi_solid *s, double height, demi_gaps *gaps) {
-    static const double down[3] = {0, 0, -1};
     int i;
     for (i = 0; i < s->corners; i++) {
-        const double gap = s->corner[i][2] + height;
-        const double x[3] = {s->corner[i][0], s->corner[i][1], s->corner[i][2] - gap/2};
-        demi_gaps_add(gaps, 0, down, x, gap);
+        const demi_d3 c = s->corner[i];
+        const double gap = c.z + height;
+        demi_gaps_add(gaps, 0, demi_d(0, 0, -1), demi_d(c.x, c.y, c.z - gap/2), gap);
     }
 }
 /* A facet as a body: a triangle, or what a profile's line sweeps from reach below to reach above
@@ -197,34 +192,31 @@ static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin,
                             demi_solid *f) {
     static const int32_t triangle[9] = {0, 3, 6, 0, 1, 2, 0, 2, 1};
     static const int32_t strip[11] = {0, 4, 8, 0, 1, 2, 3, 0, 3, 2, 1};
-    dem_vec3 y[3];
-    double e[3], g[3];
-    int i, k;
-    demi_wall_corners(wall, element, y);
+    demi_d3 x[3], up;
+    const int line = demi_facet_corners(wall, element, origin, x) == 2;
+    int i;
     f->faces = 2;
-    f->corners = demi_wall_kinds[wall->kind].corners == 2 ? 4 : 3;
-    f->rim = f->corners == 4 ? strip : triangle;
-    f->centre[0] = f->centre[1] = f->centre[2] = 0;
+    f->corners = line ? 4 : 3;
+    f->rim = line ? strip : triangle;
+    f->centre = demi_d(0, 0, 0);
     for (i = 0; i < f->corners; i++) {
-        const dem_vec3 d = demi_sub(y[f->corners == 3 ? i : i == 1 || i == 2], origin);
-        double *c = f->corner[i];
-        c[0] = (double)d.x; c[1] = (double)d.y;
-        c[2] = f->corners == 3 ? (double)d.z : i < 2 ? -reach : reach;
-        for (k = 0; k < 3; k++) f->centre[k] += c[k]/f->corners;
+        demi_d3 *c = &f->corner[i];
+        *c = x[line ? i == 1 || i == 2 : i];
+        if (line) c->z = i < 2 ? -reach : reach;
+        f->centre = demi_d3_add(f->centre, demi_d3_over(*c, f->corners));
     }
-    demi_sub3(f->corner[1], f->corner[0], e);
-    demi_sub3(f->corner[2], f->corner[0], g);
-    demi_cross3(e, g, f->plane[0]);
-    if (!(demi_unit3(f->plane[0]) > 0)) return 0;
-    for (k = 0; k < 3; k++) f->plane[1][k] = -f->plane[0][k];
-    f->plane[0][3] = f->plane[1][3] = 1;        /* unit normals, for those who ask for no more */
+    up = demi_d3_normal(f->corner[0], f->corner[1], f->corner[2]);
+    if (!(demi_d3_length(up) > 0)) return 0;
+    f->face[0].slope = demi_d3_unit(up);
+    f->face[1].slope = demi_d3_scale(f->face[0].slope, -1);
+    f->face[0].high = f->face[1].high = 1;      /* unit normals, for those who ask for no more */
     return 1;
 }
 /* Is the facet's part that tells a gap, an edge or a corner (own: which of its corners), what the
    surface has nearest there? Not where another facet that has the same edge, or corner, goes on
    towards the body: that one tells its own. n: unit, from the body. */
 static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int count,
-                              const dem_vec3 *own, int owns, const double *n) {
+                              const dem_vec3 *own, int owns, demi_d3 n) {
     int i, k, e;
     for (i = 0; i < count; i++) {
         dem_vec3 y[3];
@@ -241,8 +233,7 @@ static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int c
                 const dem_vec3 edge = demi_unit(demi_sub(own[1], own[0]));
                 way = demi_sub(way, demi_scale(edge, demi_dot(way, edge)));
             }
-            if (-(n[0]*(double)way.x + n[1]*(double)way.y + n[2]*(double)way.z) >
-                1e-9*(double)demi_length(way)) return 0;
+            if (-demi_d3_dot(n, demi_d3_of(way)) > 1e-9*(double)demi_length(way)) return 0;
         }
     }
     return 1;
@@ -251,35 +242,25 @@ static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int c
    without end. 0: none. */
 static int demi_facet_under(const demi_solid *s, const demi_solid *f, double range,
                             demi_spots *out) {
-    double x[DEMI_SECTION][3], gap[DEMI_SECTION], up[3];
-    int picked[4], i, k, left = 0, count;
-    count = demi_faces_over(f, demi_dot3(f->plane[0], f->corner[0]) > 0, s, x, gap, up);
-    for (i = 0; i < count; i++) {
-        if (!(gap[i] < range)) continue;
-        memmove(x[left], x[i], sizeof *x);
-        gap[left++] = gap[i];
-    }
-    for (k = 0; k < 3; k++) out->normal[k] = -up[k];
-    out->count = left ? demi_spots_pick(x, gap, left, up, picked) : 0;
-    for (i = 0; i < out->count; i++) {
-        memcpy(out->x[i], x[picked[i]], sizeof *x);
-        out->gap[i] = gap[picked[i]];
-    }
-    return out->count;
+    demi_d3 x[DEMI_SECTION], up;
+    double gap[DEMI_SECTION];
+    const int side = demi_d3_dot(f->face[0].slope, f->corner[0]) > 0;
+    const int count = demi_faces_over(f, side, s, x, gap, &up);
+    out->normal = demi_d3_scale(up, -1);
+    return demi_spots_take(out, x, gap, count, range, up);
 }
 /* One facet. among: all that are near. Deep in it by little beside an edge that goes on, the least
    way out leads over the edge, into the facet beyond; then it is told as if it had no end. */
 static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
                               const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
-    static const double anywhere[3] = {0, 0, 0};
     demi_simplex tells;
     demi_solid f;
     demi_spots spots;
     dem_vec3 y[3], own[3];
     int i, k, owns = 0, has[3] = {0, 0, 0};
     if (!demi_facet_solid(wall, element, x, reach, &f) ||
-        !demi_solids_spots(s, &f, 1, gaps->range, anywhere, &tells, &spots)) return;
-    if (fabs(demi_dot3(spots.normal, f.plane[0])) < DEMI_FLUSH) {
+        !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
+    if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
         demi_wall_corners(wall, element, y);
         for (i = 0; i < tells.count; i++) {
@@ -322,11 +303,8 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             t->share = v->wall->share/(dem_real)places;
             t->slope = 1;
             t->deep = t->overlap/demi_part_thin(part);
-            t->normal = demi_rotate(R, demi_v((dem_real)g->n[e][0], (dem_real)g->n[e][1],
-                                              (dem_real)g->n[e][2]));
-            t->point = demi_add(v->at, demi_rotate(R, demi_v((dem_real)g->x[e][0],
-                                                             (dem_real)g->x[e][1],
-                                                             (dem_real)g->x[e][2])));
+            t->normal = demi_rotate(R, demi_d3_real(g->n[e]));
+            t->point = demi_add(v->at, demi_rotate(R, demi_d3_real(g->x[e])));
             t->shift = v->shift;
             for (e = 1; e <= pressed; e++)
                 if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
@@ -373,37 +351,21 @@ DEM_INLINE int32_t demi_sheet_of(const demi_wall *wall, int element) {
     const int32_t own = wall->sheet[element];
     return own < 0 ? -own : own;
 }
-/* m2: how far a segment is from the origin. */
-static double demi_segment_near2(const double *p, const double *q) {
-    double part[2], d2 = 0;
-    int k;
-    demi_near_segment(p, q, part);
-    for (k = 0; k < 3; k++) d2 += (part[0]*p[k] + part[1]*q[k])*(part[0]*p[k] + part[1]*q[k]);
-    return d2;
-}
 /* within: m, how far the body reaches. */
 static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin,
                             double within) {
     const int32_t sheet = demi_sheet_of(wall, element);
-    const int corners = demi_wall_kinds[wall->kind].corners, open = demi_facet_ends(wall, element);
-    double x[3][3], part[3] = {0, 0, 0}, e[3], f[3] = {0, 0, 1}, up[3], v[3], d2, over;
-    dem_vec3 y[3];
+    const int open = demi_facet_ends(wall, element);
+    double part[3] = {0, 0, 0}, d2, over;
+    demi_d3 x[3], up;
+    const int corners = demi_facet_corners(wall, element, origin, x);
     int i, k;
-    demi_wall_corners(wall, element, y);
-    for (i = 0; i < corners; i++) {
-        const dem_vec3 d = demi_sub(y[i], origin);
-        x[i][0] = (double)d.x; x[i][1] = (double)d.y; x[i][2] = corners == 2 ? 0 : (double)d.z;
-    }
-    demi_sub3(x[1], x[0], e);
-    if (corners == 3) demi_sub3(x[2], x[0], f);
+    up = demi_d3_normal(x[0], x[1], x[2]);
+    if (!(demi_d3_length(up) > 0)) return;
     if (corners == 3) demi_near_triangle(x[0], x[1], x[2], part);
     else demi_near_segment(x[0], x[1], part);
-    demi_cross3(e, f, up);
-    if (!(demi_unit3(up) > 0)) return;
-    for (k = 0; k < 3; k++)
-        for (i = 0, v[k] = 0; i < corners; i++) v[k] += part[i]*x[i][k];
-    d2 = demi_dot3(v, v);
-    over = demi_dot3(up, x[0])*(wall->sheet[element] < 0 ? -1 : 1);
+    d2 = demi_d3_square(demi_triangle_point(part, x[0], x[1], x[2]));
+    over = demi_d3_dot(demi_d3_unit(up), x[0])*(wall->sheet[element] < 0 ? -1 : 1);
     for (i = 0; i < s->count && s->sheet[i] != sheet; i++) continue;
     if (i == DEMI_SHEETS) return;
     if (i == s->count) s->ends[s->count++] = 0;
@@ -411,7 +373,7 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
              (d2 > s->near2[i]*(1 - 1e-9) && !(fabs(over) > fabs(s->over[i])))) d2 = -1;
     for (k = 0; k < corners && !s->ends[i]; k++)
         s->ends[i] = open >> k & 1 &&
-            demi_segment_near2(x[k], x[corners == 3 ? (k + 1)%3 : k]) < within*within;
+            demi_near_segment(x[k], x[corners == 3 ? (k + 1)%3 : k], part) < within*within;
     if (d2 < 0) return;
     s->sheet[i] = sheet;
     s->near2[i] = d2;
@@ -435,14 +397,14 @@ static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int elem
 /* One element, from a polyhedron about the origin of the axes. way: of its normal. */
 static void demi_solid_on_element(const demi_wall *wall, int element, const demi_solid *s,
                                   dem_vec3 x, int way, demi_pressure *press) {
-    double sides[3][2][3], n[3], at;
+    demi_half sides[3];
+    demi_d3 n;
+    double at;
     int count;
     memset(press, 0, sizeof *press);
-    if (wall->kind == DEMI_WALL_PLANE) {
-        n[0] = n[1] = 0;
-        n[2] = -1;
-        demi_solid_on_flat(s, n, (double)x.z, 0, 0, 0, press);
-    } else if ((count = demi_facet_sides(wall, element, x, way, n, &at, sides)) != 0)
+    if (wall->kind == DEMI_WALL_PLANE)
+        demi_solid_on_flat(s, demi_d(0, 0, -1), (double)x.z, 0, 0, 0, press);
+    else if ((count = demi_facet_sides(wall, element, x, way, &n, &at, sides)) != 0)
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
 /* The elements of one sheet that are near a body, seen from one side: of the sheet's first facet
@@ -472,96 +434,84 @@ static const demi_border *demi_facet_border(const demi_wall *wall, int32_t side)
 }
 /* Half of the curtain of a side, from its corner at o to its middle c, down along m; way: along the
    side, so that m x way is the curtain's normal. */
-static void demi_curtain_half(const demi_solid *s, const double *o, const double *c,
-                              const double *m, const double *way, demi_pressure *press) {
-    double by[3][2][3], e[3], n[3], along, size;
-    int k;
-    demi_sub3(c, o, e);
-    demi_cross3(m, way, n);
-    if (!(demi_unit3(n) > 0)) return;
-    along = demi_dot3(e, m);
-    size = demi_dot3(e, e);
-    for (k = 0; k < 3; k++) {
-        by[0][0][k] = m[k] - along/size*e[k];
-        by[1][0][k] = e[k] - along*m[k];
-        by[2][0][k] = -by[1][0][k];
-        by[0][1][k] = by[1][1][k] = o[k];
-        by[2][1][k] = c[k];
-    }
-    demi_solid_on_flat(s, n, demi_dot3(n, o), by, 3, 0, press);
+static void demi_curtain_half(const demi_solid *s, demi_d3 o, demi_d3 c, demi_d3 m, demi_d3 way,
+                              demi_pressure *press) {
+    const demi_d3 e = demi_d3_sub(c, o), n = demi_d3_unit(demi_d3_cross(m, way));
+    const double along = demi_d3_dot(e, m), size = demi_d3_square(e);
+    demi_half by[3];
+    if (!(demi_d3_square(n) > 0)) return;
+    by[0].n = demi_d3_plus(m, -along/size, e);
+    by[1].n = demi_d3_plus(e, -along, m);
+    by[2].n = demi_d3_scale(by[1].n, -1);
+    by[0].o = by[1].o = o;
+    by[2].o = c;
+    demi_solid_on_flat(s, n, demi_d3_dot(n, o), by, 3, 0, press);
 }
 /* What is missing between both halves at the middle of a side, where the sheet's normal is a at the
    corner before and b at that behind: the sector between lines along both. */
-static void demi_curtain_fold(const demi_solid *s, const double *c, const double *a,
-                              const double *b, demi_pressure *press) {
-    const double along = demi_dot3(a, b);
-    double by[2][2][3], n[3];
-    int k;
-    demi_cross3(a, b, n);
-    if (!(demi_unit3(n) > 1e-9)) return;
-    for (k = 0; k < 3; k++) {
-        by[0][0][k] = b[k] - along*a[k];
-        by[1][0][k] = a[k] - along*b[k];
-        by[0][1][k] = by[1][1][k] = c[k];
-    }
-    demi_solid_on_flat(s, n, demi_dot3(n, c), by, 2, 0, press);
+static void demi_curtain_fold(const demi_solid *s, demi_d3 c, demi_d3 a, demi_d3 b,
+                              demi_pressure *press) {
+    const demi_d3 across = demi_d3_cross(a, b), n = demi_d3_unit(across);
+    const double along = demi_d3_dot(a, b);
+    demi_half by[2];
+    if (!(demi_d3_length(across) > 1e-9)) return;
+    by[0].n = demi_d3_plus(b, -along, a);
+    by[1].n = demi_d3_plus(a, -along, b);
+    by[0].o = by[1].o = c;
+    demi_solid_on_flat(s, n, demi_d3_dot(n, c), by, 2, 0, press);
 }
 /* Does the curtain at a side (3*element + side) reach over the plane of its element, n the normal,
    where the sheet is folded sharply? */
-static int demi_curtain_bends(const demi_sheet *t, int32_t side, const double *n) {
+static int demi_curtain_bends(const demi_sheet *t, int32_t side, demi_d3 n) {
     const demi_border *mean = demi_facet_border(t->wall, side);
-    const dem_vec3 up = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    const dem_vec3 up = demi_d3_real(n);
     return mean && (demi_dot(mean->normal[0], up)*(dem_real)t->way < 0 ||
                     demi_dot(mean->normal[1], up)*(dem_real)t->way < 0);
 }
 /* The curtain at a side (3*element + side) where its sheet ends: from there down along the sheet's
    normal, without end. What is beyond the sheet and within its curtains is closed and does not
    change as the body moves, so that energy is conserved. n: the element's normal. */
-static void demi_sheet_curtain(const demi_sheet *t, int32_t side, double (*sides)[2][3],
-                               const double *n, const demi_solid *s, demi_pressure *press) {
-    const int k = side%3;
+static void demi_sheet_curtain(const demi_sheet *t, int32_t side, const demi_half *sides,
+                               demi_d3 n, const demi_solid *s, demi_pressure *press) {
+    const demi_half *end = sides + side%3, *next = sides + (side + 1)%3;
+    const demi_d3 in = demi_d3_unit(end->n), way = demi_d3_cross(in, n);       /* n x way = in */
     const demi_border *mean;
-    const double *end[2];
-    double m[2][3], in[3], way[3], edge[3], c[3];
+    demi_d3 m[2], c;
     int q;
     memset(press, 0, sizeof *press);
-    memcpy(in, sides[k][0], sizeof in);
-    demi_unit3(in);
     if (demi_wall_per(t->wall) == 2) {
-        double by[1][2][3];
-        memcpy(by[0][0], n, sizeof by[0][0]);
-        memcpy(by[0][1], sides[k][1], sizeof by[0][1]);
-        demi_solid_on_flat(s, in, demi_dot3(in, by[0][1]), by, 1, 0, press);
+        demi_half by;
+        by.n = n;
+        by.o = end->o;
+        demi_solid_on_flat(s, in, demi_d3_dot(in, by.o), &by, 1, 0, press);
         return;
     }
     mean = demi_facet_border(t->wall, side);
     if (!mean) return;
-    for (q = 0; q < 2; q++) {
-        const dem_vec3 d = demi_scale(mean->normal[q], (dem_real)t->way);
-        end[q] = sides[(k + q)%3][1];
-        m[q][0] = (double)d.x; m[q][1] = (double)d.y; m[q][2] = (double)d.z;
-    }
-    demi_sub3(end[1], end[0], edge);
-    for (q = 0; q < 3; q++) c[q] = (end[0][q] + end[1][q])/2;
-    demi_cross3(in, n, way);                    /* n x way = in */
-    for (q = 0; q < 2; q++) demi_curtain_half(s, end[q], c, m[q], way, press);
-    q = demi_dot3(way, edge) < 0;               /* from which corner to which */
+    for (q = 0; q < 2; q++)
+        m[q] = demi_d3_of(demi_scale(mean->normal[q], (dem_real)t->way));
+    c = demi_d3_scale(demi_d3_add(end->o, next->o), 0.5);
+    demi_curtain_half(s, end->o, c, m[0], way, press);
+    demi_curtain_half(s, next->o, c, m[1], way, press);
+    q = demi_d3_dot(way, demi_d3_sub(next->o, end->o)) < 0;    /* from which corner to which */
     demi_curtain_fold(s, c, m[q], m[!q], press);
 }
 /* All of a sheet with its curtains. */
 static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
     demi_pressure press;
-    double sides[3][2][3], n[3], at;
+    demi_half sides[3];
+    demi_d3 n;
+    double at;
     int i, k, count, ends, beyond;
     for (i = 0; i < t->v->count; i++) {
         const int element = t->v->element[i], way = demi_sheet_turn(t, i);
         const dem_real *plane = t->wall->planes + 4*element;
         const dem_real off = demi_dot(demi_at(plane), t->v->x) - plane[3];
         if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
-        count = demi_facet_sides(t->wall, element, t->v->x, way, n, &at, sides);
+        count = demi_facet_sides(t->wall, element, t->v->x, way, &n, &at, sides);
         if (!count) continue;
         ends = demi_facet_ends(t->wall, element);
-        beyond = demi_dot3(n, s->corner[demi_solid_far(s, n)]) > at;
+        beyond = demi_d3_dot(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
         if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
         if (beyond) demi_flats_add(flats, element, &press);
@@ -647,11 +597,12 @@ static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     while (demi_view_next(&v)) for (k = 0; k < v.count; k++) {
         const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*v.element[k]), v.x);
-        const double c[3] = {(double)ball.x, (double)ball.y, (double)ball.z};
-        double q[3], off;
+        const demi_d3 c = demi_d3_of(ball);
+        demi_d3 q;
+        double off;
         demi_touching *t = &out[count];
         if (v.gap[k] > v.gone) continue;
-        off = demi_solid_near(&s, c, q);
+        off = demi_solid_near(&s, c, &q);
         if (!(off < (double)(wall->radius + demi_range(v.w, part->radius)))) continue;
         memset(t, 0, sizeof *t);
         t->element = v.element[k];
@@ -659,10 +610,8 @@ static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
         t->deep = t->overlap/wall->radius;
         t->share = wall->share;
         t->slope = 1;
-        t->point = demi_add(v.at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
-                                                        (dem_real)q[2])));
-        t->normal = demi_v((dem_real)(c[0] - q[0]), (dem_real)(c[1] - q[1]),
-                           (dem_real)(c[2] - q[2]));
+        t->point = demi_add(v.at, demi_rotate(R, demi_d3_real(q)));
+        t->normal = demi_d3_real(demi_d3_sub(c, q));
         t->normal = off < 0 || off > 0 ? demi_scale(demi_rotate(R, t->normal), (dem_real)(1/off))
                                        : demi_unit(demi_rotate(R, ball));
         t->shift = v.shift;

@@ -23,108 +23,105 @@
 typedef struct demi_solid {
     int faces, corners;
     const int32_t *rim;            /* faces + 1 starts, then the corners of each face */
-    double centre[3];
-    double plane[DEM_POLYHEDRON_FACES][4];     /* n/h, 1/m; h, m */
-    double corner[DEMI_HULL_CORNERS][3];
+    demi_d3 centre;
+    struct { demi_d3 slope; double high; } face[DEM_POLYHEDRON_FACES];  /* n/h, 1/m; h, m */
+    demi_d3 corner[DEMI_HULL_CORNERS];
 } demi_solid;
+/* The number of corner i of a face, rim[f] <= i <= rim[f + 1]: after the last comes the first. */
+DEM_INLINE int32_t demi_solid_number(const demi_solid *s, int f, int i) {
+    return s->rim[s->faces + 1 + (i < s->rim[f + 1] ? i : s->rim[f])];
+}
+DEM_INLINE demi_d3 demi_solid_corner(const demi_solid *s, int f, int i) {
+    return s->corner[demi_solid_number(s, f, i)];
+}
 static void demi_solid_of(const demi_part *p, dem_vec3 centre, demi_solid *s) {
     const demi_shape *shape = p->shape;
     const double *plane = shape->hull, *corner = shape->hull + 4*shape->faces;
     const double scale = (double)p->scale;
     double R[9];
-    int i, k;
+    int i;
     demi_rotation_of(p->q, R);
     s->faces = shape->faces;
     s->corners = shape->corners;
     s->rim = shape->rim;
-    s->centre[0] = (double)centre.x; s->centre[1] = (double)centre.y;
-    s->centre[2] = (double)centre.z;
+    s->centre = demi_d3_of(centre);
     for (i = 0; i < s->faces; i++, plane += 4) {
-        for (k = 0; k < 3; k++) s->plane[i][k] = demi_dot3(R + 3*k, plane)/scale;
-        s->plane[i][3] = plane[3]*scale;
+        s->face[i].slope = demi_d3_over(demi_d3_rotate(R, demi_d3_at(plane)), scale);
+        s->face[i].high = plane[3]*scale;
     }
     for (i = 0; i < s->corners; i++, corner += 3)
-        for (k = 0; k < 3; k++) s->corner[i][k] = s->centre[k] + scale*demi_dot3(R + 3*k, corner);
+        s->corner[i] = demi_d3_plus(s->centre, scale, demi_d3_rotate(R, demi_d3_at(corner)));
 }
 /* u of face f's pyramid at x. */
-static double demi_solid_in(const demi_solid *s, int f, const double *x) {
-    double d[3];
-    demi_sub3(x, s->centre, d);
-    return 1 - demi_dot3(s->plane[f], d);
+static double demi_solid_in(const demi_solid *s, int f, demi_d3 x) {
+    return 1 - demi_d3_dot(s->face[f].slope, demi_d3_sub(x, s->centre));
 }
 
 /* --- pressure u, summed over pieces of S --- */
 
 typedef struct demi_pressure {
     double shared;                 /* m3: I */
-    double sum, at[3], wide[6];    /* of u dA: 1, x, x x (xx yy zz xy xz yz) */
-    double force[3], torque[3];    /* of u dA: n; x cross n */
+    double sum, wide[6];           /* of u dA: 1; x x (xx yy zz xy xz yz) */
+    demi_d3 at, force, torque;     /* of u dA: x; n; x cross n */
     double deep;                   /* largest u */
 } demi_pressure;
-/* A polygon of n corners x with its u; unit: normal of S; height: m, of the polygon over the
-   centre, of a pair the sum of both. */
-static void demi_pressure_polygon(demi_pressure *s, double (*x)[3], const double *u, int count,
-                               const double *unit, double height) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
-    double force = 0, at[3] = {0, 0, 0}, t[3];
+enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
+/* A polygon of count corners x in the pyramid over face f of a body; unit: normal of S; height: m,
+   of the polygon over the centre, of a pair the sum of both. */
+static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int f, const demi_d3 *x,
+                                  int count, demi_d3 unit, double height) {
+    double force = 0, at[3] = {0, 0, 0}, a[3], b[3], c[3], u[DEMI_SECTION];
     int i, k;
-    for (i = 0; i < count; i++) s->deep = DEMI_MAX(s->deep, u[i]);
+    for (i = 0; i < count; i++) {
+        u[i] = DEMI_MAX(demi_solid_in(body, f, x[i]), 0);
+        s->deep = DEMI_MAX(s->deep, u[i]);
+    }
+    demi_d3_put(a, x[0]);
     for (i = 1; i + 1 < count; i++) {
-        const double *a = x[0], *b = x[i], *c = x[i + 1];
         const double u0 = u[0], u1 = u[i], u2 = u[i + 1], all = u0 + u1 + u2;
         const double pairs = u0*u1 + u0*u2 + u1*u2, q = all - pairs + u0*u1*u2;
-        double e[3], f[3], n[3], area;
-        demi_sub3(b, a, e);
-        demi_sub3(c, a, f);
-        demi_cross3(e, f, n);
-        area = fabs(demi_dot3(n, unit))/2;
+        const double area = fabs(demi_d3_dot(demi_d3_normal(x[0], x[i], x[i + 1]), unit))/2;
+        demi_d3_put(b, x[i]);
+        demi_d3_put(c, x[i + 1]);
         s->shared += area*height/12*(u0*u1*u2 - pairs + q*q/(1 - q));
         force += area*all/3;
         for (k = 0; k < 3; k++)
             at[k] += area/12*(all*(a[k] + b[k] + c[k]) + u0*a[k] + u1*b[k] + u2*c[k]);
         for (k = 0; k < 6; k++) {
-            const int p = one[k], r = two[k];
+            const int p = demi_sym_row[k], r = demi_sym_column[k];
             const double P = a[p] + b[p] + c[p], Q = a[r] + b[r] + c[r];
             s->wide[k] += area/60*(all*(P*Q + a[p]*a[r] + b[p]*b[r] + c[p]*c[r]) +
                 Q*(u0*a[p] + u1*b[p] + u2*c[p]) + P*(u0*a[r] + u1*b[r] + u2*c[r]) +
                 2*(u0*a[p]*a[r] + u1*b[p]*b[r] + u2*c[p]*c[r]));
         }
     }
-    demi_cross3(at, unit, t);
     s->sum += force;
-    for (k = 0; k < 3; k++) {
-        s->at[k] += at[k];
-        s->force[k] += force*unit[k];
-        s->torque[k] += t[k];
-    }
+    s->at = demi_d3_add(s->at, demi_d3_at(at));
+    s->force = demi_d3_plus(s->force, force, unit);
+    s->torque = demi_d3_add(s->torque, demi_d3_cross(demi_d3_at(at), unit));
 }
-/* A point that stands for so much of S. */
-static void demi_pressure_point(demi_pressure *s, const double *x, double u, double area,
-                             const double *unit, double height) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
-    const double f = area*u, g = 1 - u;
-    double t[3];
+/* A point there that stands for so much of S. */
+static void demi_pressure_point(demi_pressure *s, const demi_solid *body, int face, demi_d3 x,
+                                double area, demi_d3 unit, double height) {
+    const double u = DEMI_MAX(demi_solid_in(body, face, x), 0), f = area*u, g = 1 - u;
+    double y[3];
     int k;
     s->deep = DEMI_MAX(s->deep, u);
     s->shared += area*height/12*u*u*(6 - 8*u + 3*u*u)/(g*g*g);
     s->sum += f;
-    demi_cross3(x, unit, t);
-    for (k = 0; k < 3; k++) {
-        s->at[k] += f*x[k];
-        s->force[k] += f*unit[k];
-        s->torque[k] += f*t[k];
-    }
-    for (k = 0; k < 6; k++) s->wide[k] += f*x[one[k]]*x[two[k]];
+    s->at = demi_d3_plus(s->at, f, x);
+    s->force = demi_d3_plus(s->force, f, unit);
+    s->torque = demi_d3_plus(s->torque, f, demi_d3_cross(x, unit));
+    demi_d3_put(y, x);
+    for (k = 0; k < 6; k++) s->wide[k] += f*y[demi_sym_row[k]]*y[demi_sym_column[k]];
 }
 static void demi_pressure_add(demi_pressure *s, const demi_pressure *more) {
     int k;
     s->shared += more->shared;
     s->sum += more->sum;
-    for (k = 0; k < 3; k++) {
-        s->at[k] += more->at[k];
-        s->force[k] += more->force[k];
-        s->torque[k] += more->torque[k];
-    }
+    s->at = demi_d3_add(s->at, more->at);
+    s->force = demi_d3_add(s->force, more->force);
+    s->torque = demi_d3_add(s->torque, more->torque);
     for (k = 0; k < 6; k++) s->wide[k] += more->wide[k];
     s->deep = DEMI_MAX(s->deep, more->deep);
 }
@@ -132,72 +129,58 @@ static void demi_pressure_scale(demi_pressure *s, double by) {
     int k;
     s->shared *= by;
     s->sum *= by;
-    for (k = 0; k < 3; k++) {
-        s->at[k] *= by;
-        s->force[k] *= by;
-        s->torque[k] *= by;
-    }
+    s->at = demi_d3_scale(s->at, by);
+    s->force = demi_d3_scale(s->force, by);
+    s->torque = demi_d3_scale(s->torque, by);
     for (k = 0; k < 6; k++) s->wide[k] *= by;
 }
 
 /* --- sections: where a plane cuts a pyramid, or half spaces leave something of a polygon --- */
 
-enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
+typedef struct demi_half { demi_d3 n, o; } demi_half;  /* where n.(x - o) >= 0 */
 /* Where the plane level = 0 cuts the pyramid over face f: level at the centre, and at the corners
    of the face in their order. Answers how many corners there are. */
 static int demi_pyramid_section(const demi_solid *s, int f, double centre, const double *level,
-                                double (*x)[3]) {
-    const int32_t *loop = s->rim + s->faces + 1 + s->rim[f];
-    const int n = s->rim[f + 1] - s->rim[f], inside = centre > 0;
-    int i, k, count = 0;
+                                demi_d3 *x) {
+    const int first = s->rim[f], n = s->rim[f + 1] - first, inside = centre > 0;
+    int i, count = 0;
     for (i = 0; i < n; i++) {
-        const int next = i + 1 < n ? i + 1 : 0;
-        const double *a = s->corner[loop[i]], *b = s->corner[loop[next]];
-        if ((level[i] > 0) != inside) {
-            const double t = centre/(centre - level[i]);
-            for (k = 0; k < 3; k++) x[count][k] = s->centre[k] + t*(a[k] - s->centre[k]);
-            count++;
-        }
-        if ((level[i] > 0) != (level[next] > 0)) {
-            const double t = level[i]/(level[i] - level[next]);
-            for (k = 0; k < 3; k++) x[count][k] = a[k] + t*(b[k] - a[k]);
-            count++;
-        }
+        const double next = level[i + 1 < n ? i + 1 : 0];
+        const demi_d3 a = demi_solid_corner(s, f, first + i);
+        if ((level[i] > 0) != inside)
+            x[count++] = demi_d3_between(s->centre, a, centre/(centre - level[i]));
+        if ((level[i] > 0) != (next > 0))
+            x[count++] = demi_d3_between(a, demi_solid_corner(s, f, first + i + 1),
+                                         level[i]/(level[i] - next));
     }
     return count;
 }
 /* What is left of a convex polygon where n.(x - o) >= 0. */
-static int demi_polygon_clip(double (*x)[3], int count, const double *n, const double *o) {
-    double out[DEMI_SECTION][3], d[DEMI_SECTION], v[3];
-    int i, k, less = 0, left = 0;
+static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
+    demi_d3 out[DEMI_SECTION];
+    double d[DEMI_SECTION];
+    int i, less = 0, left = 0;
     for (i = 0; i < count; i++) {
-        demi_sub3(x[i], o, v);
-        d[i] = demi_dot3(n, v);
+        d[i] = demi_d3_dot(n, demi_d3_sub(x[i], o));
         less += d[i] < 0;
     }
     if (!less) return count;
     if (less == count) return 0;
     for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
         const int next = i + 1 < count ? i + 1 : 0;
-        if (!(d[i] < 0)) memcpy(out[left++], x[i], sizeof *out);
-        if ((d[i] < 0) == (d[next] < 0)) continue;
-        for (k = 0; k < 3; k++)
-            out[left][k] = x[i][k] + d[i]/(d[i] - d[next])*(x[next][k] - x[i][k]);
-        left++;
+        if (!(d[i] < 0)) out[left++] = x[i];
+        if ((d[i] < 0) != (d[next] < 0))
+            out[left++] = demi_d3_between(x[i], x[next], d[i]/(d[i] - d[next]));
     }
     memcpy(x, out, (size_t)left*sizeof *out);
     return left;
 }
 /* What is left of it in the pyramid over face f. */
-static int demi_pyramid_clip(const demi_solid *s, int f, double (*x)[3], int count) {
-    const int32_t *loop = s->rim + s->faces + 1 + s->rim[f];
-    const int n = s->rim[f + 1] - s->rim[f];
+static int demi_pyramid_clip(const demi_solid *s, int f, demi_d3 *x, int count) {
     int i;
-    for (i = 0; i < n && count > 2; i++) {
-        double a[3], b[3], side[3];
-        demi_sub3(s->corner[loop[i]], s->centre, a);
-        demi_sub3(s->corner[loop[i + 1 < n ? i + 1 : 0]], s->centre, b);
-        demi_cross3(a, b, side);
+    for (i = s->rim[f]; i < s->rim[f + 1] && count > 2; i++) {
+        const demi_d3 side = demi_d3_normal(s->centre, demi_solid_corner(s, f, i),
+                                            demi_solid_corner(s, f, i + 1));
         count = demi_polygon_clip(x, count, side, s->centre);
     }
     return count;
@@ -206,7 +189,7 @@ static int demi_pyramid_clip(const demi_solid *s, int f, double (*x)[3], int cou
 static void demi_solid_depths(const demi_solid *s, const demi_solid *other, int face, double *in) {
     int i;
     for (i = 0; i < s->corners; i++)
-        in[i] = demi_solid_in(other, face, s->corner[i])*other->plane[face][3];
+        in[i] = demi_solid_in(other, face, s->corner[i])*other->face[face].high;
 }
 /* Leaves out faces all corners of which are deeper, or less deep, than at. */
 static void demi_solid_leave(const demi_solid *s, const double *in, double at, int deeper,
@@ -234,8 +217,8 @@ static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned c
             most = DEMI_MAX(most, u);
         }
         if (!(most > 0)) return 0;
-        if (!(most*b->plane[g][3] < least)) continue;
-        least = most*b->plane[g][3];
+        if (!(most*b->face[g].high < least)) continue;
+        least = most*b->face[g].high;
         best = g;
     }
     if (best < 0) return 1;
@@ -248,60 +231,56 @@ static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned c
 /* The piece of S between faces f and g. */
 static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, int g,
                               demi_pressure *s) {
-    const int32_t *loop = a->rim + a->faces + 1 + a->rim[f];
     const int n = a->rim[f + 1] - a->rim[f];
     const double centre = demi_solid_in(b, g, a->centre) - 1;
-    double x[DEMI_SECTION][3], u[DEMI_SECTION], level[DEM_POLYHEDRON_FACES], unit[3], to[3], size;
+    double level[DEM_POLYHEDRON_FACES];
+    demi_d3 x[DEMI_SECTION], unit;
     int i, above = 0, count;
-    for (i = 0; i < n; i++) above += (level[i] = demi_solid_in(b, g, a->corner[loop[i]])) > 0;
+    for (i = 0; i < n; i++)
+        above += (level[i] = demi_solid_in(b, g, demi_solid_corner(a, f, a->rim[f] + i))) > 0;
     if (above == (centre > 0 ? n : 0)) return;
-    demi_sub3(a->plane[f], b->plane[g], unit);
-    size = demi_unit3(unit);
-    if (!(size*a->plane[f][3] > 1e-9)) return;  /* the same face */
+    unit = demi_d3_sub(a->face[f].slope, b->face[g].slope);
+    if (!(demi_d3_length(unit)*a->face[f].high > 1e-9)) return;         /* the same face */
+    unit = demi_d3_unit(unit);
     count = demi_pyramid_section(a, f, centre, level, x);
     count = demi_pyramid_clip(b, g, x, count);
-    if (count < 3) return;
-    for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
-    demi_sub3(b->centre, a->centre, to);
-    demi_pressure_polygon(s, x, u, count, unit, demi_dot3(to, unit));
+    if (count > 2)
+        demi_pressure_polygon(s, a, f, x, count, unit,
+                              demi_d3_dot(demi_d3_sub(b->centre, a->centre), unit));
 }
 /* Is x inside? */
-static int demi_solid_holds(const demi_solid *s, const double *x) {
+static int demi_solid_holds(const demi_solid *s, demi_d3 x) {
     int f;
     for (f = 0; f < s->faces; f++) if (!(demi_solid_in(s, f, x) > 0)) return 0;
     return 1;
 }
 /* The centre has gone through a surface: there is no pressure any more, but something that pushes
    back along n and, by its depth, stops the run. */
-static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pressure *s) {
-    const double h = a->plane[0][3];
-    int k;
+static void demi_pressure_beyond(const demi_solid *a, demi_d3 n, demi_pressure *s) {
+    const double h = a->face[0].high;
     s->deep = 2;
-    if (s->shared > 0 && demi_dot3(s->force, s->force) > 1e-6*s->sum*s->sum) return;
+    if (s->shared > 0 && demi_d3_square(s->force) > 1e-6*s->sum*s->sum) return;
     memset(s, 0, sizeof *s);
     s->deep = 2;
     s->shared = h*h*h;
     s->sum = h*h;
-    for (k = 0; k < 3; k++) {
-        s->force[k] = h*h*n[k];
-        s->at[k] = s->sum*a->centre[k];
-    }
-    demi_cross3(a->centre, s->force, s->torque);
+    s->force = demi_d3_scale(n, h*h);
+    s->at = demi_d3_scale(a->centre, s->sum);
+    s->torque = demi_d3_cross(a->centre, s->force);
 }
 /* Polygons of a plane are prisms; where two end at one height there is a volume in which both u are
    those of the ends, the same, and S may pass through it anywhere, so that neither force nor energy
    is told. So one of the two is taken to be half as high again. Their centres are at z = 0. */
 static void demi_solid_stretch(demi_solid *s) {
     int i;
-    for (i = 0; i < s->corners; i++) s->corner[i][2] *= 1.5;
+    for (i = 0; i < s->corners; i++) s->corner[i].z *= 1.5;
     for (i = 0; i < s->faces; i++) {
-        s->plane[i][2] /= 1.5;
-        s->plane[i][3] = 1/sqrt(demi_dot3(s->plane[i], s->plane[i]));
+        s->face[i].slope.z /= 1.5;
+        s->face[i].high = 1/demi_d3_length(s->face[i].slope);
     }
 }
 /* All of S; 0: there is none. */
 static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
-    static const double up[3] = {0, 0, 1};
     unsigned char fs[DEM_POLYHEDRON_FACES], gs[DEM_POLYHEDRON_FACES];
     int f, g;
     memset(s, 0, sizeof *s);
@@ -311,22 +290,29 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     for (f = 0; f < a->faces; f++)
         for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
     if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
-        demi_pressure_beyond(a, up, s);
+        demi_pressure_beyond(a, demi_d(0, 0, 1), s);
     return s->shared > 0 && s->sum > 0;
 }
+/* Gauss's rules of three and four points on 0 to 1: where they are, and their weights. */
+static const double demi_gauss3_at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+static const double demi_gauss3[3] = {5.0/18, 8.0/18, 5.0/18};
+static const double demi_gauss4_at[4] = {0.06943184420297371, 0.33000947820757187,
+                                         0.6699905217924281, 0.9305681557970263};
+static const double demi_gauss4[4] = {0.17392742256872692, 0.32607257743127307,
+                                      0.32607257743127307, 0.17392742256872692};
 static int demi_double_order(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
 }
 /* Part of the ray from o in direction (c, sn) that is inside a polygon across z which turns left
    (side 1) or right (-1): lo to hi, which come as its ends. */
-static void demi_polygon_ray(double (*x)[3], int count, int side, const double *o, double c,
+static void demi_polygon_ray(const demi_d3 *x, int count, int side, const double *o, double c,
                              double sn, double *lo, double *hi) {
     int e;
     for (e = 0; e < count; e++) {
-        const double *p = x[e], *q = x[e + 1 < count ? e + 1 : 0];
-        const double u = side*(p[1] - q[1]), v = side*(q[0] - p[0]);
-        const double over = u*(o[0] - p[0]) + v*(o[1] - p[1]), slope = u*c + v*sn;
+        const demi_d3 p = x[e], q = x[e + 1 < count ? e + 1 : 0];
+        const double u = side*(p.y - q.y), v = side*(q.x - p.x);
+        const double over = u*(o[0] - p.x) + v*(o[1] - p.y), slope = u*c + v*sn;
         if (slope > 0) *lo = DEMI_MAX(*lo, -over/slope);
         else if (slope < 0) *hi = DEMI_MIN(*hi, -over/slope);
         else if (over < 0) *hi = -1;
@@ -334,19 +320,13 @@ static void demi_polygon_ray(double (*x)[3], int count, int side, const double *
 }
 /* The polygon of face f's pyramid, across z, outside of a hole (x, y, radius): along rays from its
    middle, between those to corners and to where sides cross its rim. 0: nothing of it is in it. */
-static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, double (*x)[3],
-                               int count, const double *unit, double height, const double *hole) {
-    static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
-                                 0.9305681557970263};
-    static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
-                                   0.17392742256872692};
-    static const double on[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    static const double weight[3] = {5.0/18, 8.0/18, 5.0/18};
+static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, const demi_d3 *x,
+                               int count, demi_d3 unit, double height, const double *hole) {
     double angle[3*DEMI_SECTION + 1], area = 0;
     int i, k, e, piece, angles = 0, left = 0, right = 0, near_by = 0;
     for (i = 0; i < count; i++) {
-        const double *p = x[i], *q = x[i + 1 < count ? i + 1 : 0];
-        const double u = p[0] - hole[0], v = p[1] - hole[1], du = q[0] - p[0], dv = q[1] - p[1];
+        const demi_d3 p = x[i], q = x[i + 1 < count ? i + 1 : 0];
+        const double u = p.x - hole[0], v = p.y - hole[1], du = q.x - p.x, dv = q.y - p.y;
         const double A = du*du + dv*dv, B = u*du + v*dv, C = u*u + v*v - hole[2]*hole[2];
         const double D = B*B - A*C, turn = u*dv - v*du;
         left += turn >= 0;
@@ -369,45 +349,41 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, dou
         const int pieces = 1 + (int)(width/0.4);
         for (piece = 0; piece < pieces && width > 1e-15; piece++)
             for (k = 0; k < 4; k++) {
-                const double turn = angle[i] + (piece + at[k])*width/pieces;
+                const double turn = angle[i] + (piece + demi_gauss4_at[k])*width/pieces;
                 const double c = demi_cos(turn), sn = demi_sin(turn);
                 double lo = hole[2], hi = 1e300;
                 demi_polygon_ray(x, count, area > 0 ? 1 : -1, hole, c, sn, &lo, &hi);
                 for (e = 0; e < 3 && hi > lo; e++) {
-                    const double r = lo + on[e]*(hi - lo);
-                    const double y[3] = {hole[0] + r*c, hole[1] + r*sn, x[0][2]};
-                    const double dA = part[k]*width/pieces*weight[e]*(hi - lo)*r;
-                    demi_pressure_point(s, y, DEMI_MAX(demi_solid_in(a, f, y), 0), dA, unit,
-                                        height);
+                    const double r = lo + demi_gauss3_at[e]*(hi - lo);
+                    const demi_d3 y = demi_d(hole[0] + r*c, hole[1] + r*sn, x[0].z);
+                    const double dA = demi_gauss4[k]*width/pieces*demi_gauss3[e]*(hi - lo)*r;
+                    demi_pressure_point(s, a, f, y, dA, unit, height);
                 }
             }
     }
     return 1;
 }
 /* S on a flat piece of a rigid wall: beyond n.x = at, n unit, into the wall; on that side of all
-   planes (normal, a point of it) that bound it; hole: null, or x, y and radius of one in it,
+   half spaces that bound it; hole: null, or x, y and radius of one in it,
    across z. Without bounds the polyhedron's centre must be on this side; a piece may be seen from
    behind, where it takes from what others share. */
-static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
-                               double (*sides)[2][3], int side_count, const double *hole,
-                               demi_pressure *s) {
-    const int32_t *loops = a->rim + a->faces + 1;
-    const double centre = demi_dot3(n, a->centre) - at;
-    double all[DEMI_HULL_CORNERS], x[DEMI_SECTION][3], u[DEMI_SECTION];
-    double level[DEM_POLYHEDRON_FACES];
+static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const demi_half *sides,
+                               int side_count, const double *hole, demi_pressure *s) {
+    const double centre = demi_d3_dot(n, a->centre) - at;
+    double all[DEMI_HULL_CORNERS], level[DEM_POLYHEDRON_FACES];
+    demi_d3 x[DEMI_SECTION];
     int f, i, k, above = 0, count;
     if (centre > 0 && !side_count) { demi_pressure_beyond(a, n, s); return; }
-    for (i = 0; i < a->corners; i++) above += (all[i] = demi_dot3(n, a->corner[i]) - at) > 0;
+    for (i = 0; i < a->corners; i++) above += (all[i] = demi_d3_dot(n, a->corner[i]) - at) > 0;
     if (above == (centre > 0 ? a->corners : 0)) return;
     for (f = 0; f < a->faces; f++) {
-        for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++) level[k++] = all[loops[i]];
+        for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++)
+            level[k++] = all[demi_solid_number(a, f, i)];
         count = demi_pyramid_section(a, f, centre, level, x);
         for (i = 0; i < side_count && count > 2; i++)
-            count = demi_polygon_clip(x, count, sides[i][0], sides[i][1]);
-        if (count < 3 || (hole && demi_pressure_round(s, a, f, x, count, n, -centre, hole)))
-            continue;
-        for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
-        demi_pressure_polygon(s, x, u, count, n, -centre);
+            count = demi_polygon_clip(x, count, sides[i].n, sides[i].o);
+        if (count > 2 && !(hole && demi_pressure_round(s, a, f, x, count, n, -centre, hole)))
+            demi_pressure_polygon(s, a, f, x, count, n, -centre);
     }
 }
 
@@ -424,39 +400,35 @@ typedef struct demi_patch {
 /* Not where it does not push. The two directions of the spread: any, but the same from step to
    step. */
 static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
-    static const double from[3] = {0.3301, 0.5563, 0.7626};
-    const double *m = s->wide, F = sqrt(demi_dot3(s->force, s->force));
-    double n[3], e[3], t[3], x[3], C[6], Ce[3], Ct[3], ee, tt, et, root, size, along;
+    const double *m = s->wide, F = demi_d3_length(s->force), sum2 = s->sum*s->sum;
+    demi_d3 n, e, t, Ce, Ct;
+    double C[6], M[9], ee, tt, et, root, size;
     int k;
     if (!(F > 0)) return 0;
-    for (k = 0; k < 3; k++) n[k] = s->force[k]/F;
-    demi_cross3(n, s->torque, x);
-    along = demi_dot3(n, s->at)/s->sum;
-    for (k = 0; k < 3; k++) x[k] = x[k]/F + along*n[k];
-    for (k = 0; k < 3; k++) C[k] = m[k]/s->sum - s->at[k]*s->at[k]/(s->sum*s->sum);
-    C[3] = m[3]/s->sum - s->at[0]*s->at[1]/(s->sum*s->sum);
-    C[4] = m[4]/s->sum - s->at[0]*s->at[2]/(s->sum*s->sum);
-    C[5] = m[5]/s->sum - s->at[1]*s->at[2]/(s->sum*s->sum);
-    demi_cross3(n, from, t);
-    demi_unit3(t);
-    demi_cross3(t, n, e);
-    demi_sym_times(C, e, Ce);
-    demi_sym_times(C, t, Ct);
-    ee = DEMI_MAX(demi_dot3(e, Ce), 0);
-    tt = DEMI_MAX(demi_dot3(t, Ct), 0);
-    et = demi_dot3(e, Ct);
+    n = demi_d3_over(s->force, F);
+    out->point = demi_d3_real(demi_d3_plus(demi_d3_over(demi_d3_cross(n, s->torque), F),
+                                           demi_d3_dot(n, s->at)/s->sum, n));
+    C[0] = s->at.x*s->at.x; C[1] = s->at.y*s->at.y; C[2] = s->at.z*s->at.z;
+    C[3] = s->at.x*s->at.y; C[4] = s->at.x*s->at.z; C[5] = s->at.y*s->at.z;
+    for (k = 0; k < 6; k++) C[k] = m[k]/s->sum - C[k]/sum2;
+    for (k = 0; k < 6; k++) M[3*demi_sym_row[k] + demi_sym_column[k]] = C[k];
+    M[3] = C[3]; M[6] = C[4]; M[7] = C[5];
+    t = demi_d3_unit(demi_d3_cross(n, demi_d(0.3301, 0.5563, 0.7626)));
+    e = demi_d3_cross(t, n);
+    Ce = demi_d3_rotate(M, e);
+    Ct = demi_d3_rotate(M, t);
+    ee = DEMI_MAX(demi_d3_dot(e, Ce), 0);
+    tt = DEMI_MAX(demi_d3_dot(t, Ct), 0);
+    et = demi_d3_dot(e, Ct);
     root = sqrt(DEMI_MAX(ee*tt - et*et, 0));    /* the root of a 2 x 2 tensor, Cayley-Hamilton */
     size = sqrt(ee + tt + 2*root);
     if (!(size > 0)) size = 1;
-    out->normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    out->point = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
-    for (k = 0; k < 3; k++) {
-        Ce[k] = ((ee + root)*e[k] + et*t[k])/size;
-        Ct[k] = (et*e[k] + (tt + root)*t[k])/size;
-    }
-    out->spread[0] = demi_v((dem_real)Ce[0], (dem_real)Ce[1], (dem_real)Ce[2]);
-    out->spread[1] = demi_v((dem_real)Ct[0], (dem_real)Ct[1], (dem_real)Ct[2]);
-    out->couple = (dem_real)(demi_dot3(n, s->torque)/F);
+    out->normal = demi_d3_real(n);
+    out->spread[0] = demi_d3_real(demi_d3_over(demi_d3_plus(demi_d3_scale(e, ee + root), et, t),
+                                               size));
+    out->spread[1] = demi_d3_real(demi_d3_over(demi_d3_plus(demi_d3_scale(e, et), tt + root, t),
+                                               size));
+    out->couple = (dem_real)(demi_d3_dot(n, s->torque)/F);
     out->force = F;
     return 1;
 }
@@ -478,82 +450,73 @@ static double demi_shared_slope(double force, double r_eff, double overlap) {
 
 /* The point q of a polyhedron nearest to x, and how far off it is, m; below 0 inside, where it is
    on the nearest face. */
-static double demi_solid_near(const demi_solid *s, const double *x, double *q) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    double inside = -1e300, least = 1e300, d[3];
-    int f, i, k;
+static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
+    double inside = -1e300, least = 1e300;
+    int f, i;
     for (f = 0; f < s->faces; f++) {
-        const double *a = s->plane[f], size = sqrt(demi_dot3(a, a));
-        double n[3], foot[3], off;
+        const demi_d3 a = s->face[f].slope;
+        const double size = demi_d3_length(a);
+        const double off = (demi_d3_dot(a, demi_d3_sub(x, s->centre)) - 1)/size;
+        const demi_d3 n = demi_d3_over(a, size), foot = demi_d3_plus(x, -off, n);
         int beyond = 0;
-        demi_sub3(x, s->centre, d);
-        off = (demi_dot3(a, d) - 1)/size;
-        for (k = 0; k < 3; k++) {
-            n[k] = a[k]/size;
-            foot[k] = x[k] - off*n[k];
-        }
         if (!(off > 0)) {
             if (off > inside && least > 1e299) {
                 inside = off;
-                memcpy(q, foot, sizeof foot);
+                *q = foot;
             }
             continue;
         }
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const double *b = s->corner[loops[i]];
-            const double *c = s->corner[loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]]];
-            double e[3], out[3], to[3], at[3], t, l;
-            demi_sub3(c, b, e);
-            demi_cross3(e, n, out);
-            demi_sub3(foot, b, to);
-            if (!(demi_dot3(out, to) > 0)) continue;
+            const demi_d3 b = demi_solid_corner(s, f, i), to = demi_d3_sub(foot, b);
+            const demi_d3 e = demi_d3_sub(demi_solid_corner(s, f, i + 1), b);
+            demi_d3 at;
+            double t, l;
+            if (!(demi_d3_dot(demi_d3_cross(e, n), to) > 0)) continue;
             beyond = 1;
-            t = demi_dot3(e, to)/demi_dot3(e, e);
-            t = t < 0 ? 0 : t > 1 ? 1 : t;
-            for (k = 0; k < 3; k++) at[k] = b[k] + t*e[k];
-            demi_sub3(x, at, d);
-            l = sqrt(demi_dot3(d, d));
-            if (l < least) { least = l; memcpy(q, at, sizeof at); }
+            t = demi_d3_dot(e, to)/demi_d3_square(e);
+            at = demi_d3_plus(b, t < 0 ? 0 : t > 1 ? 1 : t, e);
+            l = demi_d3_length(demi_d3_sub(x, at));
+            if (l < least) { least = l; *q = at; }
         }
-        if (!beyond) { memcpy(q, foot, sizeof foot); return off; }
+        if (!beyond) { *q = foot; return off; }
     }
     return least < 1e299 ? least : inside;
 }
 /* A polyhedron in the measure in which an ellipsoid at `at` is the unit sphere about the origin. */
 static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
                                demi_solid *s) {
-    const double axes[3] = {(double)egg->axes.x, (double)egg->axes.y, (double)egg->axes.z};
-    double R[9], v[3];
-    int i, k, e;
+    const demi_d3 axes = demi_d3_of(egg->axes);
+    double R[9], back[9];
+    int i, k;
     demi_solid_of(p, at, s);
     demi_rotation_of(egg->q, R);
+    for (i = 0; i < 9; i++) back[i] = R[i%3*3 + i/3];
     for (i = -1; i < s->corners; i++) {
-        double *x = i < 0 ? s->centre : s->corner[i];
-        memcpy(v, x, sizeof v);
-        for (k = 0; k < 3; k++) x[k] = (R[k]*v[0] + R[3 + k]*v[1] + R[6 + k]*v[2])/axes[k];
+        demi_d3 *x = i < 0 ? &s->centre : &s->corner[i];
+        *x = demi_d3_rotate(back, *x);
+        *x = demi_d(x->x/axes.x, x->y/axes.y, x->z/axes.z);
     }
-    for (i = 0; i < s->faces; i++) {
-        memcpy(v, s->plane[i], sizeof v);
-        for (k = 0; k < 3; k++)
-            for (e = 0, s->plane[i][k] = 0; e < 3; e++) s->plane[i][k] += axes[k]*R[3*e + k]*v[e];
-    }
+    for (k = 0; k < 3; k++) { back[k] *= axes.x; back[3 + k] *= axes.y; back[6 + k] *= axes.z; }
+    for (i = 0; i < s->faces; i++) s->face[i].slope = demi_d3_rotate(back, s->face[i].slope);
 }
 /* How far a part reaches from its centre along n (unit), m. */
 static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
     if (p->kind == DEMI_BALL) return p->radius;
     return p->scale*demi_shape_rows[p->kind].support(p->shape, dem_quat_unrotate(p->q, n));
 }
+/* The unit normal of a face, in the frame of its shape. */
+static dem_vec3 demi_face_normal(const demi_shape *s, int f) {
+    const double *a = s->hull + 4*f;
+    return demi_scale(demi_d3_real(demi_d3_at(a)), (dem_real)a[3]);
+}
 /* The farthest that a face of p keeps q off: no more than their distance. */
 static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 gap) {
     dem_real most = -DEM_R(1e30);
     int f;
     for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
-        const double *a = p->shape->hull + 4*f;
-        const dem_vec3 own = demi_scale(demi_v((dem_real)a[0], (dem_real)a[1], (dem_real)a[2]),
-                                        (dem_real)a[3]);
-        const dem_vec3 n = dem_quat_rotate(p->q, own);
+        const dem_vec3 n = dem_quat_rotate(p->q, demi_face_normal(p->shape, f));
         const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
-            (dem_real)a[3]*p->scale;
+            (dem_real)p->shape->hull[4*f + 3]*p->scale;
         most = DEMI_MAX(most, off);
     }
     return most;
@@ -561,19 +524,17 @@ static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 
 /* Does the face of p that faces q's centre most keep all of q off? Most pairs that are apart are so
    by one of the two. */
 static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap) {
-    const dem_vec3 own = dem_quat_unrotate(p->q, gap);
-    const double e[3] = {(double)own.x, (double)own.y, (double)own.z}, scale = (double)p->scale;
-    const double *face = p->shape->hull, *a = face;
+    const demi_d3 own = demi_d3_of(dem_quat_unrotate(p->q, gap));
+    const double scale = (double)p->scale, *a = p->shape->hull;
     double most = -1e300;
     dem_vec3 n;
-    int f;
+    int f, face = 0;
     for (f = 0; f < p->shape->faces; f++, a += 4) {
-        const double off = demi_dot3(a, e)*a[3] - scale*a[3];
-        if (off > most) { most = off; face = a; }
+        const double off = demi_d3_dot(demi_d3_at(a), own)*a[3] - scale*a[3];
+        if (off > most) { most = off; face = f; }
     }
-    n = demi_scale(demi_v((dem_real)face[0], (dem_real)face[1], (dem_real)face[2]),
-                   (dem_real)face[3]);
-    return (dem_real)most > demi_part_support(q, demi_scale(dem_quat_rotate(p->q, n), -1))*
+    n = dem_quat_rotate(p->q, demi_face_normal(p->shape, face));
+    return (dem_real)most > demi_part_support(q, demi_scale(n, -1))*
         (1 + 16*(DEMI_SINGLE ? DEM_R(1e-7) : DEM_R(2e-16)));
 }
 static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,

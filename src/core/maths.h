@@ -114,6 +114,61 @@ DEM_INLINE dem_vec3 demi_unrotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x +
                   R[5]*a.y + R[8]*a.z);
 }
+/* A vector in double precision, for geometry that would lose its digits where dem_real is float.
+   Sums run from left to right: x, y, z. */
+typedef struct demi_d3 { double x, y, z; } demi_d3;
+DEM_INLINE demi_d3 demi_d(double x, double y, double z) {
+    demi_d3 a;
+    a.x = x; a.y = y; a.z = z;
+    return a;
+}
+DEM_INLINE demi_d3 demi_d3_at(const double *p) { return demi_d(p[0], p[1], p[2]); }
+DEM_INLINE void demi_d3_put(double *p, demi_d3 a) { p[0] = a.x; p[1] = a.y; p[2] = a.z; }
+DEM_INLINE demi_d3 demi_d3_of(dem_vec3 a) { return demi_d((double)a.x, (double)a.y, (double)a.z); }
+DEM_INLINE dem_vec3 demi_d3_real(demi_d3 a) {
+    return demi_v((dem_real)a.x, (dem_real)a.y, (dem_real)a.z);
+}
+DEM_INLINE demi_d3 demi_d3_add(demi_d3 a, demi_d3 b) {
+    return demi_d(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+DEM_INLINE demi_d3 demi_d3_sub(demi_d3 a, demi_d3 b) {
+    return demi_d(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+DEM_INLINE demi_d3 demi_d3_scale(demi_d3 a, double s) { return demi_d(a.x*s, a.y*s, a.z*s); }
+DEM_INLINE demi_d3 demi_d3_over(demi_d3 a, double s) { return demi_d(a.x/s, a.y/s, a.z/s); }
+DEM_INLINE double demi_d3_dot(demi_d3 a, demi_d3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+DEM_INLINE demi_d3 demi_d3_cross(demi_d3 a, demi_d3 b) {
+    return demi_d(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
+}
+DEM_INLINE double demi_d3_square(demi_d3 a) { return demi_d3_dot(a, a); }
+DEM_INLINE double demi_d3_length(demi_d3 a) { return sqrt(demi_d3_dot(a, a)); }
+DEM_INLINE demi_d3 demi_d3_unit(demi_d3 a) {              /* 0 stays 0 */
+    const double l = demi_d3_length(a);
+    return l > 0 ? demi_d3_over(a, l) : demi_d(0, 0, 0);
+}
+/* a + t b, and the point at t of the way from a to b. */
+DEM_INLINE demi_d3 demi_d3_plus(demi_d3 a, double t, demi_d3 b) {
+    return demi_d3_add(a, demi_d3_scale(b, t));
+}
+DEM_INLINE demi_d3 demi_d3_between(demi_d3 a, demi_d3 b, double t) {
+    return demi_d3_plus(a, t, demi_d3_sub(b, a));
+}
+/* Across a triangle that turns left seen from its tip, as long as twice the triangle's area. */
+DEM_INLINE demi_d3 demi_d3_normal(demi_d3 a, demi_d3 b, demi_d3 c) {
+    return demi_d3_cross(demi_d3_sub(b, a), demi_d3_sub(c, a));
+}
+/* The lowest and the highest coordinates of two points. */
+DEM_INLINE demi_d3 demi_d3_lowest(demi_d3 a, demi_d3 b) {
+    return demi_d(DEMI_MIN(a.x, b.x), DEMI_MIN(a.y, b.y), DEMI_MIN(a.z, b.z));
+}
+DEM_INLINE demi_d3 demi_d3_highest(demi_d3 a, demi_d3 b) {
+    return demi_d(DEMI_MAX(a.x, b.x), DEMI_MAX(a.y, b.y), DEMI_MAX(a.z, b.z));
+}
+/* local -> world, of directions in double precision; R: row-major */
+DEM_INLINE demi_d3 demi_d3_rotate(const double *R, demi_d3 a) {
+    return demi_d(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z,
+                  R[6]*a.x + R[7]*a.y + R[8]*a.z);
+}
 /* Rotation by angle about a unit axis (Rodrigues), row-major. */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
     double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;

@@ -20,43 +20,31 @@ typedef struct demi_mould {
     int32_t *most;                 /* picks x scales: no gain can be above that, plus `slack` */
     int picks, slack;              /* slack: points that were left by spheres taken out */
 } demi_mould;
-/* The point of a triangle nearest to x ([ERI05] 5.1.5), as its distance squared. */
-static double demi_corner_distance(const double *a, const double *b, const double *c,
-                                   const double *x) {
-    double ab[3], ac[3], ap[3], n[3], t, best = 1e300;
-    const double *from[3], *to[3];
-    int k, e, in = 1;
-    from[0] = a; from[1] = b; from[2] = c;
-    to[0] = b; to[1] = c; to[2] = a;
-    demi_sub3(b, a, ab);
-    demi_sub3(c, a, ac);
-    demi_cross3(ab, ac, n);
+/* How far x is from a triangle, squared ([ERI05] 5.1.5). */
+static double demi_corner_distance(const demi_d3 *corner, demi_d3 x) {
+    const demi_d3 n = demi_d3_normal(corner[0], corner[1], corner[2]);
+    double best = 1e300, over;
+    int k, in = 1;
     for (k = 0; k < 3; k++) {
-        double out[3], d[3], l2;
-        demi_sub3(to[k], from[k], ab);
-        demi_sub3(x, from[k], ap);
-        demi_cross3(ab, n, out);
-        in &= demi_dot3(out, ap) <= 0;
-        l2 = demi_dot3(ab, ab);
-        t = l2 > 0 ? demi_dot3(ap, ab)/l2 : 0;
-        t = t < 0 ? 0 : t > 1 ? 1 : t;
-        for (e = 0; e < 3; e++) d[e] = ap[e] - t*ab[e];
-        best = DEMI_MIN(best, demi_dot3(d, d));
+        const demi_d3 side = demi_d3_sub(corner[(k + 1)%3], corner[k]);
+        const demi_d3 to = demi_d3_sub(x, corner[k]);
+        const double l2 = demi_d3_square(side), t = l2 > 0 ? demi_d3_dot(to, side)/l2 : 0;
+        const double d2 = demi_d3_square(demi_d3_plus(to, t < 0 ? 0 : t > 1 ? -1 : -t, side));
+        in &= demi_d3_dot(demi_d3_cross(side, n), to) <= 0;
+        best = DEMI_MIN(best, d2);
     }
-    if (!in || !(demi_dot3(n, n) > 0)) return best;
-    demi_sub3(x, a, ap);
-    t = demi_dot3(ap, n);
-    return t*t/demi_dot3(n, n);
+    if (!in || !(demi_d3_square(n) > 0)) return best;
+    over = demi_d3_dot(demi_d3_sub(x, corner[0]), n);
+    return over*over/demi_d3_square(n);
 }
-static double demi_mesh_distance(const dem_mesh *mesh, const double *x) {
-    double best = 1e300, a[3], b[3], c[3];
+static double demi_mesh_distance(const dem_mesh *mesh, demi_d3 x) {
+    demi_d3 corner[3];
+    double best = 1e300;
     int i;
     for (i = 0; i < mesh->triangle_count; i++) {
         double d;
-        demi_mesh_corner(mesh, i, 0, a);
-        demi_mesh_corner(mesh, i, 1, b);
-        demi_mesh_corner(mesh, i, 2, c);
-        d = demi_corner_distance(a, b, c, x);
+        demi_mesh_triangle(mesh, i, corner);
+        d = demi_corner_distance(corner, x);
         best = DEMI_MIN(best, d);
     }
     return sqrt(best);
@@ -68,26 +56,25 @@ static void demi_mould_at(const demi_mould *m, int i, double *x) {
 }
 /* Turns inside to outside, and back, for all points above a triangle. */
 static void demi_mould_cross(demi_mould *m, int triangle) {
-    double a[3], b[3], c[3], lo[2], hi[2];
+    demi_d3 t[3], a, b, c;
     int from[2], to[2], i, j, k, e;
-    demi_mesh_corner(m->mesh, triangle, 0, a);
-    demi_mesh_corner(m->mesh, triangle, 1, b);
-    demi_mesh_corner(m->mesh, triangle, 2, c);
+    demi_mesh_triangle(m->mesh, triangle, t);
+    a = t[0]; b = t[1]; c = t[2];
     for (e = 0; e < 2; e++) {
-        lo[e] = DEMI_MIN(a[e], DEMI_MIN(b[e], c[e]));
-        hi[e] = DEMI_MAX(a[e], DEMI_MAX(b[e], c[e]));
-        from[e] = (int)DEMI_MAX(floor((lo[e] - m->lo[e])/m->step - 1), 0);
-        to[e] = (int)DEMI_MIN(ceil((hi[e] - m->lo[e])/m->step + 1), m->n[e] - 1);
+        const double p = e ? a.y : a.x, q = e ? b.y : b.x, r = e ? c.y : c.x;
+        const double lo = DEMI_MIN(p, DEMI_MIN(q, r)), hi = DEMI_MAX(p, DEMI_MAX(q, r));
+        from[e] = (int)DEMI_MAX(floor((lo - m->lo[e])/m->step - 1), 0);
+        to[e] = (int)DEMI_MIN(ceil((hi - m->lo[e])/m->step + 1), m->n[e] - 1);
     }
     for (j = from[1]; j <= to[1]; j++)
         for (i = from[0]; i <= to[0]; i++) {
             const double x = m->lo[0] + (i + 0.5)*m->step, y = m->lo[1] + (j + 0.5)*m->step;
-            const double u = (b[0] - a[0])*(y - a[1]) - (b[1] - a[1])*(x - a[0]);
-            const double v = (c[0] - b[0])*(y - b[1]) - (c[1] - b[1])*(x - b[0]);
-            const double w = (a[0] - c[0])*(y - c[1]) - (a[1] - c[1])*(x - c[0]);
+            const double u = (b.x - a.x)*(y - a.y) - (b.y - a.y)*(x - a.x);
+            const double v = (c.x - b.x)*(y - b.y) - (c.y - b.y)*(x - b.x);
+            const double w = (a.x - c.x)*(y - c.y) - (a.y - c.y)*(x - c.x);
             double z;
             if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
-            z = (u*c[2] + v*a[2] + w*b[2])/(u + v + w);
+            z = (u*c.z + v*a.z + w*b.z)/(u + v + w);
             for (k = 0; k < m->n[2]; k++)
                 if (m->lo[2] + (k + 0.5)*m->step > z)
                     m->inside[i + m->n[0]*(j + m->n[1]*k)] ^= 1;
@@ -122,12 +109,12 @@ static int demi_mould_gain(demi_mould *m, const double *c, double r, int by, int
 /* The best of all candidates, beside the spheres that are there. */
 static int demi_mould_best(demi_mould *m, double *sphere) {
     static const double scale[DEMI_GRAIN_SCALES] = {1, 0.9, 1.08, 1.18, 1.3};
-    int most = INT_MIN, i, k, e;
+    int most = INT_MIN, i, k;
     for (i = 0; i < m->picks; i++)
         for (k = 0; k < DEMI_GRAIN_SCALES; k++) {
             const double r = m->far[i]*scale[k];
             int32_t *bound = m->most + DEMI_GRAIN_SCALES*i + k;
-            double c[3];
+            double c[4];
             int gain, right;
             if (*bound + m->slack <= most) continue;
             demi_mould_at(m, m->pick[i], c);
@@ -135,15 +122,17 @@ static int demi_mould_best(demi_mould *m, double *sphere) {
             *bound = right - m->slack;
             if (gain <= most) continue;
             most = gain;
-            for (e = 0; e < 3; e++) sphere[e] = c[e];
-            sphere[3] = r;
+            c[3] = r;
+            memcpy(sphere, c, sizeof c);
         }
     return most;
 }
 /* The grid and its candidates; 0: no memory. */
-static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const double *hi) {
-    double most = 0, x[3];
+static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 highest) {
+    double most = 0, x[3], lo[3], hi[3];
     int i, e, inside = 0, seen = 0;
+    demi_d3_put(lo, lowest);
+    demi_d3_put(hi, highest);
     for (e = 0; e < 3; e++) most = DEMI_MAX(most, hi[e] - lo[e]);
     m->step = most/(int)DEMI_GRAIN_CELLS;
     for (e = 0, m->count = 1; e < 3; e++) {
@@ -167,7 +156,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const 
         if (inside > DEMI_GRAIN_PICKS && now/inside == (now - DEMI_GRAIN_PICKS)/inside) continue;
         if (m->picks == DEMI_GRAIN_PICKS) break;
         demi_mould_at(m, i, x);
-        m->far[m->picks] = demi_mesh_distance(m->mesh, x);
+        m->far[m->picks] = demi_mesh_distance(m->mesh, demi_d3_at(x));
         m->pick[m->picks++] = i;
     }
     return 1;
@@ -182,29 +171,26 @@ static void demi_mould_free(dem_world *w, demi_mould *m) {
 /* What a mesh is, and how well spheres (count x 4) fit it. Moments are exact. */
 static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, const double *sphere,
                                int count, dem_spheres_fit *fit) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
     double c[3], I[6], all = 0, square = 0;
     int i, k, e;
     for (k = 0; k < 3; k++) c[k] = m->x[k]/m->one;
-    for (k = 0; k < 6; k++) I[k] = m->xx[k] - m->one*c[one[k]]*c[two[k]];
+    for (k = 0; k < 6; k++) I[k] = m->xx[k] - m->one*c[demi_sym_row[k]]*c[demi_sym_column[k]];
     fit->volume = (dem_real)m->one;
-    fit->centre = demi_v((dem_real)c[0], (dem_real)c[1], (dem_real)c[2]);
+    fit->centre = demi_d3_real(demi_d3_at(c));
     for (k = 0; k < 3; k++) fit->inertia[k] = (dem_real)(I[(k + 1)%3] + I[(k + 2)%3]);
     for (k = 3; k < 6; k++) fit->inertia[k] = (dem_real)-I[k];
     for (i = 0; i < mesh->triangle_count; i++) {        /* at three points of each triangle */
-        double x[3][3], u[3], v[3], n[3];
-        for (k = 0; k < 3; k++) demi_mesh_corner(mesh, i, k, x[k]);
-        demi_sub3(x[1], x[0], u);
-        demi_sub3(x[2], x[0], v);
-        demi_cross3(u, v, n);
+        demi_d3 x[3];
+        double area;
+        demi_mesh_triangle(mesh, i, x);
+        area = demi_d3_length(demi_d3_normal(x[0], x[1], x[2]))/6;
         for (k = 0; k < 3; k++) {
-            double at[3], off = 1e300;
-            const double area = sqrt(demi_dot3(n, n))/6;
-            for (e = 0; e < 3; e++) at[e] = (4*x[k][e] + x[(k + 1)%3][e] + x[(k + 2)%3][e])/6;
+            const demi_d3 sum = demi_d3_add(demi_d3_add(demi_d3_scale(x[k], 4), x[(k + 1)%3]),
+                                            x[(k + 2)%3]);
+            double off = 1e300;
             for (e = 0; e < count; e++) {
-                double d[3], gap;
-                demi_sub3(at, sphere + 4*e, d);
-                gap = sqrt(demi_dot3(d, d)) - sphere[4*e + 3];
+                const demi_d3 d = demi_d3_sub(demi_d3_over(sum, 6), demi_d3_at(sphere + 4*e));
+                const double gap = demi_d3_length(d) - sphere[4*e + 3];
                 off = DEMI_MIN(off, gap);
             }
             all += area;
@@ -216,17 +202,15 @@ static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, cons
 /* Volume and second moments of what the spheres cover, by the grid, against those of the inside. */
 static void demi_mould_judge(const demi_mould *m, dem_spheres_fit *fit) {
     demi_moments own, theirs;
-    double x[3], at[3], worst = 0, spread[2][3];
+    double x[3], worst = 0, spread[2][3];
     int i, k, wrong = 0, inside = 0;
     memset(&own, 0, sizeof own);
     memset(&theirs, 0, sizeof theirs);
     for (i = 0; i < m->count; i++) {
         demi_mould_at(m, i, x);
-        at[0] = x[0] - (double)fit->centre.x;
-        at[1] = x[1] - (double)fit->centre.y;
-        at[2] = x[2] - (double)fit->centre.z;
-        if (m->inside[i]) demi_moments_add(&own, 1, at, 0);
-        if (m->covered[i]) demi_moments_add(&theirs, 1, at, 0);
+        demi_d3_put(x, demi_d3_sub(demi_d3_at(x), demi_d3_of(fit->centre)));
+        if (m->inside[i]) demi_moments_add(&own, 1, x, 0);
+        if (m->covered[i]) demi_moments_add(&theirs, 1, x, 0);
         wrong += (m->inside[i] != 0) != (m->covered[i] != 0);
         inside += m->inside[i];
     }
@@ -246,22 +230,20 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     dem_spheres_fit told;
     demi_moments moments;
     demi_mould m;
-    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, a[3], b[3], c[3];
+    demi_d3 lo = demi_d(1e300, 1e300, 1e300), hi = demi_d(-1e300, -1e300, -1e300), x[3];
     double *sphere;
     int i, k, sweep, changed = 1, made;
     memset(&moments, 0, sizeof moments);
     for (i = 0; i < mesh->triangle_count; i++) {
-        demi_mesh_corner(mesh, i, 0, a);
-        demi_mesh_corner(mesh, i, 1, b);
-        demi_mesh_corner(mesh, i, 2, c);
-        if (sign[i] > 0) demi_moments_tetrahedron(&moments, a, b, c);
-        if (sign[i] < 0) demi_moments_tetrahedron(&moments, a, c, b);
+        demi_mesh_triangle(mesh, i, x);
+        if (sign[i] > 0) demi_moments_tetrahedron(&moments, x[0], x[1], x[2]);
+        if (sign[i] < 0) demi_moments_tetrahedron(&moments, x[0], x[2], x[1]);
         for (k = 0; k < 3; k++) {
-            lo[k] = DEMI_MIN(lo[k], DEMI_MIN(a[k], DEMI_MIN(b[k], c[k])));
-            hi[k] = DEMI_MAX(hi[k], DEMI_MAX(a[k], DEMI_MAX(b[k], c[k])));
+            lo = demi_d3_lowest(lo, x[k]);
+            hi = demi_d3_highest(hi, x[k]);
         }
     }
-    if (!(moments.one > 1e-6*(hi[0] - lo[0])*(hi[1] - lo[1])*(hi[2] - lo[2])))
+    if (!(moments.one > 1e-6*(hi.x - lo.x)*(hi.y - lo.y)*(hi.z - lo.z)))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
                          "must be more than 1e-6 of its box: it is too thin for spheres; is it a "
                          "sheet?", call, mesh->triangle_count, moments.one);

@@ -8,14 +8,13 @@
 #include <time.h>
 
 static void solid_from(const convex_solid *from, demi_solid *s) {
-    int i, k;
+    int i;
     memset(s, 0, sizeof *s);
     s->corners = from->corners;
-    for (i = 0; i < s->corners; i++)
-        for (k = 0; k < 3; k++) {
-            s->corner[i][k] = from->corner[3*i + k];
-            s->centre[k] += from->corner[3*i + k]/s->corners;
-        }
+    for (i = 0; i < s->corners; i++) {
+        s->corner[i] = demi_d3_at(from->corner + 3*i);
+        s->centre = demi_d3_add(s->centre, demi_d3_over(s->corner[i], s->corners));
+    }
 }
 static double seconds(void) { return (double)clock()/CLOCKS_PER_SEC; }
 
@@ -32,7 +31,8 @@ int main(int argc, char **argv) {
         long k, other = 0, near_miss = 0, strange = 0, shallow = 0, short_of = 0, off[8] = {0};
         for (k = 0; k < pairs; k++) {
             demi_simplex tells;
-            double n[3] = {0, 0, 0}, gap, size, error;
+            demi_d3 n = demi_d(0, 0, 0);
+            double gap, size, error;
             convex_body one, two;
             convex_gap g;
             convex_verdict v;
@@ -47,7 +47,7 @@ int main(int argc, char **argv) {
             solid_from(&a, &p);
             solid_from(&b, &q);
             since = seconds();
-            gap = demi_solids_gap(&p, &q, n, &tells);
+            gap = demi_solids_gap(&p, &q, &n, &tells);
             time[1] += seconds() - since;
             since = seconds();
             v = convex_mpr(&one, &two);
@@ -56,7 +56,7 @@ int main(int argc, char **argv) {
             for (i = 0; i < 7 && error >= pow(10, -16 + 2*i); i++) continue;
             off[i]++;
             worst = fmax(worst, error);
-            strange += !(gap > -1e300 && gap < 1e300) || fabs(convex_dot(n, n) - 1) > 1e-12;
+            strange += !(gap > -1e300 && gap < 1e300) || fabs(demi_d3_square(n) - 1) > 1e-12;
             if (fabs(g.gap) > 1e-12*size) other += (gap < 0) != (g.gap < 0) || v.touching != (g.gap < 0);
             else near_miss++;
             shallow += gap > g.gap + 1e-13*size;        /* a plane that parts them can do no more than the distance */
@@ -109,9 +109,10 @@ int main(int argc, char **argv) {
             body = convex_view(&b);
             size += convex_radius(&body);
             for (i = 0; i < 4; i++) {
-                double n[3] = {0, 0, 0};
+                demi_d3 n = demi_d(0, 0, 0);
                 demi_simplex tells;
-                gap[i] = i & 1 ? demi_solids_gap(&q[i/2], &p[i/2], n, &tells) : demi_solids_gap(&p[i/2], &q[i/2], n, &tells);
+                gap[i] = i & 1 ? demi_solids_gap(&q[i/2], &p[i/2], &n, &tells)
+                    : demi_solids_gap(&p[i/2], &q[i/2], &n, &tells);
                 worst = fmax(worst, fabs(gap[i] - gap[0])/size);
             }
             touching += gap[0] < 0;

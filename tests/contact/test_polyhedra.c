@@ -37,7 +37,7 @@ static dem_vec3 momentum(const dem_world *w, int angular) {
    separating axis theorem); < 0: the way by which one has to move to part them. By brute force. */
 static double keeps_apart(const demi_solid *a, const demi_solid *b) {
     const demi_solid *two[2];
-    double edge[2][600][3];
+    demi_d3 edge[2][600];
     double best = -1e300;
     int count[2] = {0, 0}, k, f, i, j;
     two[0] = a;
@@ -48,20 +48,20 @@ static double keeps_apart(const demi_solid *a, const demi_solid *b) {
         for (f = 0; f < s->faces; f++)
             for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
                 const int32_t p = loops[i], q = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-                if (p < q) demi_sub3(s->corner[q], s->corner[p], edge[k][count[k]++]);
+                if (p < q) edge[k][count[k]++] = demi_d3_sub(s->corner[q], s->corner[p]);
             }
     }
     for (i = -a->faces - b->faces; i < count[0]; i++)
         for (j = 0; j < (i < 0 ? 1 : count[1]); j++) {
-            double n[3], lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
-            const double *along = edge[0][i < 0 ? 0 : i], *other = edge[1][j];
-            if (i < 0) memcpy(n, -i <= a->faces ? a->plane[-i - 1] : b->plane[-i - 1 - a->faces], sizeof n);
-            else demi_cross3(along, other, n);
-            if (i >= 0 && !(demi_dot3(n, n) > 1e-12*demi_dot3(along, along)*demi_dot3(other, other))) continue;
-            demi_unit3(n);
+            double lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
+            const demi_d3 along = edge[0][i < 0 ? 0 : i], other = edge[1][j];
+            demi_d3 n = demi_d3_cross(along, other);
+            if (i >= 0 && !(demi_d3_square(n) > 1e-12*demi_d3_square(along)*demi_d3_square(other))) continue;
+            if (i < 0) n = -i <= a->faces ? a->face[-i - 1].slope : b->face[-i - 1 - a->faces].slope;
+            n = demi_d3_unit(n);
             for (k = 0; k < 2; k++)
                 for (f = 0; f < two[k]->corners; f++) {
-                    const double at_n = demi_dot3(n, two[k]->corner[f]);
+                    const double at_n = demi_d3_dot(n, two[k]->corner[f]);
                     lo[k] = fmin(lo[k], at_n);
                     hi[k] = fmax(hi[k], at_n);
                 }
@@ -378,12 +378,14 @@ int main(int argc, char **argv) {
             const dem_vec3 gap = scene_at(&random, 0.03, -0.015, 0.03, -0.015, 0.03, -0.015);
             demi_solid a, b;
             demi_pressure s, moved;
-            double F;
+            double F, force[3], torque[3];
             if (!one.id || demi_length(gap) < DEM_R(0.01)) continue;
             demi_solid_of(&p, at(0, 0, 0), &a);
             demi_solid_of(&q, gap, &b);
             if (!demi_solids_press(&a, &b, &s) || s.deep > 0.5) continue;
-            F = sqrt(demi_dot3(s.force, s.force));
+            F = demi_d3_length(s.force);
+            demi_d3_put(force, s.force);
+            demi_d3_put(torque, s.torque);
             if (!(s.deep > 1e-3)) continue;     /* differences of I are round-off there */
             touched++;
             for (axis = 0; axis < 3; axis++) {
@@ -394,7 +396,7 @@ int main(int argc, char **argv) {
                     demi_solid_of(&q, demi_add(gap, demi_scale(e, (dem_real)(sign ? way : -way))), &b);
                     I[sign] = demi_solids_press(&a, &b, &moved) ? moved.shared : 0;
                 }
-                CHECK_NEAR((I[0] - I[1])/(2*way)/F, s.force[axis]/F, 1e-5);
+                CHECK_NEAR((I[0] - I[1])/(2*way)/F, force[axis]/F, 1e-5);
                 demi_solid_of(&q, gap, &b);
                 for (sign = 0; sign < 2; sign++) {
                     const dem_quat t = dem_quat_about(e, (dem_real)(sign ? turn : -turn));
@@ -403,7 +405,7 @@ int main(int argc, char **argv) {
                     demi_solid_of(&turned, at(0, 0, 0), &now);
                     I[sign] = demi_solids_press(&now, &b, &moved) ? moved.shared : 0;
                 }
-                CHECK_NEAR((I[1] - I[0])/(2*turn)/F/0.01, s.torque[axis]/F/0.01, 1e-5);
+                CHECK_NEAR((I[1] - I[0])/(2*turn)/F/0.01, torque[axis]/F/0.01, 1e-5);
             }
         }
         CHECK(touched > 50 || !fine);
@@ -453,7 +455,7 @@ int main(int argc, char **argv) {
             wrong += i != (depth > 0);
             if (i != (depth > 0) && getenv("POLYHEDRA_NUMBERS"))
                 printf("pair %d: size %g flat %g depth %g: shared %g\n", k, size, flat, depth, s.shared);
-            if (i) CHECK(isfinite(s.shared) && isfinite(s.sum) && isfinite(s.torque[0]) && s.deep <= 1 &&
+            if (i) CHECK(isfinite(s.shared) && isfinite(s.sum) && isfinite(s.torque.x) && s.deep <= 1 &&
                          s.shared < 10*depth*depth*size*size/(size*flat)*50);
             dem_world_destroy(w);
         }

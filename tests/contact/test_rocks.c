@@ -143,28 +143,28 @@ int main(int argc, char **argv) {
             const dem_shape one = scene_rock(w, &random, 8 + k%9, 0.01), two = k%3 ? one : scene_box(w, 0.012, 0.006, 0.015);
             const demi_part p = scene_part(w, one, scene_turn(&random)), q = scene_part(w, two, scene_turn(&random));
             demi_simplex tells;
-            double n[3] = {0, 0, 0}, turned[3] = {0, 0, 0}, gap, other, best = -1e300;
+            demi_d3 n = demi_d(0, 0, 0), turned = n;
+            double gap, other, best = -1e300;
             int i, f, pass;
             demi_solid_of(&p, at(0, 0, 0), &a);
             demi_solid_of(&q, scene_at(&random, 0.03, -0.015, 0.03, -0.015, 0.02, -0.01), &b);
-            gap = demi_solids_gap(&a, &b, n, &tells);
-            other = demi_solids_gap(&b, &a, turned, &tells);
+            gap = demi_solids_gap(&a, &b, &n, &tells);
+            other = demi_solids_gap(&b, &a, &turned, &tells);
             CHECK_NEAR(gap, other, 1e-12);
-            for (i = 0; i < 3; i++) CHECK_NEAR(n[i] + turned[i], 0, gap > 1e-6 ? 1e-6 : 2);
+            CHECK_NEAR(demi_d3_length(demi_d3_add(n, turned)), 0, gap > 1e-6 ? 1e-6 : 2);
             for (pass = 0; pass < 2; pass++)    /* no face's plane keeps them farther apart than the gap is */
                 for (f = 0; f < (pass ? b.faces : a.faces); f++) {
-                    double way[3];
-                    for (i = 0; i < 3; i++)
-                        way[i] = pass ? -b.plane[f][i]*b.plane[f][3] : a.plane[f][i]*a.plane[f][3];
+                    const demi_d3 way = pass ? demi_d3_scale(b.face[f].slope, -b.face[f].high)
+                        : demi_d3_scale(a.face[f].slope, a.face[f].high);
                     best = fmax(best, demi_solids_slab(&a, &b, way));
                 }
             CHECK(best < gap + (fine ? 1e-12 : 1e-8));    /* planes and corners are rounded apart */
             if (gap < 0) {
                 overlaps++;                     /* moved by its depth along the normal, it only just is apart */
-                for (i = 0; i < b.corners; i++) for (f = 0; f < 3; f++) b.corner[i][f] -= (gap - 1e-9)*n[f];
-                for (f = 0; f < 3; f++) b.centre[f] -= (gap - 1e-9)*n[f];
-                turned[0] = turned[1] = turned[2] = 0;
-                CHECK_NEAR(demi_solids_gap(&a, &b, turned, &tells), 1e-9, 1e-11);
+                for (i = 0; i < b.corners; i++) b.corner[i] = demi_d3_plus(b.corner[i], 1e-9 - gap, n);
+                b.centre = demi_d3_plus(b.centre, 1e-9 - gap, n);
+                turned = demi_d(0, 0, 0);
+                CHECK_NEAR(demi_solids_gap(&a, &b, &turned, &tells), 1e-9, 1e-11);
             }
         }
         CHECK(overlaps > 50 && overlaps < 350);
@@ -195,7 +195,7 @@ int main(int argc, char **argv) {
             demi_solid_of(&p, x, &placed);
             gaps.count = 0;
             gaps.range = 1;
-            demi_generator_gaps(&s, &l, x, 0, &gaps);
+            demi_generator_gaps(&s, &l, demi_d3_of(x), 0, &gaps);
             gap = least_gap(&gaps, &points);
             wanted = scene_sampled(&placed, kind == 2 ? off_cone : off_tube);
             CHECK(points > 0);

@@ -89,7 +89,6 @@ static double least_gap(const dem_world *w, dem_shape shape, dem_quat q, dem_vec
     static demi_flats flats;
     static demi_gaps gaps;
     static demi_solid s;
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
     const int wires = meant.kind < DEM_SIEVE_SQUARE;
     const demi_part part = scene_part(w, shape, q);
     double least = 1e300;
@@ -103,13 +102,12 @@ static double least_gap(const dem_world *w, dem_shape shape, dem_quat q, dem_vec
         flats.count = gaps.count = 0;
         gaps.range = 0.02;
         if (wires) demi_wires_touch(&meant, set, &s, x, (double)part.radius + gaps.range, 0, &flats, &gaps);
-        else demi_plate_touch(&meant, &s, x0, (double)part.radius + gaps.range, 1e-6, 0, &flats, &gaps);
+        else demi_plate_touch(&meant, &s, demi_d3_of(x), (double)part.radius + gaps.range, 1e-6, 0, &flats, &gaps);
         for (i = 0; i < gaps.count; i++)
             for (k = 0; k < gaps.group[i].count; k++) {
-                const double *m = gaps.group[i].n[k];
                 if (!(gaps.group[i].gap[k] < least)) continue;
                 least = gaps.group[i].gap[k];
-                *n = demi_rotate(turn, at(m[0], m[1], m[2]));
+                *n = demi_rotate(turn, demi_d3_real(gaps.group[i].n[k]));
             }
     }
     return least;
