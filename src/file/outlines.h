@@ -39,8 +39,7 @@ static int demi_outline_grow(dem_world *w, demi_outline *o) {
 }
 /* Twice the area of a triangle of three corners, positive if it turns left. */
 static double demi_outline_turn(const demi_outline *o, int a, int b, int c) {
-    const double *p = o->xy + 2*a, *q = o->xy + 2*b, *r = o->xy + 2*c;
-    return (q[0] - p[0])*(r[1] - p[1]) - (q[1] - p[1])*(r[0] - p[0]);
+    return demi_turn_of(o->xy, a, b, c);
 }
 static int demi_outline_same(const demi_outline *o, int a, int b) {
     return !(o->xy[2*a] < o->xy[2*b] || o->xy[2*a] > o->xy[2*b] ||
@@ -48,40 +47,33 @@ static int demi_outline_same(const demi_outline *o, int a, int b) {
 }
 /* The corners as seen along the normal, and whether they lie in a plane. */
 static void demi_outline_lay(demi_outline *o, const dem_real *vertices) {
-    double n[3] = {0, 0, 0}, mean[3] = {0, 0, 0}, lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
-    double far = 0, length;
-    int i, k, axis = 0;
+    const demi_d3 first = demi_d3_of(demi_at(vertices + 3*o->corner[0]));
+    demi_d3 n = demi_d(0, 0, 0), mean = n, lo = n, hi = n;
+    double far = 0, length, size, x[3];
+    int i, back, axis = 0;
     for (i = 0; i < o->count; i++) {
-        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
-        const dem_real *b = vertices + 3*o->corner[(i + 1)%o->count];
-        double p[3], q[3];
-        for (k = 0; k < 3; k++) {
-            p[k] = (double)a[k] - (double)zero[k];
-            q[k] = (double)b[k] - (double)zero[k];
-            mean[k] += p[k]/o->count;
-            lo[k] = DEMI_MIN(lo[k], p[k]);
-            hi[k] = DEMI_MAX(hi[k], p[k]);
-        }
-        for (k = 0; k < 3; k++) n[k] += p[(k + 1)%3]*q[(k + 2)%3] - p[(k + 2)%3]*q[(k + 1)%3];
+        const demi_d3 p = demi_d3_sub(demi_d3_of(demi_at(vertices + 3*o->corner[i])), first);
+        const int32_t next = o->corner[(i + 1)%o->count];
+        n = demi_d3_add(n, demi_d3_cross(p, demi_d3_sub(demi_d3_of(demi_at(vertices + 3*next)),
+                                                        first)));
+        mean = demi_d3_add(mean, demi_d3_over(p, o->count));
+        lo = demi_d3_lowest(lo, p);
+        hi = demi_d3_highest(hi, p);
     }
-    for (k = 0; k < 3; k++) {
-        size = DEMI_MAX(size, hi[k] - lo[k]);
-        if (fabs(n[k]) > fabs(n[axis])) axis = k;
-    }
-    length = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+    size = DEMI_MAX(hi.x - lo.x, DEMI_MAX(hi.y - lo.y, hi.z - lo.z));
+    demi_d3_put(x, n);
+    for (i = 1; i < 3; i++) if (fabs(x[i]) > fabs(x[axis])) axis = i;
+    back = x[axis] < 0;
+    length = demi_d3_length(n);
     o->near = 1e-10*size*size;
     o->bent = 0;
     o->crossed = !(length > o->near);
     for (i = 0; i < o->count; i++) {
-        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
-        double p[3], off = 0;
-        for (k = 0; k < 3; k++) {
-            p[k] = (double)a[k] - (double)zero[k];
-            off += n[k]*(p[k] - mean[k]);
-        }
-        far = DEMI_MAX(far, fabs(off));
-        o->xy[2*i] = p[n[axis] < 0 ? (axis + 2)%3 : (axis + 1)%3];
-        o->xy[2*i + 1] = p[n[axis] < 0 ? (axis + 1)%3 : (axis + 2)%3];
+        const demi_d3 p = demi_d3_sub(demi_d3_of(demi_at(vertices + 3*o->corner[i])), first);
+        far = DEMI_MAX(far, fabs(demi_d3_dot(n, demi_d3_sub(p, mean))));
+        demi_d3_put(x, p);
+        o->xy[2*i] = x[back ? (axis + 2)%3 : (axis + 1)%3];
+        o->xy[2*i + 1] = x[back ? (axis + 1)%3 : (axis + 2)%3];
         o->next[i] = (i + 1)%o->count;
         o->prev[i] = (i + o->count - 1)%o->count;
     }

@@ -649,21 +649,17 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
-        const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
-                             (double)w->desc.gravity.z};
+        const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
         if (k->mover >= 0)
-            s->knots[k->group].work -= (g[0]*k->x[0] + g[1]*k->x[1] + g[2]*k->x[2])*
-                (double)(w->bodies.mass[k->mover]*s->dt);
+            s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
         const double paid = group->open > 1 || !(group->work > group->bank) ? 1
             : DEMI_MAX(group->bank, 0)/group->work;
         const dem_real by = (dem_real)paid*s->dt;
-        const dem_vec3 way = demi_v((dem_real)k->x[0]*by, (dem_real)k->x[1]*by,
-                                    (dem_real)k->x[2]*by);
-        const dem_vec3 turn = demi_v((dem_real)k->x[3]*by, (dem_real)k->x[4]*by,
-                                     (dem_real)k->x[5]*by);
+        const dem_vec3 way = demi_scale(demi_d3_real(demi_d3_at(k->x)), by);
+        const dem_vec3 turn = demi_scale(demi_d3_real(demi_d3_at(k->x + 3)), by);
         dem_quat q;
         dem_real *o;
         if (!group->guarded || !group->open) continue;

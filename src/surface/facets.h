@@ -40,8 +40,7 @@ DEM_INLINE int demi_faceted(const demi_wall *wall) { return demi_wall_is(wall, D
 DEM_INLINE int demi_wall_per(const demi_wall *wall) { return demi_wall_kinds[wall->kind].corners; }
 
 static double demi_far2(const double *a, const double *b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x*x + y*y + z*z;
+    return demi_d3_square(demi_d3_sub(demi_d3_at(a), demi_d3_at(b)));
 }
 
 /* Points in a tree of boxes, to find those near a line. Node k has the halves 2k + 1 and 2k + 2,
@@ -213,23 +212,17 @@ static void demi_points_weld(const demi_tree *tree, const double *near_by, int32
 /* Does a facet count? Not with two corners in one place; nor a triangle with none off its longest
    side by more than what is one place there: its other sides and corners are its neighbours'. */
 static int demi_facet_counts(const double *x, const double *near_by, const int32_t *c, int per) {
-    double side[3], longest, most, area2 = 0, u[3], v[3];
+    double side[3], longest, most;
+    demi_d3 normal;
     int k;
     if (c[0] == c[1]) return 0;
     if (per == 2) return 1;
     if (c[1] == c[2] || c[2] == c[0]) return 0;
-    for (k = 0; k < 3; k++) {
-        side[k] = demi_far2(x + 3*c[k], x + 3*c[(k + 1)%3]);
-        u[k] = x[3*c[1] + k] - x[3*c[0] + k];
-        v[k] = x[3*c[2] + k] - x[3*c[0] + k];
-    }
-    for (k = 0; k < 3; k++) {
-        const double n = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
-        area2 += n*n;
-    }
+    for (k = 0; k < 3; k++) side[k] = demi_far2(x + 3*c[k], x + 3*c[(k + 1)%3]);
+    normal = demi_d3_normal(demi_d3_at(x + 3*c[0]), demi_d3_at(x + 3*c[1]), demi_d3_at(x + 3*c[2]));
     longest = DEMI_MAX(side[0], DEMI_MAX(side[1], side[2]));
     most = DEMI_MIN(near_by[c[0]], DEMI_MIN(near_by[c[1]], near_by[c[2]]));
-    return area2 > most*most*longest;
+    return demi_d3_square(normal) > most*most*longest;
 }
 
 /* A side of a facet, from point lo to point hi. */
@@ -256,21 +249,21 @@ static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
 static void demi_facet_planes(demi_wall *wall, const double *x) {
     const int n = demi_wall_per(wall);
     double far = 0;
-    int i, k;
+    int i;
     for (i = 0; i < 3*wall->vertex_count; i++) far = DEMI_MAX(far, fabs(x[i]));
     wall->plane_slack = (dem_real)(16*far*(DEMI_SINGLE ? (double)FLT_EPSILON : DBL_EPSILON));
     for (i = 0; i < wall->element_count; i++) {
-        const double *a = x + 3*wall->corners[n*i], *b = x + 3*wall->corners[n*i + 1];
-        double u[3], v[3], m[3], l;
-        for (k = 0; k < 3; k++) u[k] = b[k] - a[k];
-        for (k = 0; k < 3; k++) v[k] = n == 3 ? x[3*wall->corners[n*i + 2] + k] - a[k] : k == 2;
-        if (n == 2) u[2] = 0;                   /* a segment goes on along z without end */
-        for (k = 0; k < 3; k++) m[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
-        l = sqrt(m[0]*m[0] + m[1]*m[1] + m[2]*m[2]);
-        if (!(l*l > 1e-8*(u[0]*u[0] + u[1]*u[1] + u[2]*u[2])*
-                    (v[0]*v[0] + v[1]*v[1] + v[2]*v[2]))) continue;
-        for (k = 0; k < 3; k++) wall->planes[4*i + k] = (dem_real)(m[k]/l);
-        wall->planes[4*i + 3] = (dem_real)((m[0]*a[0] + m[1]*a[1] + m[2]*a[2])/l);
+        const int32_t *c = wall->corners + n*i;
+        const demi_d3 a = demi_d3_at(x + 3*c[0]);
+        const demi_d3 v = n == 3 ? demi_d3_sub(demi_d3_at(x + 3*c[2]), a) : demi_d(0, 0, 1);
+        demi_d3 u = demi_d3_sub(demi_d3_at(x + 3*c[1]), a), m;
+        double l;
+        if (n == 2) u.z = 0;                    /* a segment goes on along z without end */
+        m = demi_d3_cross(u, v);
+        l = demi_d3_length(m);
+        if (!(l*l > 1e-8*demi_d3_square(u)*demi_d3_square(v))) continue;
+        demi_put(wall->planes + 4*i, demi_d3_real(demi_d3_over(m, l)));
+        wall->planes[4*i + 3] = (dem_real)(demi_d3_dot(m, a)/l);
     }
 }
 /* Welds a wall's corners, numbers its edges and says which element looks after which. Elements
@@ -499,7 +492,7 @@ static void demi_join_images(const dem_world *w, demi_join *j, int group, int fi
                     const dem_vec3 at = demi_add(by, demi_add(wall->pose.position,
                         demi_rotate(wall->pose.rotation, demi_at(wall->vertices + 3*
                                                                wall->corners[j->per*e + c]))));
-                    x[3*c] = (double)at.x; x[3*c + 1] = (double)at.y; x[3*c + 2] = (double)at.z;
+                    demi_d3_put(x + 3*c, demi_d3_of(at));
                 }
                 for (k = 0; k < 3; k++) {
                     for (c = 0; c < j->per; c++) {
@@ -555,8 +548,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         for (k = 0; k < wall->vertex_count; k++) {
             const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation,
                                          demi_at(wall->vertices + 3*k)));
-            double *x = j->x + 3*j->points++;
-            x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
+            demi_d3_put(j->x + 3*j->points++, demi_d3_of(at));
         }
         demi_near_by(j->x, wall, first, j->near_by);
         first += wall->vertex_count;
@@ -621,25 +613,18 @@ static void demi_join_double(demi_join *j) {
    may be null. */
 static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
     const double *p = j->x + 3*a, *q = j->x + 3*b;
+    const demi_d3 way = demi_d3_sub(demi_d3_at(q), demi_d3_at(p));
     const double size2 = demi_far2(p, q), ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
     demi_search_line line;
     int32_t at;
     int i, n = 0;
     demi_tree_line(&line, &j->tree, p, q, ends);
     while ((at = demi_tree_next(&line)) >= 0) {
-        const double *y = j->x + 3*at;
-        const double most = DEMI_MIN(ends, j->near_by[at]);
-        double t = 0, off2 = 0;
-        int k;
+        const demi_d3 to = demi_d3_sub(demi_d3_at(j->x + 3*at), demi_d3_at(p));
+        const double most = DEMI_MIN(ends, j->near_by[at]), t = demi_d3_dot(to, way)/size2;
         if (j->same[at] != at || at == a || at == b || !(j->corners[at] > 0)) continue;
-        for (k = 0; k < 3; k++) t += (y[k] - p[k])*(q[k] - p[k]);
-        t /= size2;
-        if (!(t > 0 && t < 1)) continue;
-        for (k = 0; k < 3; k++) {
-            const double d = y[k] - p[k] - t*(q[k] - p[k]);
-            off2 += d*d;
-        }
-        if (!(off2 <= most*most)) continue;
+        if (!(t > 0 && t < 1) || !(demi_d3_square(demi_d3_plus(to, -t, way)) <= most*most))
+            continue;
         n++;
         if (!out) continue;
         for (i = n - 1; i > 0 && demi_far2(p, j->x + 3*out[i - 1]) > t*t*size2; i--)
@@ -778,9 +763,8 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
     }
 }
 static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32_t point) {
-    const double *x = j->x + 3*point;
-    return demi_unrotate(wall->home.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
-                                                            (dem_real)x[2]), wall->home.position));
+    return demi_unrotate(wall->home.rotation, demi_sub(demi_d3_real(demi_d3_at(j->x + 3*point)),
+                                                       wall->home.position));
 }
 /* Hands the cuts over to their walls, by element. 0 when memory ran out. */
 static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
