@@ -23,6 +23,7 @@
        >>maths             vectors, poses, random numbers
        >>layout            data structures of the world
        >>memory            arrays of each body, errors, allocation
+       >>rows              a row for each field of a desc: its limits and what is done with it
      law/ - contact laws and materials
        >>laws              table of the built-in contact laws and their coefficients
        >>materials         materials, the pair table, damping from restitution
@@ -68,6 +69,7 @@
      run/ - the step and what is measured in it
        >>advice            the time step: what is chosen and what is too large
        >>ledger            account of energy
+       >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>step              one step after another
        >>measure           counters, contacts, angle of repose, the digest
@@ -3357,6 +3359,61 @@ DEM_INLINE dem_vec3 demi_unrotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x +
                   R[5]*a.y + R[8]*a.z);
 }
+/* A vector in double precision, for geometry that would lose its digits where dem_real is float.
+   Sums run from left to right: x, y, z. */
+typedef struct demi_d3 { double x, y, z; } demi_d3;
+DEM_INLINE demi_d3 demi_d(double x, double y, double z) {
+    demi_d3 a;
+    a.x = x; a.y = y; a.z = z;
+    return a;
+}
+DEM_INLINE demi_d3 demi_d3_at(const double *p) { return demi_d(p[0], p[1], p[2]); }
+DEM_INLINE void demi_d3_put(double *p, demi_d3 a) { p[0] = a.x; p[1] = a.y; p[2] = a.z; }
+DEM_INLINE demi_d3 demi_d3_of(dem_vec3 a) { return demi_d((double)a.x, (double)a.y, (double)a.z); }
+DEM_INLINE dem_vec3 demi_d3_real(demi_d3 a) {
+    return demi_v((dem_real)a.x, (dem_real)a.y, (dem_real)a.z);
+}
+DEM_INLINE demi_d3 demi_d3_add(demi_d3 a, demi_d3 b) {
+    return demi_d(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+DEM_INLINE demi_d3 demi_d3_sub(demi_d3 a, demi_d3 b) {
+    return demi_d(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+DEM_INLINE demi_d3 demi_d3_scale(demi_d3 a, double s) { return demi_d(a.x*s, a.y*s, a.z*s); }
+DEM_INLINE demi_d3 demi_d3_over(demi_d3 a, double s) { return demi_d(a.x/s, a.y/s, a.z/s); }
+DEM_INLINE double demi_d3_dot(demi_d3 a, demi_d3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+DEM_INLINE demi_d3 demi_d3_cross(demi_d3 a, demi_d3 b) {
+    return demi_d(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
+}
+DEM_INLINE double demi_d3_square(demi_d3 a) { return demi_d3_dot(a, a); }
+DEM_INLINE double demi_d3_length(demi_d3 a) { return sqrt(demi_d3_dot(a, a)); }
+DEM_INLINE demi_d3 demi_d3_unit(demi_d3 a) {              /* 0 stays 0 */
+    const double l = demi_d3_length(a);
+    return l > 0 ? demi_d3_over(a, l) : demi_d(0, 0, 0);
+}
+/* a + t b, and the point at t of the way from a to b. */
+DEM_INLINE demi_d3 demi_d3_plus(demi_d3 a, double t, demi_d3 b) {
+    return demi_d3_add(a, demi_d3_scale(b, t));
+}
+DEM_INLINE demi_d3 demi_d3_between(demi_d3 a, demi_d3 b, double t) {
+    return demi_d3_plus(a, t, demi_d3_sub(b, a));
+}
+/* Across a triangle that turns left seen from its tip, as long as twice the triangle's area. */
+DEM_INLINE demi_d3 demi_d3_normal(demi_d3 a, demi_d3 b, demi_d3 c) {
+    return demi_d3_cross(demi_d3_sub(b, a), demi_d3_sub(c, a));
+}
+/* The lowest and the highest coordinates of two points. */
+DEM_INLINE demi_d3 demi_d3_lowest(demi_d3 a, demi_d3 b) {
+    return demi_d(DEMI_MIN(a.x, b.x), DEMI_MIN(a.y, b.y), DEMI_MIN(a.z, b.z));
+}
+DEM_INLINE demi_d3 demi_d3_highest(demi_d3 a, demi_d3 b) {
+    return demi_d(DEMI_MAX(a.x, b.x), DEMI_MAX(a.y, b.y), DEMI_MAX(a.z, b.z));
+}
+/* local -> world, of directions in double precision; R: row-major */
+DEM_INLINE demi_d3 demi_d3_rotate(const double *R, demi_d3 a) {
+    return demi_d(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z,
+                  R[6]*a.x + R[7]*a.y + R[8]*a.z);
+}
 /* Rotation by angle about a unit axis (Rodrigues), row-major. */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
     double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;
@@ -3666,6 +3723,33 @@ typedef struct demi_wall_kind { int corners, most, traits; const char *name; } d
     {CORNERS, MOST, TRAITS, NAME},
 static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed"},
     DEMI_WALLS(DEMI_WALL_KIND)};
+
+/* Responses: how contacts act on bodies (desc.response, in the order of dem_response). A row: name
+   in reports; history of a contact: reals (0: as contact laws have it), and bits of those that are
+   components of vectors; traits; functions, see demi_response_row (0: nothing is to be done).
+   History with impulses: friction and moment (vectors), the normal force and what of it cohesion
+   takes, as forces; the normal velocity after the step and the one that was reversed (m/s), see
+   demi_impulse_turns; and whether the contact slides, 1 or 0. */
+enum {
+    DEMI_LAWS = 1,                 /* contact laws give the forces, contact by contact */
+    DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
+    DEMI_PRESSING = 4,             /* polyhedra: by pressure, on four points; else by gaps */
+    DEMI_MIDWAY = 8,               /* contacts are found half a step ahead: the midpoint rule */
+    DEMI_FORESEEN = 16             /* contacts are found before they touch, as speeds require */
+};
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
+#define DEMI_RESPONSES(X) \
+    X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
+      demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
+    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN, demi_impulses_settle, \
+      demi_impulses_room, 0, demi_impulses, demi_impulses_due, demi_impulses_info) \
+    /* the last */
+typedef struct demi_response_kind {
+    const char *name;
+    int memory, vectors, traits;
+} demi_response_kind;
+#define DEMI_RESPONSE_KIND(NAME, MEMORY, VECTORS, TRAITS, ...) {NAME, MEMORY, VECTORS, TRAITS},
+static const demi_response_kind demi_response_kinds[] = {DEMI_RESPONSES(DEMI_RESPONSE_KIND)};
 
 /* A piece of a triangle's side that ends at corners of other triangles. */
 typedef struct demi_cut {
@@ -4141,12 +4225,17 @@ static int demi_wall_there(const dem_world *w, dem_wall wall) {
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
-/* Contacts answer by impulses; each remembers its friction and moment (vectors), its push and what
-   of that cohesion takes, as forces; the normal velocity that it was left with, and what it turned
-   back (m/s), see demi_impulse_turns; and whether it slides, 1 or 0. */
-enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
+/* Has the response in force this trait? */
+DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
+    return (demi_response_kinds[w->desc.response].traits & trait) != 0;
+}
+/* Is it DEM_RESPONSE_IMPULSES? Ask for a trait instead where one says what matters. */
 DEM_INLINE int demi_impulsive(const dem_world *w) {
     return w->desc.response == DEM_RESPONSE_IMPULSES;
+}
+/* Does the reach follow the speeds, so that no scene may be refused because of it? */
+DEM_INLINE int demi_reach_free(const dem_world *w) {
+    return demi_response_is(w, DEMI_FORESEEN) && !(w->desc.law_range > 0);
 }
 /* m: from the first body of entry `at` of the near list to the second, or to its image there. */
 DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
@@ -4202,7 +4291,7 @@ static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
 /* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
    0 where it is asked at touch alone. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
-    if (demi_impulsive(w)) return (dem_real)w->margin.reach;
+    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
 }
 
@@ -4486,6 +4575,272 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>rows
+   One row for each field of a desc, of a scene and of the numbers that a run changes: its name,
+   unit, offset and limits, and how it is used. Loops over rows check the arguments of calls and the
+   numbers in a checkpoint, write and compare scenes, and exchange numbers with slabs. A table is
+   here or in the part that owns the struct, and ends with DEMI_ROW_END. A field without a row fails
+   tests/core/test_rows.c.
+   --------------------------------------------------------------------------------------------- */
+
+/* Range of a number: unchecked (0), finite, >= 0, > 0; DEMI_UNDER: `most` is excluded. DEMI_FREE:
+   the field is not part of the scene, such as threads and pointers that functions are handed. */
+enum { DEMI_ANY = 1, DEMI_FROM = 2, DEMI_OVER = 4, DEMI_LIMITS = 7, DEMI_UNDER = 8,
+       DEMI_FREE = 16 };
+/* How slabs exchange a field. DEMI_TO_SLAB, DEMI_TO_HEAD: each slab, or the head that they share,
+   begins with the world's value. DEMI_HEADS, DEMI_FIRSTS: collecting gives the world the value of
+   the head, or of the first slab. DEMI_SUM, DEMI_LARGEST, DEMI_EITHER: it gives the world the sum
+   over slabs, the largest value, or the bits that are set in any slab. */
+enum { DEMI_TO_SLAB = 32, DEMI_TO_HEAD = 64, DEMI_HEADS = 128, DEMI_FIRSTS = 256,
+       DEMI_SUM = 512, DEMI_LARGEST = 1024, DEMI_EITHER = 2048,
+       DEMI_DEALT = DEMI_TO_SLAB | DEMI_TO_HEAD | DEMI_HEADS };
+/* Returned by `zero`: the field may not be 0 if its limits exclude it, may be 0, must be 0. */
+enum { DEMI_0_NOT, DEMI_0_TOO, DEMI_0_ALONE };
+/* type: 'i' int, 'e' enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double, 'u' uint64_t, 'p' is
+   it null?, 't' a text, of at most `size` bytes, 'h' the digest of what it points to. */
+typedef struct demi_field_row {
+    const char *name, *words;       /* words: values of an enum from 0 on; else more on limits */
+    size_t offset, size;            /* of the field in its struct; bytes in the file */
+    char type;
+    uint64_t (*digest)(const void *item);
+    int how;
+    double most;                    /* largest magnitude */
+    const char *unit;
+    /* other > 0: the value must be 0 or not below that of the field so many rows before this one;
+       other < 0 (rows after this one) and kinds are for `zero`. */
+    int other, kinds;
+    int (*zero)(const dem_world *w, const void *item, const struct demi_field_row *r);
+    const char *refusal;            /* of a dem_world_desc: the error message; else the remedy, 0:
+                                       the usual one */
+} demi_field_row;
+#define DEMI_WHERE(of, field) offsetof(of, field), sizeof ((of *)0)->field
+#define DEMI_ROW_AS(of, name, field, type) \
+    {name, 0, DEMI_WHERE(of, field), type, 0, 0, 0, "", 0, 0, 0, 0}
+#define DEMI_ROW(of, field, type) DEMI_ROW_AS(of, #field, field, type)
+#define DEMI_ROW_FREE(of, field) DEMI_LIMITED(of, field, 'p', DEMI_FREE, 0, "")
+#define DEMI_ROW_ENUM(of, field, how, refusal, words) \
+    {#field, words, DEMI_WHERE(of, field), 'e', 0, how, 0, "", 0, 0, 0, refusal}
+#define DEMI_ROW_NULL(of, field) \
+    {#field, "none one", offsetof(of, field), sizeof(int32_t), 'p', 0, 0, 0, "", 0, 0, 0, 0}
+#define DEMI_ROW_TEXT(of, field, most) \
+    {#field, 0, offsetof(of, field), (most)*24, 't', 0, 0, 0, "", 0, 0, 0, 0}
+#define DEMI_ROW_DIGEST(name, digest) \
+    {name, 0, 0, sizeof(uint64_t), 'h', digest, 0, 0, "", 0, 0, 0, 0}
+#define DEMI_ROW_END {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+/* A number with limits, and with all that a limit may depend on. */
+#define DEMI_LIMITED(of, field, type, how, most, unit) \
+    DEMI_LIMITED_IF(of, field, type, how, most, unit, 0, 0, 0, 0)
+#define DEMI_LIMITED_IF(of, field, type, how, most, unit, words, other, kinds, zero) \
+    {#field, words, DEMI_WHERE(of, field), type, 0, how, most, unit, other, kinds, zero, 0}
+
+/* Bytes of one element of a field, in the file. */
+static size_t demi_row_item(const demi_field_row *r) {
+    switch (r->type) {
+    case 't': return r->size;
+    case 'd': case 'u': case 'h': return 8;
+    case 'i': case 'e': case 'p': return 4;
+    default: return sizeof(dem_real);
+    }
+}
+/* Element k of a number. */
+static double demi_row_read(const demi_field_row *r, const void *item, int k) {
+    const char *at = (const char *)item + r->offset + (size_t)k*demi_row_item(r);
+    int32_t i;
+    dem_real x;
+    double d;
+    switch (r->type) {
+    case 'i': case 'e': memcpy(&i, at, sizeof i); return i;
+    case 'd': memcpy(&d, at, sizeof d); return d;
+    default: memcpy(&x, at, sizeof x); return (double)x;
+    }
+}
+/* The largest magnitude; of an enum its last value. */
+static double demi_row_most(const demi_field_row *r) {
+    const char *word = r->words;
+    double most = r->most;
+    if (r->type == 'e') for (most = 0; *word; word++) most += *word == ' ';
+    return most;
+}
+/* Is x within the limits of this field of an item? */
+static int demi_row_good(const dem_world *w, const demi_field_row *r, const void *item, double x) {
+    const int zero = r->zero ? r->zero(w, item, r) : r->other > 0;
+    const double least = r->other > 0 ? demi_row_read(r - r->other, item, 0) : 0;
+    const double most = demi_row_most(r);
+    if (!demi_finite_double(x) || fabs(x) > most || (r->how & DEMI_UNDER && !(x < most))) return 0;
+    if (!(fabs(x) > 0)) return zero || !(r->how & DEMI_OVER);
+    return zero != DEMI_0_ALONE &&
+        (r->how & DEMI_OVER ? x > least : r->how & DEMI_FROM ? x >= least : 1);
+}
+/* The first field that is beyond its limits, element *k of it; null: none. */
+static const demi_field_row *demi_rows_bad(const dem_world *w, const demi_field_row *r,
+                                           const void *item, int *k) {
+    for (; r->name; r++)
+        for (*k = 0; r->how & DEMI_LIMITS && *k < (int)(r->size/demi_row_item(r)); ++*k)
+            if (!demi_row_good(w, r, item, demi_row_read(r, item, *k))) return r;
+    return 0;
+}
+/* Fails with the first field of a desc that is beyond its limits. `of`: " of" which desc, or "". */
+static dem_result demi_rows_check(dem_world *w, const char *call, const demi_field_row *rows,
+                                  const void *item, const char *of) {
+    int k;
+    const demi_field_row *r = demi_rows_bad(w, rows, item, &k);
+    char least[60], words[80] = "", most[24] = "finite";
+    if (!r) return DEM_OK;
+    if (r->other > 0) snprintf(least, sizeof least, "%s", r[-r->other].name);
+    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0,
+                  *r->unit ? " " : "", r->unit);
+    if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
+    if (demi_row_most(r) < DBL_MAX)
+        snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g, must be %s%s %s%s and %s%s; %s", call,
+                     r->name, of, demi_row_read(r, item, k), r->other > 0 ? "0 or " : "",
+                     r->how & DEMI_OVER ? ">" : ">=", least, words, most,
+                     r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "", r->refusal
+                     ? r->refusal : "start from the defaults of the desc, change what differs");
+}
+/* Copies, or sets to 0, the fields of these uses. */
+static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
+    for (; r->name; r++)
+        if (r->how & uses) memcpy((char *)to + r->offset, (const char *)from + r->offset, r->size);
+}
+static void demi_rows_clear(const demi_field_row *r, void *item, int uses) {
+    for (; r->name; r++) if (r->how & uses) memset((char *)item + r->offset, 0, r->size);
+}
+/* Adds what one slab has to what the world has of all. */
+static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) {
+    size_t k;
+    for (; r->name; r++) {
+        void *to = (char *)sum + r->offset;
+        const void *from = (const char *)part + r->offset;
+        const size_t n = r->how & DEMI_SUM ? r->size/demi_row_item(r) : 0;
+        for (k = 0; k < n; k++) switch (r->type) {
+            case 'i': ((int32_t *)to)[k] += ((const int32_t *)from)[k]; break;
+            case 'u': ((uint64_t *)to)[k] += ((const uint64_t *)from)[k]; break;
+            case 'd': ((double *)to)[k] += ((const double *)from)[k]; break;
+            default: ((dem_real *)to)[k] += ((const dem_real *)from)[k];
+            }
+        if (r->how & DEMI_LARGEST) *(double *)to = DEMI_MAX(*(double *)to, *(const double *)from);
+        for (k = 0; k < r->size && r->how & DEMI_EITHER; k++)
+            ((char *)to)[k] |= ((const char *)from)[k];
+    }
+}
+
+/* --- numbers of a world that a run changes. A checkpoint holds them within these limits. --- */
+#define DEMI_N(field, type, how) DEMI_LIMITED(DEMI_OF, field, type, how, DBL_MAX, "")
+#define DEMI_OF dem_world
+static const demi_field_row demi_number_rows[] = {
+    /* as dem_world_gravity_set and dem_world_dt_set have left them */
+    DEMI_N(desc.gravity, 'v', DEMI_TO_SLAB | DEMI_HEADS),
+    DEMI_N(desc.dt, 'r', DEMI_FROM | DEMI_TO_SLAB | DEMI_HEADS),
+    DEMI_LIMITED(DEMI_OF, clock.time, 'd', DEMI_ANY | DEMI_DEALT, DEMI_FARTHEST, ""),
+    DEMI_LIMITED(DEMI_OF, clock.since.time, 'd', DEMI_ANY | DEMI_DEALT, DEMI_FARTHEST, ""),
+    DEMI_N(clock.since.steps, 'u', DEMI_DEALT), DEMI_N(clock.since.dt, 'd', DEMI_FROM | DEMI_DEALT),
+    DEMI_N(clock.steps, 'u', DEMI_DEALT), DEMI_N(clock.rebuilds, 'u', DEMI_DEALT),
+    DEMI_N(clock.last_rebuild, 'u', DEMI_HEADS), DEMI_N(clock.dt, 'r', DEMI_FROM | DEMI_DEALT),
+    DEMI_N(clock.run_end, 'd', DEMI_ANY), DEMI_N(clock.run_steps, 'u', 0),
+    DEMI_N(clock.half_kick, 'd', DEMI_FROM | DEMI_TO_SLAB | DEMI_FIRSTS),
+    DEMI_N(clock.assumed_speed, 'd', DEMI_FROM | DEMI_DEALT),
+    DEMI_N(clock.spin_elsewhere, 'd', 0), DEMI_N(clock.press_due, 'u', 0),
+    DEMI_N(clock.press_since, 'u', 0), DEMI_N(clock.held, 'u', 0),
+    DEMI_N(stage.dt_valid, 'i', DEMI_DEALT), DEMI_N(stage.list_valid, 'i', 0),
+    DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
+    DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
+    DEMI_N(stage.synced, 'i', DEMI_FIRSTS), DEMI_N(stage.near_stale, 'i', 0),
+    DEMI_N(stage.skin_chosen, 'i', 0), DEMI_N(stage.near_chosen, 'i', 0),
+    DEMI_N(margin.skin, 'd', DEMI_FROM | DEMI_DEALT), DEMI_N(margin.step_gone, 'd', 0),
+    DEMI_N(margin.gone, 'd', DEMI_FROM | DEMI_HEADS), DEMI_N(margin.age, 'd', DEMI_FROM),
+    DEMI_N(margin.walls_gone, 'd', DEMI_FROM | DEMI_HEADS), DEMI_N(margin.reach, 'd', DEMI_FROM),
+    DEMI_N(margin.skin_auto, 'd', DEMI_FROM | DEMI_DEALT), DEMI_N(margin.creep, 'd', DEMI_FROM),
+    DEMI_N(margin.span, 'd', DEMI_FROM | DEMI_TO_SLAB), DEMI_N(margin.change, 'd', DEMI_FROM),
+    DEMI_N(margin.slack, 'd', DEMI_FROM | DEMI_TO_SLAB),
+    DEMI_N(margin.last_change, 'd', DEMI_FROM), DEMI_N(wall_fastest, 'd', DEMI_TO_SLAB),
+    DEMI_N(effects.radius_min, 'r', DEMI_FROM), DEMI_N(effects.radius_max, 'r', DEMI_FROM),
+    DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD), DEMI_ROW_END};
+#undef DEMI_OF
+#define DEMI_OF demi_booked
+static const demi_field_row demi_booked_rows[] = {
+    DEMI_N(energy, 'd', DEMI_TO_SLAB | DEMI_SUM), DEMI_N(inserted, 'd', DEMI_TO_SLAB | DEMI_SUM),
+    DEMI_N(removed, 'd', DEMI_TO_SLAB | DEMI_SUM), DEMI_N(throughput, 'd', DEMI_TO_SLAB | DEMI_SUM),
+    DEMI_N(overlap_max, 'd', DEMI_TO_SLAB | DEMI_LARGEST), DEMI_N(met, 'u', DEMI_EITHER),
+    DEMI_N(speed_max, 'd', DEMI_FROM | DEMI_TO_SLAB | DEMI_HEADS), DEMI_N(due, 'd', 0),
+    DEMI_N(residual, 'd', 0), DEMI_N(residual_rms, 'd', 0), DEMI_N(unsolved, 'u', 0),
+    DEMI_N(sweeps, 'i', 0), DEMI_N(none, 'i', 0), DEMI_ROW_END};
+#undef DEMI_OF
+#define DEMI_OF dem_wall_loads
+static const demi_field_row demi_loads_rows[] = {
+    DEMI_N(force, 'v', DEMI_SUM), DEMI_N(torque, 'v', DEMI_SUM), DEMI_N(power, 'r', DEMI_SUM),
+    DEMI_N(torque_axial, 'r', DEMI_SUM), DEMI_N(contacts, 'i', DEMI_SUM),
+    DEMI_N(touched, 'i', DEMI_EITHER), DEMI_N(impulse, 'd', DEMI_SUM), DEMI_N(work, 'd', DEMI_SUM),
+    DEMI_N(torque_impulse, 'd', DEMI_SUM), DEMI_N(time, 'd', 0), DEMI_N(rate, 'd', DEMI_SUM),
+    DEMI_N(gained, 'd', DEMI_SUM), DEMI_ROW_END};
+#undef DEMI_OF
+#define DEMI_OF dem_outlet_state
+static const demi_field_row demi_outlet_state_rows[] = {
+    DEMI_N(count, 'u', DEMI_SUM), DEMI_N(total, 'u', DEMI_SUM), DEMI_N(mass, 'd', DEMI_SUM),
+    DEMI_N(total_mass, 'd', DEMI_SUM), DEMI_N(sorted, 'u', DEMI_SUM), DEMI_N(gangue, 'u', DEMI_SUM),
+    DEMI_N(sorted_mass, 'd', DEMI_SUM), DEMI_N(gangue_mass, 'd', DEMI_SUM), DEMI_N(since, 'd', 0),
+    DEMI_N(last, 'd', DEMI_LARGEST), DEMI_N(back, 'u', DEMI_SUM), DEMI_N(held, 'u', DEMI_SUM),
+    DEMI_N(back_total, 'u', DEMI_SUM), DEMI_N(held_total, 'u', DEMI_SUM),
+    DEMI_N(back_mass, 'd', DEMI_SUM), DEMI_N(held_mass, 'd', DEMI_SUM),
+    DEMI_N(back_total_mass, 'd', DEMI_SUM), DEMI_N(held_total_mass, 'd', DEMI_SUM), DEMI_ROW_END};
+#undef DEMI_OF
+
+/* --- the desc of a world. It is checked before there is a world that could hold a message, so each
+       limit has its message here. Laws, integrator, search, cone, solver and what depends on other
+       fields: see dem_world_create_error_get. --- */
+#define DEMI_ROW_OF(field, type) DEMI_ROW(dem_world_desc, field, type)
+#define DEMI_ROW_SAID(field, type, how, most, text) {#field, 0, DEMI_WHERE(dem_world_desc, field), \
+    type, 0, how, most, "", 0, 0, 0, "dem_world_create: " text}
+#define DEMI_ROW_CHOICE(field, words) DEMI_ROW_ENUM(dem_world_desc, field, DEMI_FROM, \
+    "dem_world_create: " #field " is not one of the enum values; start from DEM_WORLD_DESC", words)
+static const demi_field_row demi_world_desc_rows[] = {
+    DEMI_ROW_SAID(gravity, 'v', DEMI_ANY, DEMI_FARTHEST, "gravity is not finite or above 1e15 "
+                  "m/s2; check how it was computed"), DEMI_ROW_OF(domain, 'v'),
+    DEMI_ROW_CHOICE(boundary, "open periodic outflow"), DEMI_ROW_OF(planar, 'i'),
+    DEMI_ROW_SAID(thickness, 'r', DEMI_FROM, DBL_MAX, "thickness must be >= 0 m; 0 means 1 m"),
+    DEMI_ROW_CHOICE(response, "springs impulses"),
+    DEMI_ROW_ENUM(dem_world_desc, normal_law, 0, 0, "hertz linear hysteretic"),
+    DEMI_ROW_ENUM(dem_world_desc, tangent_law, 0, 0,
+                  "auto none viscous step spring mindlin mindlin_rescaled"),
+    DEMI_ROW_ENUM(dem_world_desc, rolling_law, 0, 0, "auto none step constant epsd"),
+    DEMI_ROW_CHOICE(tension, "allowed clipped compensated"),
+    DEMI_ROW_CHOICE(friction_load, "repulsive elastic magnitude"),
+    DEMI_ROW_CHOICE(slider, "parallel spring remainder"),
+    DEMI_ROW_CHOICE(convention, "standard mill"), DEMI_ROW_NULL(dem_world_desc, law),
+    DEMI_ROW_SAID(law_memory, 'i', DEMI_FROM, DEM_LAW_MEMORY, "law_memory must be 0 to 16 reals"),
+    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEM_LAW_MEMORY), DEMI_ROW_OF(law_vectors, 'i'),
+    DEMI_ROW_SAID(law_stiffness, 'r', DEMI_FROM, DEMI_MOST, "law_stiffness must be 0 to 1e30 N/m; "
+                  "0 means the stiffness of the built-in law"),
+    DEMI_ROW_SAID(law_range, 'r', DEMI_FROM, DBL_MAX, "law_range (m) must be finite and >= 0; 0 "
+                  "calls the law only in contact"),
+    DEMI_ROW_SAID(law_range_radii, 'r', DEMI_FROM, DBL_MAX, "law_range_radii must be finite and "
+                  ">= 0; 0 calls the law only in contact"),
+    DEMI_ROW_OF(law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
+    DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
+    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
+    DEMI_ROW_NULL(dem_world_desc, body_force),
+    DEMI_ROW_ENUM(dem_world_desc, integrator, 0, 0, "velocity_verlet forward_euler "
+                  "symplectic_euler position_verlet leapfrog"), DEMI_ROW_OF(dt, 'r'),
+    DEMI_ROW_SAID(impact_speed, 'r', DEMI_FROM, DEMI_FARTHEST, "impact_speed must be 0 to 1e15 "
+                  "m/s"), DEMI_ROW_ENUM(dem_world_desc, cone, 0, 0, "coulomb convex"),
+    DEMI_ROW_ENUM(dem_world_desc, solver, 0, 0, "gauss_seidel jacobi apgd spectral"),
+    DEMI_ROW_SAID(sweeps, 'i', DEMI_FROM, INT_MAX, "sweeps must be >= 0; 0 means 200"),
+    DEMI_ROW_SAID(tolerance, 'r', DEMI_FROM, DBL_MAX, "tolerance (m/s) must be finite and >= 0; 0 "
+                  "lets the library choose"), DEMI_ROW_OF(cold_start, 'i'),
+    DEMI_ROW_ENUM(dem_world_desc, search, 0, 0, "auto all_pairs grid linked_list hierarchical "
+                  "bins"), DEMI_ROW_SAID(skin, 'r', DEMI_ANY, DBL_MAX, "skin is not finite; 0 lets "
+                  "the library choose, below 0 means no skin"),
+    DEMI_ROW_CHOICE(rotation, "spiral fincham no_squish"),
+    DEMI_ROW_CHOICE(ellipsoid_overlap, "conservative chord normal"),
+    DEMI_ROW_CHOICE(cluster_contacts, "merged separate"),
+    DEMI_ROW_OF(orientations, 'i'), DEMI_ROW_OF(ledger, 'i'),
+    DEMI_ROW_SAID(threads, 'i', DEMI_FROM | DEMI_FREE, 64, "threads must be 0 to 64, where 0 means "
+                  "as many as OpenMP offers"), DEMI_ROW_FREE(dem_world_desc, allocator),
+    DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
+    DEMI_ROW_FREE(dem_world_desc, law_user), DEMI_ROW_FREE(dem_world_desc, force_user),
+    DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_END};
+
+/* ---------------------------------------------------------------------------------------------
    >>laws
    The built-in laws, a line each: the laws themselves stand in >>api, where those who write their
    own may call them. A contact force is made of a normal law, one of friction and one of rolling,
@@ -4596,9 +4951,10 @@ static int demi_rolling_meant(const dem_world *w) {
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
     return (demi_normal_laws[w->desc.normal_law].traits & trait) != 0;
 }
-/* Do built-in laws keep the memory of contacts, where `laws` says? Else a law of one's own does, or
-   the impulses. */
-static int demi_laws_keep(const dem_world *w) { return !w->desc.law && !demi_impulsive(w); }
+/* Do built-in laws keep the history of contacts, where `laws` says? */
+static int demi_laws_keep(const dem_world *w) {
+    return !w->desc.law && demi_response_is(w, DEMI_LAWS);
+}
 /* Does a law in force ask for r_eff or m_eff of pairs? */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
@@ -4697,43 +5053,53 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
    the pair table says what holds between two; demi_coefficients turns a pair and two radii into the
    numbers a law multiplies with. Restitution comes first, damping is derived from it.
    --------------------------------------------------------------------------------------------- */
+/* Young's modulus and restitution may be 0 with impulses, and under the laws of these traits (kinds
+   0: all but Hertz's) if the other field, a stiffness, is set. Other fields (kinds < 0) act with
+   impulses alone. */
+static int demi_zero_law(const dem_world *w, const void *item, const demi_field_row *r) {
+    const int acts = r->kinds > 0 ? demi_normal_is(w, r->kinds) : !demi_normal_is(w, DEMI_HERTZIAN);
+    if (r->kinds < 0) return demi_impulsive(w) ? DEMI_0_TOO : DEMI_0_ALONE;
+    return demi_impulsive(w) ||
+        (acts && r->other && demi_row_read(r - r->other, item, 0) > 0) ? DEMI_0_TOO : DEMI_0_NOT;
+}
+static int demi_zero_unloading(const dem_world *w, const void *item, const demi_field_row *r) {
+    (void)w; (void)r;
+    return ((const dem_material_desc *)item)->stiffness > 0 ? DEMI_0_TOO : DEMI_0_ALONE;
+}
+#define DEMI_SI(field, how, unit) DEMI_LIMITED(DEMI_OF, field, 'r', how, DEMI_MOST, unit)
+#define DEMI_RATIO(field) DEMI_LIMITED(DEMI_OF, field, 'r', DEMI_FROM, DEMI_MOST_RATIO, "")
+#define DEMI_ROW_IF(field, how, most, unit, words, other, kinds, zero) \
+    DEMI_LIMITED_IF(DEMI_OF, field, 'r', how, most, unit, words, other, kinds, zero)
+#define DEMI_STATIC DEMI_ROW_IF(friction_static, DEMI_FROM, DEMI_MOST_RATIO, "", \
+    "where the default is 0 (the same as the sliding friction)", 1, 0, 0)
+#define DEMI_OF dem_material_desc
+static const demi_field_row demi_material_rows[] = {
+    DEMI_SI(density, DEMI_OVER, "kg/m3"),
+    DEMI_ROW_IF(young, DEMI_OVER, DEMI_MOST, "Pa", 0, -6, 0, demi_zero_law),
+    DEMI_LIMITED(DEMI_OF, poisson, 'r', DEMI_FROM | DEMI_UNDER, 0.5, ""),
+    DEMI_ROW_IF(restitution, DEMI_OVER, 1, "", 0, -6, DEMI_BRANCHED, demi_zero_law),
+    DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
+    DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio),
+    DEMI_ROW_IF(stiffness_unloading, DEMI_FROM, DEMI_MOST, "N/m", "which must then be set", 2, 0,
+                demi_zero_unloading), DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_ROW_END};
+#undef DEMI_OF
+#define DEMI_OF dem_pair
+#define DEMI_IMPULSES_ALONE(field, unit) DEMI_ROW_IF(field, DEMI_FROM, DEMI_MOST, unit, \
+    "and 0 where springs answer (desc.response)", 0, -1, demi_zero_law)
+static const demi_field_row demi_pair_rows[] = {
+    DEMI_ROW_IF(young_eff, DEMI_OVER, DEMI_MOST, "Pa", 0, -6, 0, demi_zero_law),
+    DEMI_SI(shear_eff, DEMI_FROM, "Pa"),
+    DEMI_ROW_IF(restitution, DEMI_OVER, 1, "", 0, 0, 0, demi_zero_law),
+    DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
+    DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
+    DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
+    DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
+    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    const int linear_k = !demi_normal_is(w, DEMI_HERTZIAN) && d->stiffness > 0;
-    /* restitution may then be left to the two stiffnesses */
-    const int two_k = demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0;
-    struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
-    int i;
-#define DEMI_GOOD(k, field, good, text) \
-    rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
-    DEMI_GOOD(0, density, d->density > 0, "> 0 kg/m3 (required)");
-    DEMI_GOOD(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) &&
-                                        DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
-    DEMI_GOOD(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
-    DEMI_GOOD(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
-                                        DEMI_ABS(d->restitution) <= 0)) &&
-             d->restitution <= 1, "> 0 and <= 1 (required; impulses: >= 0)");
-    DEMI_GOOD(4, friction, d->friction >= 0, ">= 0");
-    DEMI_GOOD(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
-             d->friction_static >= d->friction,
-             "0, or at least the sliding friction");
-    DEMI_GOOD(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
-    DEMI_GOOD(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
-    DEMI_GOOD(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
-    DEMI_GOOD(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
-             (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
-             "0, or at least the stiffness of loading, which must then be set (N/m)");
-    DEMI_GOOD(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (the magnitude of the "
-             "slope)");
-#undef DEMI_GOOD
-    for (i = 0; i < 11; i++) {
-        const double most = (i >= 4 && i <= 6) || i == 8 ? DEMI_MOST_RATIO : DEMI_MOST;
-        if (!rows[i].ok || !((double)rows[i].value <= most))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s, and at most %g; set "
-                             "it in the desc before the call", call, rows[i].name,
-                             (double)rows[i].value, rows[i].limit, most);
-    }
-    if (two_k && d->restitution > 0 && fabs((double)d->restitution*(double)d->restitution*
-        (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
+    if (demi_rows_check(w, call, demi_material_rows, d, "")) return DEM_ERROR_ARGUMENT;
+    if (demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0 && d->restitution > 0 &&
+        fabs((double)d->restitution*(double)d->restitution*
+             (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
                          "stiffness_unloading) is %g; give one of the two and leave the other 0",
                          call, (double)d->restitution,
@@ -4903,45 +5269,12 @@ DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_mate
 DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
     if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
     int i = 0, j = 0;
-    const char *bad = 0, *limit = "";
-    dem_real value = 0;
-    double most = 0;
+    char of[48];
     if (demi_material_index(w, "dem_pair_set", a, &i) ||
         demi_material_index(w, "dem_pair_set", b, &j))
         return DEM_ERROR_ARGUMENT;
-#define DEMI_BAD(field, good, highest, text) \
-    if (!bad && (!((double)p->field <= (highest)) || !(good))) { \
-        bad = #field; value = p->field; limit = text; most = highest; \
-    }
-    DEMI_BAD(young_eff, p->young_eff > 0 || (demi_impulsive(w) && p->young_eff >= 0) ||
-             (p->young_eff >= 0 && p->stiffness > 0 &&
-             !demi_normal_is(w, DEMI_HERTZIAN)), DEMI_MOST, "> 0 Pa")
-    DEMI_BAD(shear_eff, p->shear_eff >= 0, DEMI_MOST, ">= 0 Pa")
-    DEMI_BAD(restitution, (p->restitution > 0 || (demi_impulsive(w) && p->restitution >= 0)) &&
-             p->restitution <= 1, DEMI_MOST_RATIO, "> 0 (impulses: >= 0) and <= 1")
-    DEMI_BAD(friction, p->friction >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
-             p->friction_static >= p->friction,
-             DEMI_MOST_RATIO, "0 (the same as the sliding friction), or at least the sliding "
-                 "friction")
-    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(stiffness, p->stiffness >= 0, DEMI_MOST, ">= 0 N/m")
-    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, DEMI_MOST_RATIO, ">= 0")
-    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, DEMI_MOST, ">= 0 N/m")
-    DEMI_BAD(normal_damping, p->normal_damping >= 0, DEMI_MOST, ">= 0 N s/m")
-#define DEMI_IMPULSES_ALONE(field, unit) \
-    DEMI_BAD(field, p->field >= 0 && (demi_impulsive(w) || !(p->field > 0)), DEMI_MOST, \
-             ">= 0" unit ", and 0 where springs answer (desc.response)")
-    DEMI_IMPULSES_ALONE(spinning_friction, "")
-    DEMI_IMPULSES_ALONE(cohesion, " N")
-    DEMI_IMPULSES_ALONE(compliance, " m/N")
-#undef DEMI_IMPULSES_ALONE
-#undef DEMI_BAD
-    if (bad)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
-                         "must be %s, and at most %g; start from dem_pair_get and change only "
-                         "what differs", bad, i + 1, j + 1, (double)value, limit, most);
+    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
+    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of)) return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
     w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");
@@ -6174,15 +6507,19 @@ static int demi_closed_find(dem_world *w, const dem_mesh *mesh, demi_closed *c) 
     demi_free(w, turned);
     return 1;
 }
-static void demi_mesh_corner(const dem_mesh *mesh, int triangle, int k, double *x) {
-    const dem_vec3 v = demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]);
-    x[0] = (double)v.x; x[1] = (double)v.y; x[2] = (double)v.z;
+static demi_d3 demi_mesh_corner(const dem_mesh *mesh, int triangle, int k) {
+    return demi_d3_of(demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]));
+}
+static void demi_mesh_triangle(const dem_mesh *mesh, int triangle, demi_d3 *corner) {
+    int k;
+    for (k = 0; k < 3; k++) corner[k] = demi_mesh_corner(mesh, triangle, k);
 }
 /* Shells that are to be a body, outward ones with a positive volume. */
 typedef struct demi_shells {
     int count;
     int32_t *order, *start;        /* triangles by shell; count + 1 */
-    double *volume, *box;          /* m3, as written; m: 3 lowest and 3 highest coordinates */
+    double *volume;                /* m3, as written */
+    demi_d3 *box;                  /* m: lowest and highest coordinates of each */
     int32_t *around, *depth;       /* the innermost shell around it, -1: none; how many are */
 } demi_shells;
 static void demi_shells_free(dem_world *w, demi_shells *s) {
@@ -6218,44 +6555,40 @@ static int demi_closed_loose(dem_world *w, demi_closed *c, int *first_side) {
 static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
     const int n = c->mesh->triangle_count;
     int32_t *number = (int32_t *)demi_alloc(w, (size_t)n, sizeof *number);
-    int i, k, turned;
+    int i, k, e, turned;
     s->count = c->shells;
     s->order = (int32_t *)demi_alloc(w, (size_t)n, sizeof *s->order);
     s->start = (int32_t *)demi_alloc(w, (size_t)c->shells + 2, sizeof *s->start);
     s->volume = (double *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->volume);
-    s->box = (double *)demi_alloc(w, 6*((size_t)c->shells + 1), sizeof *s->box);
+    s->box = (demi_d3 *)demi_alloc(w, 2*((size_t)c->shells + 1), sizeof *s->box);
     s->around = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->around);
     s->depth = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->depth);
     if (!number || !s->order || !s->start || !s->volume || !s->box || !s->around || !s->depth) {
         demi_free(w, number);
         return 0;
     }
-    for (k = 0; k < 6*s->count; k++) s->box[k] = k%6 < 3 ? 1e300 : -1e300;
+    for (k = 0; k < 2*s->count; k++) {
+        const double far = k & 1 ? -1e300 : 1e300;
+        s->box[k] = demi_d(far, far, far);
+    }
     for (i = k = 0; i < n; i++)
         if (c->sign[i] && demi_closed_shell(c, i, &turned) == i) number[i] = k++;
     for (i = 0; i < n; i++)
         if (c->sign[i]) s->start[number[demi_closed_shell(c, i, &turned)] + 2]++;
     for (k = 2; k <= s->count; k++) s->start[k] += s->start[k - 1];
     for (i = 0; i < n; i++) {
-        double p[3], q[3], r[3], o[3];
-        int e;
+        demi_d3 x[3], o;
         if (!c->sign[i]) continue;
         k = number[demi_closed_shell(c, i, &turned)];
         s->order[s->start[k + 1]++] = i;
-        demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0, o);  /* near: round-off */
-        demi_mesh_corner(c->mesh, i, 0, p);
-        demi_mesh_corner(c->mesh, i, 1, q);
-        demi_mesh_corner(c->mesh, i, 2, r);
+        o = demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0); /* near: round-off */
+        demi_mesh_triangle(c->mesh, i, x);
         for (e = 0; e < 3; e++) {
-            double *lo = s->box + 6*k + e, *hi = lo + 3;
-            *lo = DEMI_MIN(*lo, DEMI_MIN(p[e], DEMI_MIN(q[e], r[e])));
-            *hi = DEMI_MAX(*hi, DEMI_MAX(p[e], DEMI_MAX(q[e], r[e])));
-            p[e] -= o[e];
-            q[e] -= o[e];
-            r[e] -= o[e];
+            s->box[2*k] = demi_d3_lowest(s->box[2*k], x[e]);
+            s->box[2*k + 1] = demi_d3_highest(s->box[2*k + 1], x[e]);
+            x[e] = demi_d3_sub(x[e], o);
         }
-        s->volume[k] += c->sign[i]*(p[0]*(q[1]*r[2] - q[2]*r[1]) + p[1]*(q[2]*r[0] - q[0]*r[2]) +
-                                    p[2]*(q[0]*r[1] - q[1]*r[0]))/6;
+        s->volume[k] += c->sign[i]*demi_d3_dot(x[0], demi_d3_cross(x[1], x[2]))/6;
     }
     demi_free(w, number);
     return 1;
@@ -6263,21 +6596,19 @@ static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
 /* How often a shell goes round a point: about 0 outside, 1 or -1 inside. Sum of the solid angles of
    its triangles, each by tan(angle/2) = a.(b x c)/(abc + a.b c + b.c a + c.a b), over 4 pi. */
 static double demi_shells_winding(const demi_closed *c, const demi_shells *s, int shell,
-                                  const double *x) {
+                                  demi_d3 x) {
     double sum = 0;
-    int i, k, e;
+    int i, k;
     for (i = s->start[shell]; i < s->start[shell + 1]; i++) {
-        double p[3][3], l[3], top, bottom;
+        demi_d3 p[3];
+        double l[3], top, bottom;
         for (k = 0; k < 3; k++) {
-            demi_mesh_corner(c->mesh, s->order[i], k, p[k]);
-            for (e = 0; e < 3; e++) p[k][e] -= x[e];
-            l[k] = sqrt(demi_dot3(p[k], p[k]));
+            p[k] = demi_d3_sub(demi_mesh_corner(c->mesh, s->order[i], k), x);
+            l[k] = demi_d3_length(p[k]);
         }
-        top = p[0][0]*(p[1][1]*p[2][2] - p[1][2]*p[2][1]) +
-            p[0][1]*(p[1][2]*p[2][0] - p[1][0]*p[2][2]) +
-            p[0][2]*(p[1][0]*p[2][1] - p[1][1]*p[2][0]);
-        bottom = l[0]*l[1]*l[2] + demi_dot3(p[0], p[1])*l[2] + demi_dot3(p[1], p[2])*l[0] +
-            demi_dot3(p[2], p[0])*l[1];
+        top = demi_d3_dot(p[0], demi_d3_cross(p[1], p[2]));
+        bottom = l[0]*l[1]*l[2] + demi_d3_dot(p[0], p[1])*l[2] + demi_d3_dot(p[1], p[2])*l[0] +
+            demi_d3_dot(p[2], p[0])*l[1];
         sum += c->sign[s->order[i]]*2*demi_atan2(top, bottom);
     }
     return sum/(4*DEMI_PI);
@@ -6285,13 +6616,14 @@ static double demi_shells_winding(const demi_closed *c, const demi_shells *s, in
 /* Is shell a inside shell b? By some of its corners, those off b's surface. -1: they cross. */
 static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a, int b) {
     const int n = s->start[a + 1] - s->start[a], looks = DEMI_MIN(n, (int)DEMI_CLOSED_LOOKS);
-    const double *mine = s->box + 6*a, *its = s->box + 6*b;
+    const demi_d3 lo = demi_d3_highest(s->box[2*a], s->box[2*b]);
+    const demi_d3 hi = demi_d3_lowest(s->box[2*a + 1], s->box[2*b + 1]);
     int i, in = 0, out = 0;
-    for (i = 0; i < 3; i++) if (mine[i] > its[i + 3] || its[i] > mine[i + 3]) return 0;
+    if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) return 0;
     for (i = 0; i < looks; i++) {
-        double x[3], wind;
-        demi_mesh_corner(c->mesh, s->order[s->start[a] + (int)((int64_t)i*n/looks)], i%3, x);
-        wind = fabs(demi_shells_winding(c, s, b, x));
+        const int triangle = s->order[s->start[a] + (int)((int64_t)i*n/looks)];
+        const double wind = fabs(demi_shells_winding(c, s, b, demi_mesh_corner(c->mesh, triangle,
+                                                                               i%3)));
         in += wind > 0.9;
         out += wind < 0.1;
     }
@@ -6301,17 +6633,17 @@ static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a,
    cross, or one faces as that around it. */
 static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
                             demi_shells *s) {
-    double x[3];
+    demi_d3 x;
     int a, b;
     for (a = 0; a < s->count; a++)
         for (b = 0; b < s->count; b++) {
             const int in = a == b ? 0 : demi_shells_inside(c, s, a, b);
             if (in < 0) {
-                demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+                x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
                 demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
                           "begins at (%g, %g, %g) m), must be apart or one inside the other; "
                           "unite them in the program that exported them, or pass them as separate "
-                          "meshes", call, x[0], x[1], x[2]);
+                          "meshes", call, x.x, x.y, x.z);
                 return 0;
             }
             s->depth[a] += in;
@@ -6321,11 +6653,11 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
             if (b != a && s->depth[b] == s->depth[a] - 1 && demi_shells_inside(c, s, a, b) > 0)
                 s->around[a] = b;
         if (s->around[a] < 0 || s->volume[a]*s->volume[s->around[a]] < 0) continue;
-        demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+        x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
                   "lies inside another and faces the same way, must face the other way to be a "
                   "cavity; reverse its triangles, or leave it out if it is a second body", call,
-                  x[0], x[1], x[2]);
+                  x.x, x.y, x.z);
         return 0;
     }
     return 1;
@@ -6334,11 +6666,11 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
    error message: the mesh does not bound a body. */
 static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     demi_shells s;
-    double x[3] = {0, 0, 0};
+    demi_d3 x;
     int side = 0, a, i, good = 0;
     const int loose = demi_closed_loose(w, c, &side);
     if (loose < 0) { demi_no_memory(w, call); return 0; }
-    demi_mesh_corner(c->mesh, side/3, side%3, x);
+    x = demi_mesh_corner(c->mesh, side/3, side%3);
     if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
         if (c->twisted)
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is one-sided, as a Moebius strip is "
@@ -6348,7 +6680,7 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or has more than "
                       "two triangles there (first near (%.4g, %.4g, %.4g) m), so it has no "
                       "inside; close it in the program that exported it (dem_mesh_health counts "
-                      "such edges)", call, loose, x[0], x[1], x[2]);
+                      "such edges)", call, loose, x.x, x.y, x.z);
         else
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
                       "%d; if it holds several bodies, pass them as separate meshes", call,
@@ -6381,40 +6713,25 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
 typedef struct demi_hull_face {
     int32_t corner[3], beside[3];  /* points, counterclockwise from outside; across k to k + 1 */
     int32_t state, face;           /* 0: free, 1: of the hull, 2: seen by the point that comes */
-    double n[3], at;               /* unit, outward; m: n.x of its plane */
+    demi_d3 n;                     /* unit, outward */
+    double at;                     /* m: n.x of its plane */
 } demi_hull_face;
 /* Corners of a polyhedron of as many faces are 2 faces - 4 at most, its triangles 2 corners - 4;
    room for those that come before those that they replace go. */
 enum { DEMI_HULL_CORNERS = 2*DEM_POLYHEDRON_FACES - 4, DEMI_HULL_ROOM = 4*DEMI_HULL_CORNERS };
 typedef struct demi_hull {
     int count, used, corners;      /* points; triangles; points that are corners */
-    const double *x;               /* count x 3 */
+    const demi_d3 *x;              /* count */
     double near;                   /* m: what is nearer than that to a plane lies in it */
     int32_t *first;                /* count: a new triangle by the first corner of its outer side */
     demi_hull_face *faces;         /* DEMI_HULL_ROOM */
 } demi_hull;
 
-static void demi_cross3(const double *a, const double *b, double *out) {
-    const double x = a[1]*b[2] - a[2]*b[1], y = a[2]*b[0] - a[0]*b[2], z = a[0]*b[1] - a[1]*b[0];
-    out[0] = x; out[1] = y; out[2] = z;
-}
-static void demi_sub3(const double *a, const double *b, double *out) {
-    out[0] = a[0] - b[0]; out[1] = a[1] - b[1]; out[2] = a[2] - b[2];
-}
-/* Makes n a unit vector; answers its length. */
-static double demi_unit3(double *n) {
-    const double l = sqrt(demi_dot3(n, n));
-    int k;
-    for (k = 0; k < 3; k++) n[k] = l > 0 ? n[k]/l : 0;
-    return l;
-}
 static double demi_hull_above(const demi_hull *h, const demi_hull_face *f, int point) {
-    return demi_dot3(f->n, h->x + 3*point) - f->at;
+    return demi_d3_dot(f->n, h->x[point]) - f->at;
 }
 /* A new triangle; null: no room. */
 static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
-    const double *x = h->x + 3*a;
-    double u[3], v[3];
     demi_hull_face *f;
     int i;
     for (i = 0; i < h->used && h->faces[i].state; i++) continue;
@@ -6422,11 +6739,8 @@ static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
     h->used = DEMI_MAX(h->used, i + 1);
     f = h->faces + i;
     f->corner[0] = a; f->corner[1] = b; f->corner[2] = c;
-    demi_sub3(h->x + 3*b, x, u);
-    demi_sub3(h->x + 3*c, x, v);
-    demi_cross3(u, v, f->n);
-    demi_unit3(f->n);
-    f->at = demi_dot3(f->n, x);
+    f->n = demi_d3_unit(demi_d3_normal(h->x[a], h->x[b], h->x[c]));
+    f->at = demi_d3_dot(f->n, h->x[a]);
     f->state = 1;
     f->face = -1;
     return f;
@@ -6434,21 +6748,14 @@ static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
 /* The point farthest from the line through a and b (from a, where they are one), or from the plane
    through a, b and c where that is not one of the two; m. */
 static double demi_hull_far(const demi_hull *h, int a, int b, int c, int *far) {
-    double u[3], v[3], n[3], most = 0;
+    demi_d3 u = demi_d3_unit(demi_d3_sub(h->x[b], h->x[a]));
+    double most = 0;
     int i;
-    demi_sub3(h->x + 3*b, h->x + 3*a, u);
-    demi_unit3(u);
-    if (c != a) {
-        demi_sub3(h->x + 3*c, h->x + 3*a, v);
-        demi_cross3(u, v, u);
-        demi_unit3(u);
-    }
+    if (c != a) u = demi_d3_unit(demi_d3_cross(demi_d3_sub(h->x[c], h->x[a]), u));
     for (i = 0; i < h->count; i++) {
-        double d;
-        demi_sub3(h->x + 3*i, h->x + 3*a, v);
-        demi_cross3(u, v, n);
-        d = c != a ? fabs(demi_dot3(u, v)) : a == b ? sqrt(demi_dot3(v, v))
-                                                    : sqrt(demi_dot3(n, n));
+        const demi_d3 v = demi_d3_sub(h->x[i], h->x[a]);
+        const double d = c != a ? fabs(demi_d3_dot(u, v))
+            : demi_d3_length(a == b ? v : demi_d3_cross(u, v));
         if (d > most) { most = d; *far = i; }
     }
     return most;
@@ -6537,7 +6844,7 @@ static int demi_hull_flush(const demi_hull *h, const demi_hull_face *f, int k) {
     int e;
     for (e = 0; e < 3; e++)
         if (fabs(demi_hull_above(h, f, h->faces[k].corner[e])) > h->near) return 0;
-    return demi_dot3(f->n, h->faces[k].n) > 0.5;
+    return demi_d3_dot(f->n, h->faces[k].n) > 0.5;
 }
 /* Numbers the faces: triangles in one plane, one beside the other, the largest first. Answers how
    many there are. */
@@ -6549,12 +6856,10 @@ static int demi_hull_faces(demi_hull *h) {
         int from = -1;
         for (i = 0; i < h->used; i++) {
             const demi_hull_face *f = h->faces + i;
-            double u[3], v[3], n[3], area;
+            double area;
             if (f->state != 1 || f->face >= 0) continue;
-            demi_sub3(h->x + 3*f->corner[1], h->x + 3*f->corner[0], u);
-            demi_sub3(h->x + 3*f->corner[2], h->x + 3*f->corner[0], v);
-            demi_cross3(u, v, n);
-            area = demi_dot3(n, n);
+            area = demi_d3_square(demi_d3_normal(h->x[f->corner[0]], h->x[f->corner[1]],
+                                                 h->x[f->corner[2]]));
             if (area > most) { most = area; from = i; }
         }
         if (from < 0) return faces;
@@ -6584,33 +6889,29 @@ static int demi_hull_loop(const demi_hull *h, int face, int32_t *loop) {
     for (i = 1; i < count; i++) if (loop[i] == begin) return 0;
     return k == begin && sides > 2 ? sides : 0;
 }
-/* Normal and height of a loop of corners (Newell): twice its area. */
-static double demi_loop_plane(const double *x, const int32_t *loop, int n, double *plane) {
-    double twice;
-    int i, k;
-    for (k = 0; k < 4; k++) plane[k] = 0;
-    for (i = 1; i + 1 < n; i++) {
-        double u[3], v[3], c[3];
-        demi_sub3(x + 3*loop[i], x + 3*loop[0], u);
-        demi_sub3(x + 3*loop[i + 1], x + 3*loop[0], v);
-        demi_cross3(u, v, c);
-        for (k = 0; k < 3; k++) plane[k] += c[k];
-    }
-    twice = demi_unit3(plane);
-    for (i = 0; i < n; i++) plane[3] += demi_dot3(plane, x + 3*loop[i])/n;
-    return twice;
+/* Unit normal and height of a loop of corners (Newell). Answers twice its area. */
+static double demi_loop_plane(const demi_d3 *x, const int32_t *loop, int n, demi_d3 *normal,
+                              double *high) {
+    demi_d3 twice = demi_d(0, 0, 0);
+    int i;
+    for (i = 1; i + 1 < n; i++)
+        twice = demi_d3_add(twice, demi_d3_normal(x[loop[0]], x[loop[i]], x[loop[i + 1]]));
+    *normal = demi_d3_unit(twice);
+    for (i = 0, *high = 0; i < n; i++) *high += demi_d3_dot(*normal, x[loop[i]])/n;
+    return demi_d3_length(twice);
 }
 /* Is no point outside, and every corner of a face in its plane, but for some round-off? */
 static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
     const int32_t *loops = rim + faces + 1;
     int f, i;
     for (f = 0; f < faces; f++) {
-        double plane[4];
-        if (!(demi_loop_plane(h->x, loops + rim[f], rim[f + 1] - rim[f], plane) > 0)) return 0;
+        demi_d3 n;
+        double at;
+        if (!(demi_loop_plane(h->x, loops + rim[f], rim[f + 1] - rim[f], &n, &at) > 0)) return 0;
         for (i = 0; i < h->count; i++)
-            if (demi_dot3(plane, h->x + 3*i) - plane[3] > 20*h->near) return 0;
+            if (demi_d3_dot(n, h->x[i]) - at > 20*h->near) return 0;
         for (i = rim[f]; i < rim[f + 1]; i++)
-            if (demi_dot3(plane, h->x + 3*loops[i]) - plane[3] < -20*h->near) return 0;
+            if (demi_d3_dot(n, h->x[loops[i]]) - at < -20*h->near) return 0;
     }
     return 1;
 }
@@ -6636,78 +6937,77 @@ static int demi_hull_of(demi_hull *h, int32_t *rim) {
     rim[faces] = n;
     return demi_hull_holds(h, rim, faces) ? faces : 0;
 }
+/* Rows and columns of a symmetric tensor: xx yy zz xy xz yz. */
+static const int demi_sym_row[6] = {0, 1, 2, 0, 0, 1}, demi_sym_column[6] = {0, 1, 2, 1, 2, 2};
 /* Adds the tetrahedron of the origin and a triangle: exact moments. */
-static void demi_moments_tetrahedron(demi_moments *m, const double *a, const double *b,
-                                     const double *c) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
-    double n[3], v, s[3];
+static void demi_moments_tetrahedron(demi_moments *m, demi_d3 x, demi_d3 y, demi_d3 z) {
+    const double v = demi_d3_dot(x, demi_d3_cross(y, z))/6;
+    double a[3], b[3], c[3], s[3];
     int k;
-    demi_cross3(b, c, n);
-    v = demi_dot3(a, n)/6;
+    demi_d3_put(a, x);
+    demi_d3_put(b, y);
+    demi_d3_put(c, z);
+    demi_d3_put(s, demi_d3_add(demi_d3_add(x, y), z));
     m->one += v;
-    for (k = 0; k < 3; k++) {
-        s[k] = a[k] + b[k] + c[k];
-        m->x[k] += v*s[k]/4;
+    for (k = 0; k < 3; k++) m->x[k] += v*s[k]/4;
+    for (k = 0; k < 6; k++) {
+        const int p = demi_sym_row[k], r = demi_sym_column[k];
+        m->xx[k] += v*(s[p]*s[r] + a[p]*a[r] + b[p]*b[r] + c[p]*c[r])/20;
     }
-    for (k = 0; k < 6; k++)
-        m->xx[k] += v*(s[one[k]]*s[two[k]] + a[one[k]]*a[two[k]] + b[one[k]]*b[two[k]] +
-                       c[one[k]]*c[two[k]])/20;
 }
-static void demi_polyhedron_moments(const double *x, const int32_t *rim, int faces,
+static void demi_polyhedron_moments(const demi_d3 *x, const int32_t *rim, int faces,
                                     demi_moments *m) {
     const int32_t *loops = rim + faces + 1;
     int f, i;
     memset(m, 0, sizeof *m);
     for (f = 0; f < faces; f++)
         for (i = rim[f] + 1; i + 1 < rim[f + 1]; i++)
-            demi_moments_tetrahedron(m, x + 3*loops[rim[f]], x + 3*loops[i], x + 3*loops[i + 1]);
+            demi_moments_tetrahedron(m, x[loops[rim[f]]], x[loops[i]], x[loops[i + 1]]);
 }
 /* Corners that are in use, numbered anew, into the principal frame; then the planes. */
-static void demi_polyhedron_lay(demi_shape *s, const double *x, int32_t *number) {
+static void demi_polyhedron_lay(demi_shape *s, const demi_d3 *x, int32_t *number) {
     int32_t *loops = s->rim + s->faces + 1;
-    int i, k, f;
+    demi_d3 corner[DEMI_HULL_CORNERS], n;
+    int i, f;
     for (i = 0; i < s->rim[s->faces]; i++) {
-        const double *at = x + 3*loops[i];
-        double *corner = s->hull + 4*s->faces + 3*s->corners;
-        dem_vec3 c;
         if (number[loops[i]] < 0) {
-            number[loops[i]] = s->corners++;
-            c = dem_quat_unrotate(s->frame, demi_sub(demi_v((dem_real)at[0], (dem_real)at[1],
-                                                            (dem_real)at[2]), s->centre));
-            corner[0] = (double)c.x; corner[1] = (double)c.y; corner[2] = (double)c.z;
+            const dem_vec3 at = demi_sub(demi_d3_real(x[loops[i]]), s->centre);
+            number[loops[i]] = s->corners;
+            corner[s->corners++] = demi_d3_of(dem_quat_unrotate(s->frame, at));
         }
         loops[i] = number[loops[i]];
     }
+    for (i = 0; i < s->corners; i++) demi_d3_put(s->hull + 4*s->faces + 3*i, corner[i]);
     for (f = 0; f < s->faces; f++) {
         double *plane = s->hull + 4*f;
-        demi_loop_plane(s->hull + 4*s->faces, loops + s->rim[f], s->rim[f + 1] - s->rim[f], plane);
-        for (k = 0; k < 3; k++) plane[k] /= plane[3];
+        demi_loop_plane(corner, loops + s->rim[f], s->rim[f + 1] - s->rim[f], &n, plane + 3);
+        demi_d3_put(plane, demi_d3_over(n, plane[3]));
     }
 }
 /* Radii, arms, and how light it may seem: where a face lies on a plane the overlap grows with
    slope^2 = area/(2 (4 pi/3)^(1/3) r h) for every m (>>polyhedra), and by turning with its arms. */
 static void demi_polyhedron_bounds(demi_shape *s) {
-    const double *corners = s->hull + 4*s->faces;
     const int32_t *loops = s->rim + s->faces + 1;
     const dem_vec3 I = s->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
     const double r = demi_pow(s->volume*3/(4*DEMI_PI), 1.0/3);
+    demi_d3 corner[DEMI_HULL_CORNERS], n;
     int f, i;
     s->radius = s->moment_arm = 0;
     s->thin = (dem_real)r;
     s->blunt = (dem_real)r;
     s->light = 1;
-    for (i = 0; i < s->corners; i++)
-        s->radius = DEMI_MAX(s->radius, (dem_real)sqrt(demi_dot3(corners + 3*i, corners + 3*i)));
+    for (i = 0; i < s->corners; i++) {
+        corner[i] = demi_d3_at(s->hull + 4*s->faces + 3*i);
+        s->radius = DEMI_MAX(s->radius, (dem_real)demi_d3_length(corner[i]));
+    }
     for (f = 0; f < s->faces; f++) {
         const double h = s->hull[4*f + 3];
-        double plane[4], arm = 0, slope;
-        const double area = demi_loop_plane(corners, loops + s->rim[f], s->rim[f + 1] - s->rim[f],
-                                            plane)/2;
-        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const double *x = corners + 3*loops[i];
-            arm = DEMI_MAX(arm, demi_dot3(x, x) - h*h);
-        }
+        double high, arm = 0, slope;
+        const double area = demi_loop_plane(corner, loops + s->rim[f], s->rim[f + 1] - s->rim[f],
+                                            &n, &high)/2;
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++)
+            arm = DEMI_MAX(arm, demi_d3_square(corner[loops[i]]) - h*h);
         slope = area/(2*DEMI_POLYHEDRON_SCALE*r*h);
         s->thin = DEMI_MIN(s->thin, (dem_real)h);
         s->moment_arm = DEMI_MAX(s->moment_arm, (dem_real)sqrt(arm));
@@ -6760,8 +7060,8 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
                               demi_shape *shape) {
     dem_vec3 lo, hi, middle;
     demi_hull h;
-    double *x;
-    int i, k, made = 0;
+    demi_d3 *x;
+    int i, made = 0;
     if (count < 4 || count > 10000 || !points) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
                   "3)", call, count);
@@ -6783,16 +7083,14 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     shape->kind = DEMI_POLYHEDRON;
     h.count = count;
     middle = demi_scale(demi_add(lo, hi), DEM_R(0.5));
-    x = (double *)demi_alloc(w, 3*(size_t)count, sizeof(double));
+    x = (demi_d3 *)demi_alloc(w, (size_t)count, sizeof *x);
     h.x = x;
     h.first = (int32_t *)demi_alloc(w, (size_t)count, sizeof(int32_t));
     h.faces = (demi_hull_face *)demi_alloc(w, DEMI_HULL_ROOM, sizeof(demi_hull_face));
     if (!x || !h.first || !h.faces) demi_no_memory(w, call);
     else {
         for (i = 0; i < count; i++)
-            for (k = 0; k < 3; k++)
-                x[3*i + k] = (double)points[3*i + k] -
-                    (double)(k == 0 ? middle.x : k == 1 ? middle.y : middle.z);
+            x[i] = demi_d3_sub(demi_d3_of(demi_at(points + 3*i)), demi_d3_of(middle));
         made = demi_polyhedron_make(w, call, &h, (double)demi_length(demi_sub(hi, lo)), shape);
     }
     demi_free(w, x);
@@ -6812,14 +7110,12 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_re
 }
 /* How far below the faces of a shape a place of its own frame is, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
-    const dem_vec3 x = dem_quat_unrotate(s->frame, demi_sub(at, s->centre));
+    const demi_d3 x = demi_d3_of(dem_quat_unrotate(s->frame, demi_sub(at, s->centre)));
+    const double *a = s->hull;
     double least = 1e300;
     int f;
-    for (f = 0; f < s->faces; f++) {
-        const double *a = s->hull + 4*f;
-        const double u = 1 - (a[0]*(double)x.x + a[1]*(double)x.y + a[2]*(double)x.z);
-        least = DEMI_MIN(least, u*a[3]);
-    }
+    for (f = 0; f < s->faces; f++, a += 4)
+        least = DEMI_MIN(least, (1 - demi_d3_dot(demi_d3_at(a), x))*a[3]);
     return (dem_real)least;
 }
 /* 0 with a sentence where vertices are none, far off, or not there. */
@@ -6949,10 +7245,11 @@ static int demi_shape_copy(dem_world *to, demi_shape *shape) {
 /* --- what it tells of itself (DEMI_SHAPES) --- */
 
 static dem_real demi_polyhedron_support(const demi_shape *s, dem_vec3 n) {
-    const double e[3] = {(double)n.x, (double)n.y, (double)n.z}, *x = s->hull + 4*s->faces;
+    const demi_d3 e = demi_d3_of(n);
+    const double *x = s->hull + 4*s->faces;
     double far = -1e300;
     int i;
-    for (i = 0; i < s->corners; i++) far = DEMI_MAX(far, demi_dot3(e, x + 3*i));
+    for (i = 0; i < s->corners; i++, x += 3) far = DEMI_MAX(far, demi_d3_dot(e, demi_d3_at(x)));
     return (dem_real)far;
 }
 static dem_real demi_polyhedron_thin(const demi_part *p) { return p->shape->thin*p->scale; }
@@ -7003,9 +7300,8 @@ static void demi_union_bounds(const dem_world *w, demi_shape *s) {
         const double *x = one->faces ? one->hull + 4*one->faces : 0;
         dem_real far = one->faces ? 0 : demi_length(piece->at) + one->radius;
         for (k = 0; k < one->corners; k++, x += 3) {
-            const dem_vec3 at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
-            const dem_vec3 arm = demi_add(piece->at, dem_quat_rotate(piece->q, at));
-            far = DEMI_MAX(far, demi_length(arm));
+            const dem_vec3 at = dem_quat_rotate(piece->q, demi_d3_real(demi_d3_at(x)));
+            far = DEMI_MAX(far, demi_length(demi_add(piece->at, at)));
         }
         s->radius = DEMI_MAX(s->radius, far);
         s->thin = DEMI_MIN(s->thin, one->thin);
@@ -7949,7 +8245,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
     demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
     demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
-    if (demi_impulsive(w)) w->bodies.went[i] = 0;
+    if (w->bodies.backward) w->bodies.went[i] = 0;
     if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
@@ -8028,7 +8324,7 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
                 else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
                 w->bodies.half_vel[4*b + k] = *v;
             }
-            if (demi_impulsive(w)) w->bodies.went[b] = 0;
+            if (w->bodies.backward) w->bodies.went[b] = 0;
             w->booked.inserted += demi_body_energy(w, b) - before;
         }
     }
@@ -8313,8 +8609,9 @@ static void demi_prime_body(dem_world *w, int i) {
     }
     if (w->bodies.shaped && w->bodies.shape[i])
         demi_put(w->bodies.angular + 4*i,
-                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i),
-                                                            demi_impulsive(w) ? 0 : h)));
+                 demi_sub(demi_angular_of(w, i),
+                          demi_scale(demi_at(w->bodies.torque + 4*i),
+                                     demi_response_is(w, DEMI_MIDWAY) ? 0 : h)));
 }
 static void demi_prime(dem_world *w) {
     int i;
@@ -8382,10 +8679,12 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
 /* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
    about their axis): half an Euler step for q at the middle, w there from L, a whole step with
    that. */
-static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                    dem_real h) {
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     dem_quat mid, by;
+    (void)inv;
     by = dem_quat_multiply(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
     mid = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
                                        start.z + by.z));
@@ -8398,11 +8697,13 @@ static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_rea
 }
 /* NO_SQUISH's splitting [DLM97]: free rotation about x, y, z, y, x in turn, each exact; symplectic,
    so that energy swings and does not drift. */
-static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                      dem_real h) {
     static const int order[5] = {0, 1, 2, 1, 0};
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w0 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z), w1;
     int k;
+    (void)inv;
     for (k = 0; k < 5; k++) {
         const double step = (double)(k == 2 ? h : h/2);
         const double rate = order[k] == 0 ? (double)(m.x/I.x) : order[k] == 1 ? (double)(m.y/I.y)
@@ -8418,6 +8719,16 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
     w1 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     return demi_scale(demi_add(w0, dem_quat_unrotate(start, dem_quat_rotate(*q, w1))), DEM_R(0.5));
 }
+typedef struct demi_rotation_row {
+    const char *name;
+    dem_vec3 (*fly)(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv, dem_real h);
+} demi_rotation_row;
+static const demi_rotation_row demi_rotation_rows[] = {         /* in the order of dem_rotation */
+    {"SPIRAL", demi_flight_spiral},
+    {"Fincham", demi_flight_fincham},
+    {"NO_SQUISH", demi_flight_splitting},
+};
+enum { DEMI_ROTATIONS = (int)(sizeof demi_rotation_rows/sizeof *demi_rotation_rows) };
 /* Spin of a body with angular momentum L. */
 DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
     const dem_vec3 m = dem_quat_unrotate(q, L);
@@ -8442,8 +8753,7 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
                               t->L[2][l] + T.z*kick);
     const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
-        : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
-        : demi_flight_splitting(&q, L, I, dt);
+        : demi_rotation_rows[rotation].fly(&q, L, I, inv, dt);
     const dem_vec3 half = dem_quat_rotate(start, mean);
     const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
     const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
@@ -8564,8 +8874,11 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
-/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres. */
-static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end, int how) {
+/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres: over a step;
+   without a domain half a step ahead. */
+static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
+    const int how = !domain ? DEMI_TURN_AHEAD
+        : demi_response_is(w, DEMI_MIDWAY) ? DEMI_TURN_HALVES : DEMI_TURN_STEP;
     int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
     for (i = begin; i < end; i++) {
         if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
@@ -8613,18 +8926,18 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
-/* Impulses have their own, whose velocities are finished at once. */
+/* The midpoint rule, whose velocities are finished at once, is a response's own. */
 static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
     static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
                                                  demi_finish_nothing, 2, 1, 0};
-    return demi_impulsive(w) ? &midpoint : demi_integrator_rows + w->desc.integrator;
+    return demi_response_is(w, DEMI_MIDWAY) ? &midpoint
+        : demi_integrator_rows + w->desc.integrator;
 }
 
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
     demi_integrator_of(w)->finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses finish it by themselves */
-        demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
+    if (w->bodies.shaped) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
 /* Completes the half kick that a step leaves open: velocities are then those of the present time.
@@ -8677,8 +8990,7 @@ DEM_INLINE int demi_faceted(const demi_wall *wall) { return demi_wall_is(wall, D
 DEM_INLINE int demi_wall_per(const demi_wall *wall) { return demi_wall_kinds[wall->kind].corners; }
 
 static double demi_far2(const double *a, const double *b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x*x + y*y + z*z;
+    return demi_d3_square(demi_d3_sub(demi_d3_at(a), demi_d3_at(b)));
 }
 
 /* Points in a tree of boxes, to find those near a line. Node k has the halves 2k + 1 and 2k + 2,
@@ -8850,23 +9162,17 @@ static void demi_points_weld(const demi_tree *tree, const double *near_by, int32
 /* Does a facet count? Not with two corners in one place; nor a triangle with none off its longest
    side by more than what is one place there: its other sides and corners are its neighbours'. */
 static int demi_facet_counts(const double *x, const double *near_by, const int32_t *c, int per) {
-    double side[3], longest, most, area2 = 0, u[3], v[3];
+    double side[3], longest, most;
+    demi_d3 normal;
     int k;
     if (c[0] == c[1]) return 0;
     if (per == 2) return 1;
     if (c[1] == c[2] || c[2] == c[0]) return 0;
-    for (k = 0; k < 3; k++) {
-        side[k] = demi_far2(x + 3*c[k], x + 3*c[(k + 1)%3]);
-        u[k] = x[3*c[1] + k] - x[3*c[0] + k];
-        v[k] = x[3*c[2] + k] - x[3*c[0] + k];
-    }
-    for (k = 0; k < 3; k++) {
-        const double n = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
-        area2 += n*n;
-    }
+    for (k = 0; k < 3; k++) side[k] = demi_far2(x + 3*c[k], x + 3*c[(k + 1)%3]);
+    normal = demi_d3_normal(demi_d3_at(x + 3*c[0]), demi_d3_at(x + 3*c[1]), demi_d3_at(x + 3*c[2]));
     longest = DEMI_MAX(side[0], DEMI_MAX(side[1], side[2]));
     most = DEMI_MIN(near_by[c[0]], DEMI_MIN(near_by[c[1]], near_by[c[2]]));
-    return area2 > most*most*longest;
+    return demi_d3_square(normal) > most*most*longest;
 }
 
 /* A side of a facet, from point lo to point hi. */
@@ -8893,21 +9199,21 @@ static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
 static void demi_facet_planes(demi_wall *wall, const double *x) {
     const int n = demi_wall_per(wall);
     double far = 0;
-    int i, k;
+    int i;
     for (i = 0; i < 3*wall->vertex_count; i++) far = DEMI_MAX(far, fabs(x[i]));
     wall->plane_slack = (dem_real)(16*far*(DEMI_SINGLE ? (double)FLT_EPSILON : DBL_EPSILON));
     for (i = 0; i < wall->element_count; i++) {
-        const double *a = x + 3*wall->corners[n*i], *b = x + 3*wall->corners[n*i + 1];
-        double u[3], v[3], m[3], l;
-        for (k = 0; k < 3; k++) u[k] = b[k] - a[k];
-        for (k = 0; k < 3; k++) v[k] = n == 3 ? x[3*wall->corners[n*i + 2] + k] - a[k] : k == 2;
-        if (n == 2) u[2] = 0;                   /* a segment goes on along z without end */
-        for (k = 0; k < 3; k++) m[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
-        l = sqrt(m[0]*m[0] + m[1]*m[1] + m[2]*m[2]);
-        if (!(l*l > 1e-8*(u[0]*u[0] + u[1]*u[1] + u[2]*u[2])*
-                    (v[0]*v[0] + v[1]*v[1] + v[2]*v[2]))) continue;
-        for (k = 0; k < 3; k++) wall->planes[4*i + k] = (dem_real)(m[k]/l);
-        wall->planes[4*i + 3] = (dem_real)((m[0]*a[0] + m[1]*a[1] + m[2]*a[2])/l);
+        const int32_t *c = wall->corners + n*i;
+        const demi_d3 a = demi_d3_at(x + 3*c[0]);
+        const demi_d3 v = n == 3 ? demi_d3_sub(demi_d3_at(x + 3*c[2]), a) : demi_d(0, 0, 1);
+        demi_d3 u = demi_d3_sub(demi_d3_at(x + 3*c[1]), a), m;
+        double l;
+        if (n == 2) u.z = 0;                    /* a segment goes on along z without end */
+        m = demi_d3_cross(u, v);
+        l = demi_d3_length(m);
+        if (!(l*l > 1e-8*demi_d3_square(u)*demi_d3_square(v))) continue;
+        demi_put(wall->planes + 4*i, demi_d3_real(demi_d3_over(m, l)));
+        wall->planes[4*i + 3] = (dem_real)(demi_d3_dot(m, a)/l);
     }
 }
 /* Welds a wall's corners, numbers its edges and says which element looks after which. Elements
@@ -9053,21 +9359,6 @@ static void demi_walls_repeat(dem_world *w) {
         }
     }
 }
-/* How many periods on, from first[k] to last[k], the images of a place are from which a wall is
-   nearer than `far`. */
-static void demi_wall_images(const dem_world *w, const demi_wall *wall, dem_vec3 place,
-                             dem_real far, int *first, int *last) {
-    dem_real x[3];
-    int k;
-    demi_put(x, place);
-    for (k = 0; k < 3; k++) {
-        const double period = (double)w->wall_period[k];
-        first[k] = last[k] = 0;
-        if (!wall->repeats[k]) continue;
-        first[k] = (int)ceil((double)(wall->span_lo[k] - far - x[k])/period);
-        last[k] = (int)floor((double)(wall->span_hi[k] + far - x[k])/period);
-    }
-}
 static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
     return demi_v((dem_real)a*w->wall_period[0], (dem_real)b*w->wall_period[1],
                   (dem_real)c*w->wall_period[2]);
@@ -9151,7 +9442,7 @@ static void demi_join_images(const dem_world *w, demi_join *j, int group, int fi
                     const dem_vec3 at = demi_add(by, demi_add(wall->pose.position,
                         demi_rotate(wall->pose.rotation, demi_at(wall->vertices + 3*
                                                                wall->corners[j->per*e + c]))));
-                    x[3*c] = (double)at.x; x[3*c + 1] = (double)at.y; x[3*c + 2] = (double)at.z;
+                    demi_d3_put(x + 3*c, demi_d3_of(at));
                 }
                 for (k = 0; k < 3; k++) {
                     for (c = 0; c < j->per; c++) {
@@ -9207,8 +9498,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         for (k = 0; k < wall->vertex_count; k++) {
             const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation,
                                          demi_at(wall->vertices + 3*k)));
-            double *x = j->x + 3*j->points++;
-            x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
+            demi_d3_put(j->x + 3*j->points++, demi_d3_of(at));
         }
         demi_near_by(j->x, wall, first, j->near_by);
         first += wall->vertex_count;
@@ -9273,25 +9563,18 @@ static void demi_join_double(demi_join *j) {
    may be null. */
 static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
     const double *p = j->x + 3*a, *q = j->x + 3*b;
+    const demi_d3 way = demi_d3_sub(demi_d3_at(q), demi_d3_at(p));
     const double size2 = demi_far2(p, q), ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
     demi_search_line line;
     int32_t at;
     int i, n = 0;
     demi_tree_line(&line, &j->tree, p, q, ends);
     while ((at = demi_tree_next(&line)) >= 0) {
-        const double *y = j->x + 3*at;
-        const double most = DEMI_MIN(ends, j->near_by[at]);
-        double t = 0, off2 = 0;
-        int k;
+        const demi_d3 to = demi_d3_sub(demi_d3_at(j->x + 3*at), demi_d3_at(p));
+        const double most = DEMI_MIN(ends, j->near_by[at]), t = demi_d3_dot(to, way)/size2;
         if (j->same[at] != at || at == a || at == b || !(j->corners[at] > 0)) continue;
-        for (k = 0; k < 3; k++) t += (y[k] - p[k])*(q[k] - p[k]);
-        t /= size2;
-        if (!(t > 0 && t < 1)) continue;
-        for (k = 0; k < 3; k++) {
-            const double d = y[k] - p[k] - t*(q[k] - p[k]);
-            off2 += d*d;
-        }
-        if (!(off2 <= most*most)) continue;
+        if (!(t > 0 && t < 1) || !(demi_d3_square(demi_d3_plus(to, -t, way)) <= most*most))
+            continue;
         n++;
         if (!out) continue;
         for (i = n - 1; i > 0 && demi_far2(p, j->x + 3*out[i - 1]) > t*t*size2; i--)
@@ -9430,9 +9713,8 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
     }
 }
 static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32_t point) {
-    const double *x = j->x + 3*point;
-    return demi_unrotate(wall->home.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
-                                                            (dem_real)x[2]), wall->home.position));
+    return demi_unrotate(wall->home.rotation, demi_sub(demi_d3_real(demi_d3_at(j->x + 3*point)),
+                                                       wall->home.position));
 }
 /* Hands the cuts over to their walls, by element. 0 when memory ran out. */
 static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
@@ -9670,6 +9952,19 @@ static double demi_ramp(double t, double ramp, double *part) {
     *part = u*u*(3 - 2*u);
     return u < 1 ? ramp*u*u*u*(1 - u/2) : t - ramp/2;
 }
+/* Rotates a wall by `turn` (3 x 3) from the pose in which its motion started, into pose->rotation;
+   answers where its origin then is, from the point of its motion. */
+static dem_vec3 demi_pose_turn(const demi_wall *wall, const double *turn, dem_pose *pose) {
+    dem_real T[9];
+    int i, j;
+    for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
+                turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
+                turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
+    return demi_rotate(T, demi_sub(wall->home.position, wall->motion.point));
+}
 /* Number c (0..2: position, 3..6: rotation) of row k of a table; rows of one that repeats go on. */
 static double demi_row_number(const dem_motion *m, int k, int c) {
     const dem_motion_row *r = m->table + k;
@@ -9709,9 +10004,8 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     const int last = m->table_count - 1;
     const double end = m->table[last].time;
     double x[7], v[7], size = 0, along = 0, h, u, R[9], w[3];
-    dem_real T[9];
     dem_vec3 arm, at;
-    int k = 0, c, i, j;
+    int k = 0, c;
     if (m->table_repeats && t > 0) t = fmod(t, end);
     t = DEMI_MIN(DEMI_MAX(t, 0), end);
     while (k + 1 < last && t >= m->table[k + 1].time) k++;
@@ -9736,13 +10030,7 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     R[4] = 1 - 2*(x[4]*x[4] + x[6]*x[6]); R[5] = 2*(x[5]*x[6] - x[3]*x[4]);
     R[6] = 2*(x[4]*x[6] - x[3]*x[5]);     R[7] = 2*(x[5]*x[6] + x[3]*x[4]);
     R[8] = 1 - 2*(x[4]*x[4] + x[5]*x[5]);
-    for (i = 0; i < 9; i++) T[i] = (dem_real)R[i];
-    for (i = 0; i < 3; i++)
-        for (j = 0; j < 3; j++)
-            pose->rotation[3*i + j] = (dem_real)(R[3*i]*(double)wall->home.rotation[j] +
-                R[3*i + 1]*(double)wall->home.rotation[3 + j] +
-                R[3*i + 2]*(double)wall->home.rotation[6 + j]);
-    arm = demi_rotate(T, demi_sub(wall->home.position, m->point));
+    arm = demi_pose_turn(wall, R, pose);
     at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
     pose->position = demi_add(demi_add(m->point, at), arm);
     pose->spin = demi_v((dem_real)w[0], (dem_real)w[1], (dem_real)w[2]);
@@ -9806,21 +10094,13 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
         pose->velocity = demi_scale(m->velocity, (dem_real)part);
         break;
     case DEM_MOTION_ROTATING: {
-        const dem_vec3 axis = demi_unit(m->axis), arm = demi_sub(wall->home.position, m->point);
+        const dem_vec3 axis = demi_unit(m->axis);
         double turn[9];
-        dem_real T[9];
-        int i, j;
         if (t <= 0) break;
         gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
                       fmod((double)m->speed*gone, 2*DEMI_PI));
-        for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
-        for (i = 0; i < 3; i++)
-            for (j = 0; j < 3; j++)
-                pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
-                    turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
-                    turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
-        pose->position = demi_add(m->point, demi_rotate(T, arm));
+        pose->position = demi_add(m->point, demi_pose_turn(wall, turn, pose));
         pose->spin = demi_scale(axis, m->speed*(dem_real)part);
         pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
         break;
@@ -10348,44 +10628,73 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int co
     return demi_wall_adopt(w, "dem_wall_grains_add", &wall);
 }
 
+static uint64_t demi_digest_vertices(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->vertices, w->vertices
+                     ? (size_t)w->vertex_count*3*sizeof(dem_real) : 0);
+}
+static uint64_t demi_digest_elements(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
+                     sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
+}
+static uint64_t demi_digest_table(const void *item) {
+    const dem_motion *m = &((const demi_wall *)item)->motion;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
+        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
+        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
+        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
+    }
+    return h;
+}
+/* A field that only some kinds of sieves have. */
+static int demi_zero_sieve(const dem_world *w, const void *item, const demi_field_row *r) {
+    (void)w;
+    return r->kinds >> ((const demi_wall *)item)->sieve.kind & 1 ? DEMI_0_TOO : DEMI_0_ALONE;
+}
+#define DEMI_ROW_SIEVE(field, type, how, most, unit, other, which, kinds) DEMI_LIMITED_IF( \
+    demi_wall, sieve.field, type, how, most, unit, "and 0 except for " which, other, kinds, \
+    demi_zero_sieve)
+/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
+static const demi_field_row demi_wall_rows[] = {
+    DEMI_ROW_ENUM(demi_wall, kind, 0, 0, "none plane cylinder profile segments mesh grains sieve "
+                  "revolved"), DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
+    DEMI_ROW(demi_wall, inside, 'i'), DEMI_ROW_ENUM(demi_wall, rule, 0, 0, "resolved fraction"),
+    DEMI_ROW(demi_wall, radius, 'r'), DEMI_ROW(demi_wall, share, 'r'),
+    DEMI_ROW(demi_wall, vertex_count, 'i'), DEMI_ROW(demi_wall, element_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "position", first.position, 'v'),
+    DEMI_ROW_AS(demi_wall, "rotation", first.rotation, 'r'),
+    DEMI_ROW_ENUM(demi_wall, sieve.kind, DEMI_OVER, 0,
+                  "none wires bars square round slots reduced"),
+    DEMI_LIMITED(demi_wall, sieve.aperture, 'r', DEMI_OVER, DEMI_FARTHEST, "m"),
+    DEMI_LIMITED(demi_wall, sieve.bar, 'r', DEMI_OVER, DEMI_FARTHEST, "m"),
+    DEMI_ROW_SIEVE(length, 'r', DEMI_FROM, DEMI_FARTHEST, "m", 2, "slots", 1 << DEM_SIEVE_SLOTS),
+    DEMI_ROW_SIEVE(thickness, 'r', DEMI_FROM, DEMI_FARTHEST, "m", 0, "plates",
+                   1 << DEM_SIEVE_SQUARE | 1 << DEM_SIEVE_ROUND | 1 << DEM_SIEVE_SLOTS),
+    DEMI_ROW_SIEVE(lift, 'r', DEMI_FROM, DEMI_FARTHEST, "m", 0, "wires", 1 << DEM_SIEVE_WIRES),
+    DEMI_ROW_SIEVE(staggered, 'i', DEMI_ANY, INT_MAX, "", 0, "round holes", 1 << DEM_SIEVE_ROUND),
+    DEMI_LIMITED(demi_wall, sieve.radius, 'r', DEMI_FROM, DEMI_FARTHEST, "m"),
+    DEMI_ROW_SIEVE(model, 'i', DEMI_FROM, 2, "", 0, "reduced holes", 1 << DEM_SIEVE_REDUCED),
+    DEMI_ROW_SIEVE(clearance, 'r', DEMI_FROM, 1, "", 0, "reduced holes", 1 << DEM_SIEVE_REDUCED),
+    DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
+    DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'), DEMI_ROW_ENUM(demi_wall, motion.kind, 0, 0,
+                  "fixed translating rotating oscillating user table"),
+    DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
+    DEMI_ROW_DIGEST("vertices", demi_digest_vertices), DEMI_ROW_DIGEST("elements",
+    demi_digest_elements), DEMI_ROW_DIGEST("motion.table", demi_digest_table), DEMI_ROW_END};
 DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
     if (demi_null(w, "dem_wall_sieve_add", d, "desc")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
-    const char *bad = 0, *limit = "";
-    dem_real value = 0;
     dem_vec3 n = d->normal, t = d->along;
     dem_real *R = wall.home.rotation;
-    const int plate = d->kind == DEM_SIEVE_SQUARE || d->kind == DEM_SIEVE_ROUND ||
-                      d->kind == DEM_SIEVE_SLOTS;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
-#define DEMI_BAD(field, good, text) \
-    if (!bad && (!demi_bounded((double)d->field) || !(good))) { \
-        bad = #field; value = (dem_real)d->field; limit = text; \
-    }
-    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value")
-    DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
-    DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
-    DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
-             d->length >= d->aperture), "0, or for slots at least the aperture (m)")
-    DEMI_BAD(thickness, DEMI_ABS(d->thickness) <= 0 || (plate && d->thickness > 0),
-             ">= 0 m, and 0 except for plates")
-    DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
-             ">= 0 m, and 0 except for a weave of wires")
-    DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
-    DEMI_BAD(staggered, !d->staggered || d->kind == DEM_SIEVE_ROUND, "0 except for round holes")
-    DEMI_BAD(model, !d->model || (d->kind == DEM_SIEVE_REDUCED && d->model > 0 && d->model <= 2),
-             "0, or for reduced holes 1 or 2")
-    DEMI_BAD(clearance, DEMI_ABS(d->clearance) <= 0 || (d->kind == DEM_SIEVE_REDUCED &&
-             d->clearance > 0 && d->clearance <= 1), "0, or for reduced holes up to 1")
-#undef DEMI_BAD
-    if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: %s is %g, must be %s, at most %g; "
-                  "start from DEM_SIEVE_DESC and set only what differs", bad, (double)value, limit,
-                  DEMI_FARTHEST);
-        return none;
-    }
+    wall.sieve = *d;
+    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "")) return none;
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
                   "finite, or point is farther than %g m from the origin; check how it was "
@@ -10405,7 +10714,6 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     R[2] = n.x; R[5] = n.y; R[8] = n.z;
     t = demi_cross(n, t);
     R[1] = t.x; R[4] = t.y; R[7] = t.z;
-    wall.sieve = *d;
     wall.element_count = 1;
     wall.radius = d->radius;
     wall.home.position = wall.motion.point = d->point;
@@ -10583,15 +10891,16 @@ DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_w
     *loads = world->walls[i].loads;
     return DEM_OK;
 }
+static void demi_loads_reset(dem_wall_loads *loads) {
+    memset(loads->impulse, 0, sizeof loads->impulse);
+    memset(loads->gained, 0, sizeof loads->gained);
+    loads->torque_impulse = loads->work = loads->time = 0;
+}
 DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
     if (demi_null(w, "dem_wall_loads_reset", w, "world")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
-    demi_wall *wall;
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    wall = &w->walls[i];
-    memset(wall->loads.impulse, 0, sizeof wall->loads.impulse);
-    memset(wall->loads.gained, 0, sizeof wall->loads.gained);
-    wall->loads.torque_impulse = wall->loads.work = wall->loads.time = 0;
+    demi_loads_reset(&w->walls[i].loads);
     return DEM_OK;
 }
 
@@ -11537,24 +11846,37 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
     }
     if (domain->walls > first) demi_walls_order(w, domain, d, first);
 }
+/* m, into shift: from a place to the n-th of its images from which a wall may be nearer than `far`,
+   n = 0, 1, ... 0: there is none. */
+static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 place, dem_real far,
+                           int n, dem_vec3 *shift) {
+    dem_real x[3];
+    int k;
+    demi_put(x, place);
+    for (k = 0; k < 3; k++) {
+        const dem_real period = w->wall_period[k], lo = wall->span_lo[k] - far - x[k];
+        const dem_real hi = wall->span_hi[k] + far - x[k];
+        const int repeats = wall->repeats[k];
+        const int first = repeats ? (int)ceil((double)lo/(double)period) : 0;
+        const int count = repeats ? (int)floor((double)hi/(double)period) - first + 1 : 1;
+        if (count < 1) return 0;
+        x[k] = (dem_real)(first + n%count)*period;
+        n /= count;
+    }
+    *shift = demi_at(x);
+    return !n;
+}
 /* Elements of all walls near body i. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
-    int j, a, b, c, f[3], l[3];
+    int j, n;
     if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
     for (j = 0; j < w->wall_count; j++) {
-        const demi_wall *wall = &w->walls[j];
-        if (wall->kind == DEMI_WALL_NONE) continue;
-        if (!w->repeating) {
-            demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
-            continue;
-        }
-        demi_wall_images(w, wall, demi_at(w->bodies.pos + 4*i),
-                         w->bodies.pos[4*i + 3] + demi_cover(w), f, l);
-        for (c = f[2]; c <= l[2]; c++)
-            for (b = f[1]; b <= l[1]; b++)
-                for (a = f[0]; a <= l[0]; a++)
-                    demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
+        dem_vec3 shift;
+        if (w->walls[j].kind == DEMI_WALL_NONE) continue;
+        for (n = 0; demi_wall_image(w, &w->walls[j], demi_at(w->bodies.pos + 4*i),
+                                    w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
+            demi_wall_look(w, domain, d, i, j, shift);
     }
 }
 /* Candidates on walls of one domain, body by body; those of a body and wall stand together. */
@@ -12149,7 +12471,7 @@ static int demi_quiet_reserve(dem_world *w, int bodies) {
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
-           (!w->bodies.backward || demi_impulsive(w)) && !w->joint_count;
+           (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count;
 }
 /* Says of every few bodies whether anything is near any of them: where nothing is, and no field
    acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */
@@ -12258,17 +12580,18 @@ static int demi_near_make(dem_world *w, int fresh) {
    old list as they were. New bodies may join a list that stands (demi_list_join).
    --------------------------------------------------------------------------------------------- */
 
-/* What the laws in force keep per contact: the user's own what desc says, built-in ones what their
-   rows say, one after the other (demi_laws_set). */
+/* What contacts keep: with the user's own law what desc says, with built-in ones what their rows
+   say, one after the other (demi_laws_set); or what the row of the response says. */
 static void demi_effects_memory(dem_world *w) {
+    const demi_response_kind *response = &demi_response_kinds[w->desc.response];
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
     if (w->desc.law) {
         w->laws.memory = w->desc.law_memory;
         w->laws.at_sliding = demi_laws_sliding(&w->laws.memory, w->effects.sticks);
         w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
     }
-    w->memory_stride = demi_impulsive(w) ? (int)DEMI_IMPULSE_REALS : w->laws.memory;
-    w->vector_mask = demi_impulsive(w) ? 0x3f : w->laws.vectors;
+    w->memory_stride = response->memory ? response->memory : w->laws.memory;
+    w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
 /* Does any pair of the scene have friction, rolling friction, or static friction above that of
    sliding? */
@@ -12282,11 +12605,6 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int 
             *rolling |= p->rolling_friction > 0;
             *sticks |= p->friction_static > p->friction;
         }
-}
-/* Do impulses choose how far they look ahead? Their reach follows the speeds, so that no scene may
-   be refused because of it. */
-static int demi_reach_free(const dem_world *w) {
-    return demi_impulsive(w) && !(w->desc.law_range > 0);
 }
 /* m: the farthest that a law is asked about any two, the largest of this radius. Impulses look
    ahead three steps of the fastest body, at most a radius, and no farther than a short period
@@ -12493,8 +12811,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     const demi_periods p = demi_periods_of(w);
     int k, leading = 0;
     w->domains[last].end = i + 1;
-    /* contacts of impulses are found half a step ahead */
-    if (demi_impulsive(w)) w->margin.gone += w->margin.step_gone/2;
+    if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
     if (count >= w->join_room) return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
@@ -12564,7 +12881,7 @@ static int demi_effects_take(dem_world *w) {
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
     const int sticks = w->effects.sticks;
     demi_effects(w);
-    if (demi_species_room(w) && (demi_impulsive(w) || !was.normal ||
+    if (demi_species_room(w) && (!demi_response_is(w, DEMI_LAWS) || !was.normal ||
         (was.memory == now->memory && (w->desc.law || (was.tangent == now->tangent &&
                                                        was.rolling == now->rolling))) ||
         demi_memory_move(w, &was))) {
@@ -13150,10 +13467,13 @@ typedef struct demi_sieve_row {
 /* Where rows a and b cross: nearest point and its distance, m. */
 typedef struct demi_sieve_shared { dem_real distance; int a, b; dem_vec3 foot; } demi_sieve_shared;
 
+/* Is a sieve made of round wires? Others are plates. */
+static int demi_sieve_wires(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+}
 /* Half of how thick it is. */
 static dem_real demi_sieve_half(const dem_sieve_desc *s) {
-    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS ? (s->bar + s->lift)/2
-        : s->thickness/2;
+    return (demi_sieve_wires(s) ? s->bar + s->lift : s->thickness)/2;
 }
 /* A number that tells rows and holes apart; far ones repeat, which does no harm. */
 static int32_t demi_sieve_number(double i, double j, int side) {
@@ -13211,7 +13531,7 @@ static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u,
 /* Which rows of one set a sphere reaches. */
 static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
                           demi_sieve_row *row, int count) {
-    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int wires = demi_sieve_wires(s);
     const dem_real q = s->bar/2, h = !wires ? 0 : set ? -s->lift/2 : s->lift/2, R = s->radius;
     const dem_real hole = !set && s->kind == DEM_SIEVE_SLOTS ? s->length : s->aperture;
     const dem_real pitch = hole + s->bar, half = wires ? 0 : s->thickness/2;
@@ -13328,7 +13648,7 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
     const dem_real half = s->thickness/2, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     int rows = demi_sieve_set(s, 0, x, r, row, 0), i, k, crossings = 0, count = 0;
     if (s->kind != DEM_SIEVE_BARS) rows = demi_sieve_set(s, 1, x, r, row, rows);
-    if (s->kind != DEM_SIEVE_BARS && s->kind != DEM_SIEVE_WIRES && s->radius > 0 && S > 0) {
+    if (!demi_sieve_wires(s) && s->radius > 0 && S > 0) {
         demi_sieve_row *ring = &row[rows];
         memset(ring, 0, sizeof *ring);
         ring->foot = demi_v(x.x*s->radius/S, x.y*s->radius/S, demi_clamp(x.z, -half, half));
@@ -13371,8 +13691,8 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
     }
     for (i = 0; i < rows; i++) {
         if (row[i].edge < 0) continue;
-        if (!(row[i].distance > 0) && half > 0 && s->kind != DEM_SIEVE_WIRES &&
-            s->kind != DEM_SIEVE_BARS) {        /* within the plate: out by the nearer face */
+        if (!(row[i].distance > 0) && half > 0 && !demi_sieve_wires(s)) {
+            /* within the plate: out by the nearer face */
             count += demi_sieve_face(s, x, r, out + count);
             out[count - 1].element = row[i].number;
         } else count = demi_sieve_put(out, count, row[i].number, x, r, row[i].foot, row[i].edge);
@@ -14514,108 +14834,105 @@ static const char *demi_kernel_choose(dem_world *w) {
 typedef struct demi_solid {
     int faces, corners;
     const int32_t *rim;            /* faces + 1 starts, then the corners of each face */
-    double centre[3];
-    double plane[DEM_POLYHEDRON_FACES][4];     /* n/h, 1/m; h, m */
-    double corner[DEMI_HULL_CORNERS][3];
+    demi_d3 centre;
+    struct { demi_d3 slope; double high; } face[DEM_POLYHEDRON_FACES];  /* n/h, 1/m; h, m */
+    demi_d3 corner[DEMI_HULL_CORNERS];
 } demi_solid;
+/* The number of corner i of a face, rim[f] <= i <= rim[f + 1]: after the last comes the first. */
+DEM_INLINE int32_t demi_solid_number(const demi_solid *s, int f, int i) {
+    return s->rim[s->faces + 1 + (i < s->rim[f + 1] ? i : s->rim[f])];
+}
+DEM_INLINE demi_d3 demi_solid_corner(const demi_solid *s, int f, int i) {
+    return s->corner[demi_solid_number(s, f, i)];
+}
 static void demi_solid_of(const demi_part *p, dem_vec3 centre, demi_solid *s) {
     const demi_shape *shape = p->shape;
     const double *plane = shape->hull, *corner = shape->hull + 4*shape->faces;
     const double scale = (double)p->scale;
     double R[9];
-    int i, k;
+    int i;
     demi_rotation_of(p->q, R);
     s->faces = shape->faces;
     s->corners = shape->corners;
     s->rim = shape->rim;
-    s->centre[0] = (double)centre.x; s->centre[1] = (double)centre.y;
-    s->centre[2] = (double)centre.z;
+    s->centre = demi_d3_of(centre);
     for (i = 0; i < s->faces; i++, plane += 4) {
-        for (k = 0; k < 3; k++) s->plane[i][k] = demi_dot3(R + 3*k, plane)/scale;
-        s->plane[i][3] = plane[3]*scale;
+        s->face[i].slope = demi_d3_over(demi_d3_rotate(R, demi_d3_at(plane)), scale);
+        s->face[i].high = plane[3]*scale;
     }
     for (i = 0; i < s->corners; i++, corner += 3)
-        for (k = 0; k < 3; k++) s->corner[i][k] = s->centre[k] + scale*demi_dot3(R + 3*k, corner);
+        s->corner[i] = demi_d3_plus(s->centre, scale, demi_d3_rotate(R, demi_d3_at(corner)));
 }
 /* u of face f's pyramid at x. */
-static double demi_solid_in(const demi_solid *s, int f, const double *x) {
-    double d[3];
-    demi_sub3(x, s->centre, d);
-    return 1 - demi_dot3(s->plane[f], d);
+static double demi_solid_in(const demi_solid *s, int f, demi_d3 x) {
+    return 1 - demi_d3_dot(s->face[f].slope, demi_d3_sub(x, s->centre));
 }
 
 /* --- pressure u, summed over pieces of S --- */
 
 typedef struct demi_pressure {
     double shared;                 /* m3: I */
-    double sum, at[3], wide[6];    /* of u dA: 1, x, x x (xx yy zz xy xz yz) */
-    double force[3], torque[3];    /* of u dA: n; x cross n */
+    double sum, wide[6];           /* of u dA: 1; x x (xx yy zz xy xz yz) */
+    demi_d3 at, force, torque;     /* of u dA: x; n; x cross n */
     double deep;                   /* largest u */
 } demi_pressure;
-/* A polygon of n corners x with its u; unit: normal of S; height: m, of the polygon over the
-   centre, of a pair the sum of both. */
-static void demi_pressure_polygon(demi_pressure *s, double (*x)[3], const double *u, int count,
-                               const double *unit, double height) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
-    double force = 0, at[3] = {0, 0, 0}, t[3];
+enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
+/* A polygon of count corners x in the pyramid over face f of a body; unit: normal of S; height: m,
+   of the polygon over the centre, of a pair the sum of both. */
+static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int f, const demi_d3 *x,
+                                  int count, demi_d3 unit, double height) {
+    double force = 0, at[3] = {0, 0, 0}, a[3], b[3], c[3], u[DEMI_SECTION];
     int i, k;
-    for (i = 0; i < count; i++) s->deep = DEMI_MAX(s->deep, u[i]);
+    for (i = 0; i < count; i++) {
+        u[i] = DEMI_MAX(demi_solid_in(body, f, x[i]), 0);
+        s->deep = DEMI_MAX(s->deep, u[i]);
+    }
+    demi_d3_put(a, x[0]);
     for (i = 1; i + 1 < count; i++) {
-        const double *a = x[0], *b = x[i], *c = x[i + 1];
         const double u0 = u[0], u1 = u[i], u2 = u[i + 1], all = u0 + u1 + u2;
         const double pairs = u0*u1 + u0*u2 + u1*u2, q = all - pairs + u0*u1*u2;
-        double e[3], f[3], n[3], area;
-        demi_sub3(b, a, e);
-        demi_sub3(c, a, f);
-        demi_cross3(e, f, n);
-        area = fabs(demi_dot3(n, unit))/2;
+        const double area = fabs(demi_d3_dot(demi_d3_normal(x[0], x[i], x[i + 1]), unit))/2;
+        demi_d3_put(b, x[i]);
+        demi_d3_put(c, x[i + 1]);
         s->shared += area*height/12*(u0*u1*u2 - pairs + q*q/(1 - q));
         force += area*all/3;
         for (k = 0; k < 3; k++)
             at[k] += area/12*(all*(a[k] + b[k] + c[k]) + u0*a[k] + u1*b[k] + u2*c[k]);
         for (k = 0; k < 6; k++) {
-            const int p = one[k], r = two[k];
+            const int p = demi_sym_row[k], r = demi_sym_column[k];
             const double P = a[p] + b[p] + c[p], Q = a[r] + b[r] + c[r];
             s->wide[k] += area/60*(all*(P*Q + a[p]*a[r] + b[p]*b[r] + c[p]*c[r]) +
                 Q*(u0*a[p] + u1*b[p] + u2*c[p]) + P*(u0*a[r] + u1*b[r] + u2*c[r]) +
                 2*(u0*a[p]*a[r] + u1*b[p]*b[r] + u2*c[p]*c[r]));
         }
     }
-    demi_cross3(at, unit, t);
     s->sum += force;
-    for (k = 0; k < 3; k++) {
-        s->at[k] += at[k];
-        s->force[k] += force*unit[k];
-        s->torque[k] += t[k];
-    }
+    s->at = demi_d3_add(s->at, demi_d3_at(at));
+    s->force = demi_d3_plus(s->force, force, unit);
+    s->torque = demi_d3_add(s->torque, demi_d3_cross(demi_d3_at(at), unit));
 }
-/* A point that stands for so much of S. */
-static void demi_pressure_point(demi_pressure *s, const double *x, double u, double area,
-                             const double *unit, double height) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
-    const double f = area*u, g = 1 - u;
-    double t[3];
+/* A point there that stands for so much of S. */
+static void demi_pressure_point(demi_pressure *s, const demi_solid *body, int face, demi_d3 x,
+                                double area, demi_d3 unit, double height) {
+    const double u = DEMI_MAX(demi_solid_in(body, face, x), 0), f = area*u, g = 1 - u;
+    double y[3];
     int k;
     s->deep = DEMI_MAX(s->deep, u);
     s->shared += area*height/12*u*u*(6 - 8*u + 3*u*u)/(g*g*g);
     s->sum += f;
-    demi_cross3(x, unit, t);
-    for (k = 0; k < 3; k++) {
-        s->at[k] += f*x[k];
-        s->force[k] += f*unit[k];
-        s->torque[k] += f*t[k];
-    }
-    for (k = 0; k < 6; k++) s->wide[k] += f*x[one[k]]*x[two[k]];
+    s->at = demi_d3_plus(s->at, f, x);
+    s->force = demi_d3_plus(s->force, f, unit);
+    s->torque = demi_d3_plus(s->torque, f, demi_d3_cross(x, unit));
+    demi_d3_put(y, x);
+    for (k = 0; k < 6; k++) s->wide[k] += f*y[demi_sym_row[k]]*y[demi_sym_column[k]];
 }
 static void demi_pressure_add(demi_pressure *s, const demi_pressure *more) {
     int k;
     s->shared += more->shared;
     s->sum += more->sum;
-    for (k = 0; k < 3; k++) {
-        s->at[k] += more->at[k];
-        s->force[k] += more->force[k];
-        s->torque[k] += more->torque[k];
-    }
+    s->at = demi_d3_add(s->at, more->at);
+    s->force = demi_d3_add(s->force, more->force);
+    s->torque = demi_d3_add(s->torque, more->torque);
     for (k = 0; k < 6; k++) s->wide[k] += more->wide[k];
     s->deep = DEMI_MAX(s->deep, more->deep);
 }
@@ -14623,72 +14940,58 @@ static void demi_pressure_scale(demi_pressure *s, double by) {
     int k;
     s->shared *= by;
     s->sum *= by;
-    for (k = 0; k < 3; k++) {
-        s->at[k] *= by;
-        s->force[k] *= by;
-        s->torque[k] *= by;
-    }
+    s->at = demi_d3_scale(s->at, by);
+    s->force = demi_d3_scale(s->force, by);
+    s->torque = demi_d3_scale(s->torque, by);
     for (k = 0; k < 6; k++) s->wide[k] *= by;
 }
 
 /* --- sections: where a plane cuts a pyramid, or half spaces leave something of a polygon --- */
 
-enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
+typedef struct demi_half { demi_d3 n, o; } demi_half;  /* where n.(x - o) >= 0 */
 /* Where the plane level = 0 cuts the pyramid over face f: level at the centre, and at the corners
    of the face in their order. Answers how many corners there are. */
 static int demi_pyramid_section(const demi_solid *s, int f, double centre, const double *level,
-                                double (*x)[3]) {
-    const int32_t *loop = s->rim + s->faces + 1 + s->rim[f];
-    const int n = s->rim[f + 1] - s->rim[f], inside = centre > 0;
-    int i, k, count = 0;
+                                demi_d3 *x) {
+    const int first = s->rim[f], n = s->rim[f + 1] - first, inside = centre > 0;
+    int i, count = 0;
     for (i = 0; i < n; i++) {
-        const int next = i + 1 < n ? i + 1 : 0;
-        const double *a = s->corner[loop[i]], *b = s->corner[loop[next]];
-        if ((level[i] > 0) != inside) {
-            const double t = centre/(centre - level[i]);
-            for (k = 0; k < 3; k++) x[count][k] = s->centre[k] + t*(a[k] - s->centre[k]);
-            count++;
-        }
-        if ((level[i] > 0) != (level[next] > 0)) {
-            const double t = level[i]/(level[i] - level[next]);
-            for (k = 0; k < 3; k++) x[count][k] = a[k] + t*(b[k] - a[k]);
-            count++;
-        }
+        const double next = level[i + 1 < n ? i + 1 : 0];
+        const demi_d3 a = demi_solid_corner(s, f, first + i);
+        if ((level[i] > 0) != inside)
+            x[count++] = demi_d3_between(s->centre, a, centre/(centre - level[i]));
+        if ((level[i] > 0) != (next > 0))
+            x[count++] = demi_d3_between(a, demi_solid_corner(s, f, first + i + 1),
+                                         level[i]/(level[i] - next));
     }
     return count;
 }
 /* What is left of a convex polygon where n.(x - o) >= 0. */
-static int demi_polygon_clip(double (*x)[3], int count, const double *n, const double *o) {
-    double out[DEMI_SECTION][3], d[DEMI_SECTION], v[3];
-    int i, k, less = 0, left = 0;
+static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
+    demi_d3 out[DEMI_SECTION];
+    double d[DEMI_SECTION];
+    int i, less = 0, left = 0;
     for (i = 0; i < count; i++) {
-        demi_sub3(x[i], o, v);
-        d[i] = demi_dot3(n, v);
+        d[i] = demi_d3_dot(n, demi_d3_sub(x[i], o));
         less += d[i] < 0;
     }
     if (!less) return count;
     if (less == count) return 0;
     for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
         const int next = i + 1 < count ? i + 1 : 0;
-        if (!(d[i] < 0)) memcpy(out[left++], x[i], sizeof *out);
-        if ((d[i] < 0) == (d[next] < 0)) continue;
-        for (k = 0; k < 3; k++)
-            out[left][k] = x[i][k] + d[i]/(d[i] - d[next])*(x[next][k] - x[i][k]);
-        left++;
+        if (!(d[i] < 0)) out[left++] = x[i];
+        if ((d[i] < 0) != (d[next] < 0))
+            out[left++] = demi_d3_between(x[i], x[next], d[i]/(d[i] - d[next]));
     }
     memcpy(x, out, (size_t)left*sizeof *out);
     return left;
 }
 /* What is left of it in the pyramid over face f. */
-static int demi_pyramid_clip(const demi_solid *s, int f, double (*x)[3], int count) {
-    const int32_t *loop = s->rim + s->faces + 1 + s->rim[f];
-    const int n = s->rim[f + 1] - s->rim[f];
+static int demi_pyramid_clip(const demi_solid *s, int f, demi_d3 *x, int count) {
     int i;
-    for (i = 0; i < n && count > 2; i++) {
-        double a[3], b[3], side[3];
-        demi_sub3(s->corner[loop[i]], s->centre, a);
-        demi_sub3(s->corner[loop[i + 1 < n ? i + 1 : 0]], s->centre, b);
-        demi_cross3(a, b, side);
+    for (i = s->rim[f]; i < s->rim[f + 1] && count > 2; i++) {
+        const demi_d3 side = demi_d3_normal(s->centre, demi_solid_corner(s, f, i),
+                                            demi_solid_corner(s, f, i + 1));
         count = demi_polygon_clip(x, count, side, s->centre);
     }
     return count;
@@ -14697,7 +15000,7 @@ static int demi_pyramid_clip(const demi_solid *s, int f, double (*x)[3], int cou
 static void demi_solid_depths(const demi_solid *s, const demi_solid *other, int face, double *in) {
     int i;
     for (i = 0; i < s->corners; i++)
-        in[i] = demi_solid_in(other, face, s->corner[i])*other->plane[face][3];
+        in[i] = demi_solid_in(other, face, s->corner[i])*other->face[face].high;
 }
 /* Leaves out faces all corners of which are deeper, or less deep, than at. */
 static void demi_solid_leave(const demi_solid *s, const double *in, double at, int deeper,
@@ -14725,8 +15028,8 @@ static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned c
             most = DEMI_MAX(most, u);
         }
         if (!(most > 0)) return 0;
-        if (!(most*b->plane[g][3] < least)) continue;
-        least = most*b->plane[g][3];
+        if (!(most*b->face[g].high < least)) continue;
+        least = most*b->face[g].high;
         best = g;
     }
     if (best < 0) return 1;
@@ -14739,60 +15042,56 @@ static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned c
 /* The piece of S between faces f and g. */
 static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, int g,
                               demi_pressure *s) {
-    const int32_t *loop = a->rim + a->faces + 1 + a->rim[f];
     const int n = a->rim[f + 1] - a->rim[f];
     const double centre = demi_solid_in(b, g, a->centre) - 1;
-    double x[DEMI_SECTION][3], u[DEMI_SECTION], level[DEM_POLYHEDRON_FACES], unit[3], to[3], size;
+    double level[DEM_POLYHEDRON_FACES];
+    demi_d3 x[DEMI_SECTION], unit;
     int i, above = 0, count;
-    for (i = 0; i < n; i++) above += (level[i] = demi_solid_in(b, g, a->corner[loop[i]])) > 0;
+    for (i = 0; i < n; i++)
+        above += (level[i] = demi_solid_in(b, g, demi_solid_corner(a, f, a->rim[f] + i))) > 0;
     if (above == (centre > 0 ? n : 0)) return;
-    demi_sub3(a->plane[f], b->plane[g], unit);
-    size = demi_unit3(unit);
-    if (!(size*a->plane[f][3] > 1e-9)) return;  /* the same face */
+    unit = demi_d3_sub(a->face[f].slope, b->face[g].slope);
+    if (!(demi_d3_length(unit)*a->face[f].high > 1e-9)) return;         /* the same face */
+    unit = demi_d3_unit(unit);
     count = demi_pyramid_section(a, f, centre, level, x);
     count = demi_pyramid_clip(b, g, x, count);
-    if (count < 3) return;
-    for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
-    demi_sub3(b->centre, a->centre, to);
-    demi_pressure_polygon(s, x, u, count, unit, demi_dot3(to, unit));
+    if (count > 2)
+        demi_pressure_polygon(s, a, f, x, count, unit,
+                              demi_d3_dot(demi_d3_sub(b->centre, a->centre), unit));
 }
 /* Is x inside? */
-static int demi_solid_holds(const demi_solid *s, const double *x) {
+static int demi_solid_holds(const demi_solid *s, demi_d3 x) {
     int f;
     for (f = 0; f < s->faces; f++) if (!(demi_solid_in(s, f, x) > 0)) return 0;
     return 1;
 }
 /* The centre has gone through a surface: there is no pressure any more, but something that pushes
    back along n and, by its depth, stops the run. */
-static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pressure *s) {
-    const double h = a->plane[0][3];
-    int k;
+static void demi_pressure_beyond(const demi_solid *a, demi_d3 n, demi_pressure *s) {
+    const double h = a->face[0].high;
     s->deep = 2;
-    if (s->shared > 0 && demi_dot3(s->force, s->force) > 1e-6*s->sum*s->sum) return;
+    if (s->shared > 0 && demi_d3_square(s->force) > 1e-6*s->sum*s->sum) return;
     memset(s, 0, sizeof *s);
     s->deep = 2;
     s->shared = h*h*h;
     s->sum = h*h;
-    for (k = 0; k < 3; k++) {
-        s->force[k] = h*h*n[k];
-        s->at[k] = s->sum*a->centre[k];
-    }
-    demi_cross3(a->centre, s->force, s->torque);
+    s->force = demi_d3_scale(n, h*h);
+    s->at = demi_d3_scale(a->centre, s->sum);
+    s->torque = demi_d3_cross(a->centre, s->force);
 }
 /* Polygons of a plane are prisms; where two end at one height there is a volume in which both u are
    those of the ends, the same, and S may pass through it anywhere, so that neither force nor energy
    is told. So one of the two is taken to be half as high again. Their centres are at z = 0. */
 static void demi_solid_stretch(demi_solid *s) {
     int i;
-    for (i = 0; i < s->corners; i++) s->corner[i][2] *= 1.5;
+    for (i = 0; i < s->corners; i++) s->corner[i].z *= 1.5;
     for (i = 0; i < s->faces; i++) {
-        s->plane[i][2] /= 1.5;
-        s->plane[i][3] = 1/sqrt(demi_dot3(s->plane[i], s->plane[i]));
+        s->face[i].slope.z /= 1.5;
+        s->face[i].high = 1/demi_d3_length(s->face[i].slope);
     }
 }
 /* All of S; 0: there is none. */
 static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
-    static const double up[3] = {0, 0, 1};
     unsigned char fs[DEM_POLYHEDRON_FACES], gs[DEM_POLYHEDRON_FACES];
     int f, g;
     memset(s, 0, sizeof *s);
@@ -14802,22 +15101,29 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     for (f = 0; f < a->faces; f++)
         for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
     if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
-        demi_pressure_beyond(a, up, s);
+        demi_pressure_beyond(a, demi_d(0, 0, 1), s);
     return s->shared > 0 && s->sum > 0;
 }
+/* Gauss's rules of three and four points on 0 to 1: where they are, and their weights. */
+static const double demi_gauss3_at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+static const double demi_gauss3[3] = {5.0/18, 8.0/18, 5.0/18};
+static const double demi_gauss4_at[4] = {0.06943184420297371, 0.33000947820757187,
+                                         0.6699905217924281, 0.9305681557970263};
+static const double demi_gauss4[4] = {0.17392742256872692, 0.32607257743127307,
+                                      0.32607257743127307, 0.17392742256872692};
 static int demi_double_order(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
 }
 /* Part of the ray from o in direction (c, sn) that is inside a polygon across z which turns left
    (side 1) or right (-1): lo to hi, which come as its ends. */
-static void demi_polygon_ray(double (*x)[3], int count, int side, const double *o, double c,
+static void demi_polygon_ray(const demi_d3 *x, int count, int side, const double *o, double c,
                              double sn, double *lo, double *hi) {
     int e;
     for (e = 0; e < count; e++) {
-        const double *p = x[e], *q = x[e + 1 < count ? e + 1 : 0];
-        const double u = side*(p[1] - q[1]), v = side*(q[0] - p[0]);
-        const double over = u*(o[0] - p[0]) + v*(o[1] - p[1]), slope = u*c + v*sn;
+        const demi_d3 p = x[e], q = x[e + 1 < count ? e + 1 : 0];
+        const double u = side*(p.y - q.y), v = side*(q.x - p.x);
+        const double over = u*(o[0] - p.x) + v*(o[1] - p.y), slope = u*c + v*sn;
         if (slope > 0) *lo = DEMI_MAX(*lo, -over/slope);
         else if (slope < 0) *hi = DEMI_MIN(*hi, -over/slope);
         else if (over < 0) *hi = -1;
@@ -14825,19 +15131,13 @@ static void demi_polygon_ray(double (*x)[3], int count, int side, const double *
 }
 /* The polygon of face f's pyramid, across z, outside of a hole (x, y, radius): along rays from its
    middle, between those to corners and to where sides cross its rim. 0: nothing of it is in it. */
-static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, double (*x)[3],
-                               int count, const double *unit, double height, const double *hole) {
-    static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
-                                 0.9305681557970263};
-    static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
-                                   0.17392742256872692};
-    static const double on[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    static const double weight[3] = {5.0/18, 8.0/18, 5.0/18};
+static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, const demi_d3 *x,
+                               int count, demi_d3 unit, double height, const double *hole) {
     double angle[3*DEMI_SECTION + 1], area = 0;
     int i, k, e, piece, angles = 0, left = 0, right = 0, near_by = 0;
     for (i = 0; i < count; i++) {
-        const double *p = x[i], *q = x[i + 1 < count ? i + 1 : 0];
-        const double u = p[0] - hole[0], v = p[1] - hole[1], du = q[0] - p[0], dv = q[1] - p[1];
+        const demi_d3 p = x[i], q = x[i + 1 < count ? i + 1 : 0];
+        const double u = p.x - hole[0], v = p.y - hole[1], du = q.x - p.x, dv = q.y - p.y;
         const double A = du*du + dv*dv, B = u*du + v*dv, C = u*u + v*v - hole[2]*hole[2];
         const double D = B*B - A*C, turn = u*dv - v*du;
         left += turn >= 0;
@@ -14860,45 +15160,41 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, dou
         const int pieces = 1 + (int)(width/0.4);
         for (piece = 0; piece < pieces && width > 1e-15; piece++)
             for (k = 0; k < 4; k++) {
-                const double turn = angle[i] + (piece + at[k])*width/pieces;
+                const double turn = angle[i] + (piece + demi_gauss4_at[k])*width/pieces;
                 const double c = demi_cos(turn), sn = demi_sin(turn);
                 double lo = hole[2], hi = 1e300;
                 demi_polygon_ray(x, count, area > 0 ? 1 : -1, hole, c, sn, &lo, &hi);
                 for (e = 0; e < 3 && hi > lo; e++) {
-                    const double r = lo + on[e]*(hi - lo);
-                    const double y[3] = {hole[0] + r*c, hole[1] + r*sn, x[0][2]};
-                    const double dA = part[k]*width/pieces*weight[e]*(hi - lo)*r;
-                    demi_pressure_point(s, y, DEMI_MAX(demi_solid_in(a, f, y), 0), dA, unit,
-                                        height);
+                    const double r = lo + demi_gauss3_at[e]*(hi - lo);
+                    const demi_d3 y = demi_d(hole[0] + r*c, hole[1] + r*sn, x[0].z);
+                    const double dA = demi_gauss4[k]*width/pieces*demi_gauss3[e]*(hi - lo)*r;
+                    demi_pressure_point(s, a, f, y, dA, unit, height);
                 }
             }
     }
     return 1;
 }
 /* S on a flat piece of a rigid wall: beyond n.x = at, n unit, into the wall; on that side of all
-   planes (normal, a point of it) that bound it; hole: null, or x, y and radius of one in it,
+   half spaces that bound it; hole: null, or x, y and radius of one in it,
    across z. Without bounds the polyhedron's centre must be on this side; a piece may be seen from
    behind, where it takes from what others share. */
-static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
-                               double (*sides)[2][3], int side_count, const double *hole,
-                               demi_pressure *s) {
-    const int32_t *loops = a->rim + a->faces + 1;
-    const double centre = demi_dot3(n, a->centre) - at;
-    double all[DEMI_HULL_CORNERS], x[DEMI_SECTION][3], u[DEMI_SECTION];
-    double level[DEM_POLYHEDRON_FACES];
+static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const demi_half *sides,
+                               int side_count, const double *hole, demi_pressure *s) {
+    const double centre = demi_d3_dot(n, a->centre) - at;
+    double all[DEMI_HULL_CORNERS], level[DEM_POLYHEDRON_FACES];
+    demi_d3 x[DEMI_SECTION];
     int f, i, k, above = 0, count;
     if (centre > 0 && !side_count) { demi_pressure_beyond(a, n, s); return; }
-    for (i = 0; i < a->corners; i++) above += (all[i] = demi_dot3(n, a->corner[i]) - at) > 0;
+    for (i = 0; i < a->corners; i++) above += (all[i] = demi_d3_dot(n, a->corner[i]) - at) > 0;
     if (above == (centre > 0 ? a->corners : 0)) return;
     for (f = 0; f < a->faces; f++) {
-        for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++) level[k++] = all[loops[i]];
+        for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++)
+            level[k++] = all[demi_solid_number(a, f, i)];
         count = demi_pyramid_section(a, f, centre, level, x);
         for (i = 0; i < side_count && count > 2; i++)
-            count = demi_polygon_clip(x, count, sides[i][0], sides[i][1]);
-        if (count < 3 || (hole && demi_pressure_round(s, a, f, x, count, n, -centre, hole)))
-            continue;
-        for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
-        demi_pressure_polygon(s, x, u, count, n, -centre);
+            count = demi_polygon_clip(x, count, sides[i].n, sides[i].o);
+        if (count > 2 && !(hole && demi_pressure_round(s, a, f, x, count, n, -centre, hole)))
+            demi_pressure_polygon(s, a, f, x, count, n, -centre);
     }
 }
 
@@ -14915,39 +15211,35 @@ typedef struct demi_patch {
 /* Not where it does not push. The two directions of the spread: any, but the same from step to
    step. */
 static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
-    static const double from[3] = {0.3301, 0.5563, 0.7626};
-    const double *m = s->wide, F = sqrt(demi_dot3(s->force, s->force));
-    double n[3], e[3], t[3], x[3], C[6], Ce[3], Ct[3], ee, tt, et, root, size, along;
+    const double *m = s->wide, F = demi_d3_length(s->force), sum2 = s->sum*s->sum;
+    demi_d3 n, e, t, Ce, Ct;
+    double C[6], M[9], ee, tt, et, root, size;
     int k;
     if (!(F > 0)) return 0;
-    for (k = 0; k < 3; k++) n[k] = s->force[k]/F;
-    demi_cross3(n, s->torque, x);
-    along = demi_dot3(n, s->at)/s->sum;
-    for (k = 0; k < 3; k++) x[k] = x[k]/F + along*n[k];
-    for (k = 0; k < 3; k++) C[k] = m[k]/s->sum - s->at[k]*s->at[k]/(s->sum*s->sum);
-    C[3] = m[3]/s->sum - s->at[0]*s->at[1]/(s->sum*s->sum);
-    C[4] = m[4]/s->sum - s->at[0]*s->at[2]/(s->sum*s->sum);
-    C[5] = m[5]/s->sum - s->at[1]*s->at[2]/(s->sum*s->sum);
-    demi_cross3(n, from, t);
-    demi_unit3(t);
-    demi_cross3(t, n, e);
-    demi_sym_times(C, e, Ce);
-    demi_sym_times(C, t, Ct);
-    ee = DEMI_MAX(demi_dot3(e, Ce), 0);
-    tt = DEMI_MAX(demi_dot3(t, Ct), 0);
-    et = demi_dot3(e, Ct);
+    n = demi_d3_over(s->force, F);
+    out->point = demi_d3_real(demi_d3_plus(demi_d3_over(demi_d3_cross(n, s->torque), F),
+                                           demi_d3_dot(n, s->at)/s->sum, n));
+    C[0] = s->at.x*s->at.x; C[1] = s->at.y*s->at.y; C[2] = s->at.z*s->at.z;
+    C[3] = s->at.x*s->at.y; C[4] = s->at.x*s->at.z; C[5] = s->at.y*s->at.z;
+    for (k = 0; k < 6; k++) C[k] = m[k]/s->sum - C[k]/sum2;
+    for (k = 0; k < 6; k++) M[3*demi_sym_row[k] + demi_sym_column[k]] = C[k];
+    M[3] = C[3]; M[6] = C[4]; M[7] = C[5];
+    t = demi_d3_unit(demi_d3_cross(n, demi_d(0.3301, 0.5563, 0.7626)));
+    e = demi_d3_cross(t, n);
+    Ce = demi_d3_rotate(M, e);
+    Ct = demi_d3_rotate(M, t);
+    ee = DEMI_MAX(demi_d3_dot(e, Ce), 0);
+    tt = DEMI_MAX(demi_d3_dot(t, Ct), 0);
+    et = demi_d3_dot(e, Ct);
     root = sqrt(DEMI_MAX(ee*tt - et*et, 0));    /* the root of a 2 x 2 tensor, Cayley-Hamilton */
     size = sqrt(ee + tt + 2*root);
     if (!(size > 0)) size = 1;
-    out->normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    out->point = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
-    for (k = 0; k < 3; k++) {
-        Ce[k] = ((ee + root)*e[k] + et*t[k])/size;
-        Ct[k] = (et*e[k] + (tt + root)*t[k])/size;
-    }
-    out->spread[0] = demi_v((dem_real)Ce[0], (dem_real)Ce[1], (dem_real)Ce[2]);
-    out->spread[1] = demi_v((dem_real)Ct[0], (dem_real)Ct[1], (dem_real)Ct[2]);
-    out->couple = (dem_real)(demi_dot3(n, s->torque)/F);
+    out->normal = demi_d3_real(n);
+    out->spread[0] = demi_d3_real(demi_d3_over(demi_d3_plus(demi_d3_scale(e, ee + root), et, t),
+                                               size));
+    out->spread[1] = demi_d3_real(demi_d3_over(demi_d3_plus(demi_d3_scale(e, et), tt + root, t),
+                                               size));
+    out->couple = (dem_real)(demi_d3_dot(n, s->torque)/F);
     out->force = F;
     return 1;
 }
@@ -14969,82 +15261,73 @@ static double demi_shared_slope(double force, double r_eff, double overlap) {
 
 /* The point q of a polyhedron nearest to x, and how far off it is, m; below 0 inside, where it is
    on the nearest face. */
-static double demi_solid_near(const demi_solid *s, const double *x, double *q) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    double inside = -1e300, least = 1e300, d[3];
-    int f, i, k;
+static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
+    double inside = -1e300, least = 1e300;
+    int f, i;
     for (f = 0; f < s->faces; f++) {
-        const double *a = s->plane[f], size = sqrt(demi_dot3(a, a));
-        double n[3], foot[3], off;
+        const demi_d3 a = s->face[f].slope;
+        const double size = demi_d3_length(a);
+        const double off = (demi_d3_dot(a, demi_d3_sub(x, s->centre)) - 1)/size;
+        const demi_d3 n = demi_d3_over(a, size), foot = demi_d3_plus(x, -off, n);
         int beyond = 0;
-        demi_sub3(x, s->centre, d);
-        off = (demi_dot3(a, d) - 1)/size;
-        for (k = 0; k < 3; k++) {
-            n[k] = a[k]/size;
-            foot[k] = x[k] - off*n[k];
-        }
         if (!(off > 0)) {
             if (off > inside && least > 1e299) {
                 inside = off;
-                memcpy(q, foot, sizeof foot);
+                *q = foot;
             }
             continue;
         }
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const double *b = s->corner[loops[i]];
-            const double *c = s->corner[loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]]];
-            double e[3], out[3], to[3], at[3], t, l;
-            demi_sub3(c, b, e);
-            demi_cross3(e, n, out);
-            demi_sub3(foot, b, to);
-            if (!(demi_dot3(out, to) > 0)) continue;
+            const demi_d3 b = demi_solid_corner(s, f, i), to = demi_d3_sub(foot, b);
+            const demi_d3 e = demi_d3_sub(demi_solid_corner(s, f, i + 1), b);
+            demi_d3 at;
+            double t, l;
+            if (!(demi_d3_dot(demi_d3_cross(e, n), to) > 0)) continue;
             beyond = 1;
-            t = demi_dot3(e, to)/demi_dot3(e, e);
-            t = t < 0 ? 0 : t > 1 ? 1 : t;
-            for (k = 0; k < 3; k++) at[k] = b[k] + t*e[k];
-            demi_sub3(x, at, d);
-            l = sqrt(demi_dot3(d, d));
-            if (l < least) { least = l; memcpy(q, at, sizeof at); }
+            t = demi_d3_dot(e, to)/demi_d3_square(e);
+            at = demi_d3_plus(b, t < 0 ? 0 : t > 1 ? 1 : t, e);
+            l = demi_d3_length(demi_d3_sub(x, at));
+            if (l < least) { least = l; *q = at; }
         }
-        if (!beyond) { memcpy(q, foot, sizeof foot); return off; }
+        if (!beyond) { *q = foot; return off; }
     }
     return least < 1e299 ? least : inside;
 }
 /* A polyhedron in the measure in which an ellipsoid at `at` is the unit sphere about the origin. */
 static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
                                demi_solid *s) {
-    const double axes[3] = {(double)egg->axes.x, (double)egg->axes.y, (double)egg->axes.z};
-    double R[9], v[3];
-    int i, k, e;
+    const demi_d3 axes = demi_d3_of(egg->axes);
+    double R[9], back[9];
+    int i, k;
     demi_solid_of(p, at, s);
     demi_rotation_of(egg->q, R);
+    for (i = 0; i < 9; i++) back[i] = R[i%3*3 + i/3];
     for (i = -1; i < s->corners; i++) {
-        double *x = i < 0 ? s->centre : s->corner[i];
-        memcpy(v, x, sizeof v);
-        for (k = 0; k < 3; k++) x[k] = (R[k]*v[0] + R[3 + k]*v[1] + R[6 + k]*v[2])/axes[k];
+        demi_d3 *x = i < 0 ? &s->centre : &s->corner[i];
+        *x = demi_d3_rotate(back, *x);
+        *x = demi_d(x->x/axes.x, x->y/axes.y, x->z/axes.z);
     }
-    for (i = 0; i < s->faces; i++) {
-        memcpy(v, s->plane[i], sizeof v);
-        for (k = 0; k < 3; k++)
-            for (e = 0, s->plane[i][k] = 0; e < 3; e++) s->plane[i][k] += axes[k]*R[3*e + k]*v[e];
-    }
+    for (k = 0; k < 3; k++) { back[k] *= axes.x; back[3 + k] *= axes.y; back[6 + k] *= axes.z; }
+    for (i = 0; i < s->faces; i++) s->face[i].slope = demi_d3_rotate(back, s->face[i].slope);
 }
 /* How far a part reaches from its centre along n (unit), m. */
 static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
     if (p->kind == DEMI_BALL) return p->radius;
     return p->scale*demi_shape_rows[p->kind].support(p->shape, dem_quat_unrotate(p->q, n));
 }
+/* The unit normal of a face, in the frame of its shape. */
+static dem_vec3 demi_face_normal(const demi_shape *s, int f) {
+    const double *a = s->hull + 4*f;
+    return demi_scale(demi_d3_real(demi_d3_at(a)), (dem_real)a[3]);
+}
 /* The farthest that a face of p keeps q off: no more than their distance. */
 static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 gap) {
     dem_real most = -DEM_R(1e30);
     int f;
     for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
-        const double *a = p->shape->hull + 4*f;
-        const dem_vec3 own = demi_scale(demi_v((dem_real)a[0], (dem_real)a[1], (dem_real)a[2]),
-                                        (dem_real)a[3]);
-        const dem_vec3 n = dem_quat_rotate(p->q, own);
+        const dem_vec3 n = dem_quat_rotate(p->q, demi_face_normal(p->shape, f));
         const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
-            (dem_real)a[3]*p->scale;
+            (dem_real)p->shape->hull[4*f + 3]*p->scale;
         most = DEMI_MAX(most, off);
     }
     return most;
@@ -15052,19 +15335,17 @@ static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 
 /* Does the face of p that faces q's centre most keep all of q off? Most pairs that are apart are so
    by one of the two. */
 static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap) {
-    const dem_vec3 own = dem_quat_unrotate(p->q, gap);
-    const double e[3] = {(double)own.x, (double)own.y, (double)own.z}, scale = (double)p->scale;
-    const double *face = p->shape->hull, *a = face;
+    const demi_d3 own = demi_d3_of(dem_quat_unrotate(p->q, gap));
+    const double scale = (double)p->scale, *a = p->shape->hull;
     double most = -1e300;
     dem_vec3 n;
-    int f;
+    int f, face = 0;
     for (f = 0; f < p->shape->faces; f++, a += 4) {
-        const double off = demi_dot3(a, e)*a[3] - scale*a[3];
-        if (off > most) { most = off; face = a; }
+        const double off = demi_d3_dot(demi_d3_at(a), own)*a[3] - scale*a[3];
+        if (off > most) { most = off; face = f; }
     }
-    n = demi_scale(demi_v((dem_real)face[0], (dem_real)face[1], (dem_real)face[2]),
-                   (dem_real)face[3]);
-    return (dem_real)most > demi_part_support(q, demi_scale(dem_quat_rotate(p->q, n), -1))*
+    n = dem_quat_rotate(p->q, demi_face_normal(p->shape, face));
+    return (dem_real)most > demi_part_support(q, demi_scale(n, -1))*
         (1 + 16*(DEMI_SINGLE ? DEM_R(1e-7) : DEM_R(2e-16)));
 }
 static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
@@ -15092,61 +15373,57 @@ static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_v
    --------------------------------------------------------------------------------------------- */
 
 /* A corner of D: B's corner b less A's corner a. */
-typedef struct demi_lead { double x[3]; int a, b; } demi_lead;
+typedef struct demi_lead { demi_d3 x; int a, b; } demi_lead;
 /* Corners of D; the point nearest to the origin is the sum of part x, parts are 1 in all. */
 typedef struct demi_simplex { int count; demi_lead at[4]; double part[4]; } demi_simplex;
 
 /* The corner of a body that is farthest along n. */
-static int demi_solid_far(const demi_solid *s, const double *n) {
+static int demi_solid_far(const demi_solid *s, demi_d3 n) {
     double most = -1e300;
     int i, far = 0;
     for (i = 0; i < s->corners; i++) {
-        const double d = demi_dot3(n, s->corner[i]);
+        const double d = demi_d3_dot(n, s->corner[i]);
         if (d > most) { most = d; far = i; }
     }
     return far;
 }
 /* The corner of D that is farthest along n. */
-static void demi_lead_along(const demi_solid *a, const demi_solid *b, const double *n,
-                            demi_lead *out) {
-    const double back[3] = {-n[0], -n[1], -n[2]};
-    out->a = demi_solid_far(a, back);
-    out->b = demi_solid_far(b, n);
-    demi_sub3(b->corner[out->b], a->corner[out->a], out->x);
+static demi_lead demi_lead_along(const demi_solid *a, const demi_solid *b, demi_d3 n) {
+    demi_lead lead;
+    lead.a = demi_solid_far(a, demi_d3_scale(n, -1));
+    lead.b = demi_solid_far(b, n);
+    lead.x = demi_d3_sub(b->corner[lead.b], a->corner[lead.a]);
+    return lead;
 }
-/* Parts of the corners of a segment, or of a triangle, in its point nearest to the origin. */
-static void demi_near_segment(const double *p, const double *q, double *part) {
-    double e[3], t;
-    demi_sub3(q, p, e);
-    t = -demi_dot3(p, e)/demi_dot3(e, e);
-    t = t > 0 ? t < 1 ? t : 1 : 0;              /* 0 of a point */
-    part[0] = 1 - t;
-    part[1] = t;
+/* Parts of the corners of a segment in its point nearest to the origin; how far off it is, squared.
+   */
+static double demi_near_segment(demi_d3 p, demi_d3 q, double *part) {
+    const demi_d3 e = demi_d3_sub(q, p);
+    const double t = -demi_d3_dot(p, e)/demi_d3_square(e);
+    part[1] = t > 0 ? t < 1 ? t : 1 : 0;        /* 0 of a point */
+    part[0] = 1 - part[1];
+    return demi_d3_square(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q));
 }
-static void demi_near_triangle(const double *p, const double *q, const double *r, double *part) {
-    const double *corner[3];
-    double e[3], f[3], n[3], ep, fp, eq, fq, er, fr, a, b, c;
-    int i, k;
-    corner[0] = p; corner[1] = q; corner[2] = r;
+/* The point of a triangle with these parts; and the parts of the one nearest to the origin. */
+static demi_d3 demi_triangle_point(const double *part, demi_d3 p, demi_d3 q, demi_d3 r) {
+    return demi_d3_plus(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q), part[2], r);
+}
+static void demi_near_triangle(demi_d3 p, demi_d3 q, demi_d3 r, double *part) {
+    const demi_d3 corner[3] = {p, q, r}, e = demi_d3_sub(q, p), f = demi_d3_sub(r, p);
+    const double ep = -demi_d3_dot(e, p), eq = -demi_d3_dot(e, q), er = -demi_d3_dot(e, r);
+    const double fp = -demi_d3_dot(f, p), fq = -demi_d3_dot(f, q), fr = -demi_d3_dot(f, r);
+    const double a = eq*fr - er*fq;             /* areas over the sides opposite to p, q and r */
+    const double b = er*fp - ep*fr, c = ep*fq - eq*fp;
+    int i;
     part[0] = part[1] = part[2] = 0;
-    demi_sub3(q, p, e);
-    demi_sub3(r, p, f);
-    demi_cross3(e, f, n);
-    ep = -demi_dot3(e, p); fp = -demi_dot3(f, p);
-    eq = -demi_dot3(e, q); fq = -demi_dot3(f, q);
-    er = -demi_dot3(e, r); fr = -demi_dot3(f, r);
-    a = eq*fr - er*fq;                          /* areas over the sides opposite to p, q and r */
-    b = er*fp - ep*fr;
-    c = ep*fq - eq*fp;
-    if (!(demi_dot3(n, n) > 1e-16*demi_dot3(e, e)*demi_dot3(f, f))) {   /* a line */
+    if (!(demi_d3_square(demi_d3_cross(e, f)) >
+          1e-16*demi_d3_square(e)*demi_d3_square(f))) {         /* a line */
         double least = 1e300;
         for (i = 0; i < 3; i++) {
-            const double *from = corner[i], *to = corner[(i + 1)%3];
-            double t[2], x[3];
-            demi_near_segment(from, to, t);
-            for (k = 0; k < 3; k++) x[k] = t[0]*from[k] + t[1]*to[k];
-            if (!(demi_dot3(x, x) < least)) continue;
-            least = demi_dot3(x, x);
+            double t[2];
+            const double d2 = demi_near_segment(corner[i], corner[(i + 1)%3], t);
+            if (!(d2 < least)) continue;
+            least = d2;
             part[i] = t[0];
             part[(i + 1)%3] = t[1];
             part[(i + 2)%3] = 0;
@@ -15166,59 +15443,50 @@ static void demi_near_triangle(const double *p, const double *q, const double *r
         part[2] = c/(a + b + c);
     }
 }
+/* Of a tetrahedron: the corners of each side, and the one opposite. */
+static const int demi_sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
 /* The point of a simplex nearest to the origin, which corners without part in it leave; how far off
    it is, squared. All four stay where the origin is inside. */
-static double demi_simplex_near(demi_simplex *s, double *v) {
-    static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
-    double part[4] = {1, 0, 0, 0}, tried[3], x[3];
-    double least = 1e300;
+static double demi_simplex_near(demi_simplex *s, demi_d3 *v) {
+    double part[4] = {1, 0, 0, 0}, tried[3], least = 1e300;
     int i, k, left = 0;
     if (s->count == 2) demi_near_segment(s->at[0].x, s->at[1].x, part);
     else if (s->count == 3)
         demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, part);
     for (i = 0; i < 4 && s->count == 4; i++) {
-        const double *p = s->at[sides[i][0]].x, *q = s->at[sides[i][1]].x;
-        const double *r = s->at[sides[i][2]].x;
-        double e[3], f[3], n[3], d[3], high;
-        demi_sub3(q, p, e);
-        demi_sub3(r, p, f);
-        demi_cross3(e, f, n);
-        demi_sub3(s->at[sides[i][3]].x, p, d);
-        high = demi_dot3(n, d);
-        if (high*high > 1e-20*demi_dot3(n, n)*demi_dot3(d, d) &&       /* not flat */
-            -demi_dot3(n, p)*high > 0) continue;        /* on the fourth one's side */
+        const int *side = demi_sides[i];
+        const demi_d3 p = s->at[side[0]].x, q = s->at[side[1]].x, r = s->at[side[2]].x;
+        const demi_d3 n = demi_d3_normal(p, q, r), d = demi_d3_sub(s->at[side[3]].x, p);
+        const double high = demi_d3_dot(n, d);
+        double d2;
+        if (high*high > 1e-20*demi_d3_square(n)*demi_d3_square(d) &&   /* not flat */
+            -demi_d3_dot(n, p)*high > 0) continue;      /* on the fourth one's side */
         demi_near_triangle(p, q, r, tried);
-        for (k = 0; k < 3; k++) x[k] = tried[0]*p[k] + tried[1]*q[k] + tried[2]*r[k];
-        if (!(demi_dot3(x, x) < least)) continue;
-        least = demi_dot3(x, x);
-        part[sides[i][3]] = 0;
-        for (k = 0; k < 3; k++) part[sides[i][k]] = tried[k];
+        d2 = demi_d3_square(demi_triangle_point(tried, p, q, r));
+        if (!(d2 < least)) continue;
+        least = d2;
+        part[side[3]] = 0;
+        for (k = 0; k < 3; k++) part[side[k]] = tried[k];
     }
     if (s->count == 4 && least > 1e299) return 0;
-    v[0] = v[1] = v[2] = 0;
+    *v = demi_d(0, 0, 0);
     for (i = 0; i < s->count; i++) {
         if (!(part[i] > 0)) continue;
-        for (k = 0; k < 3; k++) v[k] += part[i]*s->at[i].x[k];
+        *v = demi_d3_plus(*v, part[i], s->at[i].x);
         s->at[left] = s->at[i];
         s->part[left++] = part[i];
     }
     s->count = left;
-    return demi_dot3(v, v);
+    return demi_d3_square(*v);
 }
 /* The normal of a simplex's triangle where it has three corners, to the side of v; else v itself,
    unit. */
-static void demi_simplex_normal(const demi_simplex *s, const double *v, double *n) {
-    double e[3], f[3], side;
-    int k;
-    memcpy(n, v, 3*sizeof *n);
+static demi_d3 demi_simplex_normal(const demi_simplex *s, demi_d3 v) {
     if (s->count == 3) {
-        demi_sub3(s->at[1].x, s->at[0].x, e);
-        demi_sub3(s->at[2].x, s->at[0].x, f);
-        demi_cross3(e, f, n);
-        side = demi_dot3(n, v);
-        for (k = 0; k < 3; k++) n[k] = side < 0 ? -n[k] : n[k];
+        const demi_d3 n = demi_d3_normal(s->at[0].x, s->at[1].x, s->at[2].x);
+        v = demi_d3_dot(n, v) < 0 ? demi_d3_scale(n, -1) : n;
     }
-    demi_unit3(n);
+    return demi_d3_unit(v);
 }
 static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
     int i;
@@ -15226,37 +15494,35 @@ static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
     return 0;
 }
 /* Are the two apart, by more than tiny, m? n: where to begin, then from a to b, unit. */
-static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, double *n,
+static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, demi_d3 *n,
                              demi_simplex *s) {
-    double v[3], had_v[3], far = 1e300;
+    demi_d3 v = *n, had_v;
+    double far = 1e300;
     demi_simplex had;
-    int turn, k;
-    memcpy(v, n, sizeof v);
-    if (!(demi_dot3(v, v) > 0)) demi_sub3(b->centre, a->centre, v);
-    if (!(demi_dot3(v, v) > 0)) v[2] = 1;
+    int turn;
+    if (!(demi_d3_square(v) > 0)) v = demi_d3_sub(b->centre, a->centre);
+    if (!(demi_d3_square(v) > 0)) v.z = 1;
     s->count = 0;
     for (turn = 0; turn < 100; turn++) {
-        const double back[3] = {-v[0], -v[1], -v[2]};
         double now;
         demi_lead *w = &s->at[s->count];
-        demi_lead_along(a, b, back, w);
-        if (turn && (far - demi_dot3(v, w->x) <= 1e-14*far ||
+        *w = demi_lead_along(a, b, demi_d3_scale(v, -1));
+        if (turn && (far - demi_d3_dot(v, w->x) <= 1e-14*far ||
                      demi_lead_known(s->at, s->count, w))) break;
         had = *s;
-        memcpy(had_v, v, sizeof v);
+        had_v = v;
         s->count++;
-        now = demi_simplex_near(s, v);
+        now = demi_simplex_near(s, &v);
         if (!(now > tiny*tiny)) return 0;
         if (!(now < far)) {                     /* rounding: no nearer */
             *s = had;
-            memcpy(v, had_v, sizeof v);
+            v = had_v;
             break;
         }
         far = now;
     }
-    demi_simplex_normal(s, v, n);
-    for (k = 0; k < 3; k++) if (!(n[k] >= -1 && n[k] <= 1)) return 0;
-    return 1;
+    *n = demi_simplex_normal(s, v);
+    return fabs(n->x) <= 1 && fabs(n->y) <= 1 && fabs(n->z) <= 1;
 }
 
 /* --- overlapping: a polytope that grows about the origin --- */
@@ -15267,49 +15533,41 @@ typedef struct demi_polytope {
     double size;                   /* m, of both bodies: round-off of corners goes by it */
     demi_lead at[DEMI_POLYTOPE];
     struct {
-        double n[3], at;           /* n unit, outward; n.x */
+        demi_d3 n;                 /* unit, outward; 0 of a face without an area */
+        double at;                 /* n.x */
         double blur;               /* error of n, rad: large where the face is thin or small */
         int corner[3];
     } face[2*DEMI_POLYTOPE];
 } demi_polytope;
 /* A face; one without an area is never the nearest, and seen from nowhere. */
 static void demi_polytope_face(demi_polytope *p, int i, int a, int b, int c) {
-    double e[3], f[3], g[3], *n = p->face[i].n, sides, area;
-    demi_sub3(p->at[b].x, p->at[a].x, e);
-    demi_sub3(p->at[c].x, p->at[a].x, f);
-    demi_cross3(e, f, n);
+    const demi_d3 e = demi_d3_sub(p->at[b].x, p->at[a].x), f = demi_d3_sub(p->at[c].x, p->at[a].x);
+    const demi_d3 n = demi_d3_cross(e, f);
+    const double ee = demi_d3_square(e), ff = demi_d3_square(f), area = demi_d3_length(n);
     p->face[i].corner[0] = a; p->face[i].corner[1] = b; p->face[i].corner[2] = c;
+    p->face[i].n = demi_d(0, 0, 0);
+    p->face[i].at = 1e300;
     p->face[i].blur = 0;
-    sides = demi_dot3(e, e)*demi_dot3(f, f);
-    area = demi_unit3(n);
-    if (area > 1e-15*sqrt(sides)) {
-        demi_sub3(f, e, g);
-        sides = DEMI_MAX(demi_dot3(e, e), DEMI_MAX(demi_dot3(f, f), demi_dot3(g, g)));
-        p->face[i].at = demi_dot3(n, p->at[a].x);
-        p->face[i].blur = 1e-15*p->size*sqrt(sides)/area;       /* over the least height */
-    } else {
-        n[0] = n[1] = n[2] = 0;
-        p->face[i].at = 1e300;
+    if (area > 1e-15*sqrt(ee*ff)) {
+        const double gg = demi_d3_square(demi_d3_sub(f, e));
+        p->face[i].n = demi_d3_unit(n);
+        p->face[i].at = demi_d3_dot(p->face[i].n, p->at[a].x);
+        /* over the least height */
+        p->face[i].blur = 1e-15*p->size*sqrt(DEMI_MAX(ee, DEMI_MAX(ff, gg)))/area;
     }
 }
 /* How far x is from the point, the line or the plane of the first corners. */
-static double demi_polytope_off(const demi_polytope *p, const double *x) {
-    double d[3], e[3], f[3], n[3];
-    demi_sub3(x, p->at[0].x, d);
-    if (p->corners == 1) return sqrt(demi_dot3(d, d));
-    demi_sub3(p->at[1].x, p->at[0].x, e);
-    demi_cross3(e, d, n);
-    if (p->corners == 2) return sqrt(demi_dot3(n, n)/demi_dot3(e, e));
-    demi_sub3(p->at[2].x, p->at[0].x, f);
-    demi_cross3(e, f, n);
-    demi_unit3(n);
-    return fabs(demi_dot3(n, d));
+static double demi_polytope_off(const demi_polytope *p, demi_d3 x) {
+    const demi_d3 d = demi_d3_sub(x, p->at[0].x);
+    if (p->corners == 1) return demi_d3_length(d);
+    const demi_d3 e = demi_d3_sub(p->at[1].x, p->at[0].x);
+    if (p->corners == 2) return sqrt(demi_d3_square(demi_d3_cross(e, d))/demi_d3_square(e));
+    return fabs(demi_d3_dot(demi_d3_unit(demi_d3_normal(p->at[0].x, p->at[1].x, p->at[2].x)), d));
 }
 /* The first tetrahedron, from the simplex at which the walk has ended. 0: D is flat. */
 static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const demi_simplex *s,
                                double size, demi_polytope *p) {
-    static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
-    int i, k;
+    int i;
     p->corners = s->count;
     p->size = size;
     for (i = 0; i < s->count; i++) p->at[i] = s->at[i];
@@ -15318,20 +15576,16 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
         if (demi_polytope_off(p, p->at[3].x) > 1e-9*size) p->corners = 4;
     }
     while (p->corners < 4) {
-        double e[3] = {0, 0, 0}, f[3] = {0, 0, 0}, most = 0;
-        demi_lead best, w;
+        double most = 0;
+        demi_lead best;
         memset(&best, 0, sizeof best);
-        if (p->corners > 1) demi_sub3(p->at[1].x, p->at[0].x, e);
-        if (p->corners > 2) demi_sub3(p->at[2].x, p->at[0].x, f);
         for (i = 0; i < 6; i++) {
-            double way[3] = {0, 0, 0}, off;
-            way[i/2] = i & 1 ? -1 : 1;
-            if (p->corners == 2) demi_cross3(e, way, way);
-            if (p->corners == 3) {
-                demi_cross3(e, f, way);
-                for (k = 0; k < 3 && i & 1; k++) way[k] = -way[k];
-            }
-            demi_lead_along(a, b, way, &w);
+            demi_d3 way = demi_d(i/2 == 0, i/2 == 1, i/2 == 2);
+            demi_lead w;
+            double off;
+            if (p->corners == 2) way = demi_d3_cross(demi_d3_sub(p->at[1].x, p->at[0].x), way);
+            if (p->corners == 3) way = demi_d3_normal(p->at[0].x, p->at[1].x, p->at[2].x);
+            w = demi_lead_along(a, b, demi_d3_scale(way, i & 1 ? -1 : 1));
             off = demi_polytope_off(p, w.x);
             if (off > most) { most = off; best = w; }
         }
@@ -15339,9 +15593,9 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
         p->at[p->corners++] = best;
     }
     for (i = 0; i < 4; i++) {
-        const int *c = sides[i];
+        const int *c = demi_sides[i];
         demi_polytope_face(p, i, c[0], c[1], c[2]);
-        if (demi_dot3(p->face[i].n, p->at[c[3]].x) > p->face[i].at)
+        if (demi_d3_dot(p->face[i].n, p->at[c[3]].x) > p->face[i].at)
             demi_polytope_face(p, i, c[0], c[2], c[1]);
     }
     p->faces = 4;
@@ -15351,9 +15605,8 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
    that are coplanar with it some would see it otherwise and some not, and what joins it to their
    rim would be folded. most: of that, m. */
 static double demi_polytope_over(const demi_polytope *p, int i, const demi_lead *w, double most) {
-    double d[3];
-    demi_sub3(w->x, p->at[p->face[i].corner[0]].x, d);
-    return demi_dot3(p->face[i].n, d) - DEMI_MIN(p->face[i].blur*sqrt(demi_dot3(d, d)), most);
+    const demi_d3 d = demi_d3_sub(w->x, p->at[p->face[i].corner[0]].x);
+    return demi_d3_dot(p->face[i].n, d) - DEMI_MIN(p->face[i].blur*demi_d3_length(d), most);
 }
 /* Takes a corner in: faces that see it, the nearest at least, give way to those that join it to
    their rim. 0: no room. */
@@ -15382,27 +15635,25 @@ static int demi_polytope_take(demi_polytope *p, int nearest, const demi_lead *w)
 }
 /* The least way that parts two that overlap: n, from a to b. What ends it early (rounding, no room)
    leaves the least one seen, which parts them, too. */
-static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, double *n,
+static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, demi_d3 *n,
                              demi_simplex *s) {
     demi_polytope p;
     demi_lead w;
     double least = 1e300;
     int i, k, best;
     if (!demi_polytope_begin(a, b, s, size, &p)) {
-        if (!(demi_dot3(n, n) > 0)) n[2] = 1;
-        demi_unit3(n);
+        if (!(demi_d3_square(*n) > 0)) n->z = 1;
+        *n = demi_d3_unit(*n);
         return;
     }
     do {
         double way;
         for (i = 1, best = 0; i < p.faces; i++)
             if (p.face[i].at < p.face[best].at) best = i;
-        demi_lead_along(a, b, p.face[best].n, &w);
-        way = demi_dot3(p.face[best].n, w.x);
-        for (k = 0; k < 3 && way < least; k++) {
-            s->at[k] = p.at[p.face[best].corner[k]];
-            n[k] = -p.face[best].n[k];
-        }
+        w = demi_lead_along(a, b, p.face[best].n);
+        way = demi_d3_dot(p.face[best].n, w.x);
+        for (k = 0; k < 3 && way < least; k++) s->at[k] = p.at[p.face[best].corner[k]];
+        if (way < least) *n = demi_d3_scale(p.face[best].n, -1);
         least = DEMI_MIN(least, way);
     } while (demi_polytope_over(&p, best, &w, 1e-9*size) > 1e-13*size &&
              !demi_lead_known(p.at, p.corners, &w) && demi_polytope_take(&p, best, &w));
@@ -15410,35 +15661,29 @@ static void demi_solids_part(const demi_solid *a, const demi_solid *b, double si
     demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, s->part);
 }
 /* Width of the slab across n that keeps them apart, m; < 0: by how much none does. */
-static double demi_solids_slab(const demi_solid *a, const demi_solid *b, const double *n) {
-    const double back[3] = {-n[0], -n[1], -n[2]};
-    double x[3];
-    demi_sub3(b->corner[demi_solid_far(b, back)], a->corner[demi_solid_far(a, n)], x);
-    return demi_dot3(n, x);
+static double demi_solids_slab(const demi_solid *a, const demi_solid *b, demi_d3 n) {
+    const int far_a = demi_solid_far(a, n), far_b = demi_solid_far(b, demi_d3_scale(n, -1));
+    return demi_d3_dot(n, demi_d3_sub(b->corner[far_b], a->corner[far_a]));
+}
+/* m: how far the farthest corner is from the centre. */
+static double demi_solid_radius(const demi_solid *s) {
+    double far2 = 0;
+    int i;
+    for (i = 0; i < s->corners; i++)
+        far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(s->corner[i], s->centre)));
+    return sqrt(far2);
 }
 /* How far the two are apart, m, < 0: how deep in each other; n: in: where to begin, or 0; out:
    unit, from a to b. s: corners that tell it. */
-static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double *n,
+static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 *n,
                               demi_simplex *s) {
-    double x[3], size = 0, least = 1e300, gap;
-    const demi_solid *bodies[2];
-    int i, k;
-    bodies[0] = a; bodies[1] = b;
-    for (i = 0; i < 2; i++) {
-        double most = 0;
-        for (k = 0; k < bodies[i]->corners; k++) {
-            demi_sub3(bodies[i]->corner[k], bodies[i]->centre, x);
-            most = DEMI_MAX(most, demi_dot3(x, x));
-        }
-        size += sqrt(most);
-        least = DEMI_MIN(least, sqrt(most));
-    }
-    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*least, 1e-14*size), n, s)) {
-        gap = demi_solids_slab(a, b, n);
+    const double ra = demi_solid_radius(a), rb = demi_solid_radius(b), size = ra + rb;
+    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*DEMI_MIN(ra, rb), 1e-14*size), n, s)) {
+        const double gap = demi_solids_slab(a, b, *n);
         if (gap > 0) return gap;
     }
     demi_solids_part(a, b, size, n, s);
-    return demi_solids_slab(a, b, n);
+    return demi_solids_slab(a, b, *n);
 }
 
 /* --- the points by which two keep each other off --- */
@@ -15446,15 +15691,15 @@ static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double *
 /* No more than four: x in the middle between both surfaces, gaps along the normal. */
 typedef struct demi_spots {
     int count;
-    double normal[3];              /* unit, from a to b */
-    double x[4][3], gap[4];        /* m */
+    demi_d3 normal, x[4];          /* unit, from a to b; m */
+    double gap[4];                 /* m */
 } demi_spots;
 /* Of many points across n those that keep most: the deepest, the farthest from it, and on either
    side of the line through both the farthest from that. */
-static int demi_spots_pick(double (*x)[3], const double *gap, int count, const double *n,
-                           int *out) {
-    double d[3], e[3], f[3], most = -1, side[2] = {0, 0};
-    int i, k, picked = 1, far[2] = {-1, -1};
+static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
+    demi_d3 across;
+    double most = -1, side[2] = {0, 0};
+    int i, k, picked = 2, far[2] = {-1, -1};
     if (count <= 4) {
         for (i = 0; i < count; i++) out[i] = i;
         return count;
@@ -15462,29 +15707,41 @@ static int demi_spots_pick(double (*x)[3], const double *gap, int count, const d
     out[0] = out[1] = 0;
     for (i = 1; i < count; i++) if (gap[i] < gap[out[0]]) out[0] = i;
     for (i = 0; i < count; i++) {
-        demi_sub3(x[i], x[out[0]], d);
-        if (demi_dot3(d, d) > most) { most = demi_dot3(d, d); out[1] = i; }
+        const double d2 = demi_d3_square(demi_d3_sub(x[i], x[out[0]]));
+        if (d2 > most) { most = d2; out[1] = i; }
     }
     if (!(most > 0)) return 1;
-    picked = 2;
-    demi_sub3(x[out[1]], x[out[0]], e);
-    demi_cross3(n, e, f);
+    across = demi_d3_cross(n, demi_d3_sub(x[out[1]], x[out[0]]));
     for (i = 0; i < count; i++) {
-        double off;
-        demi_sub3(x[i], x[out[0]], d);
-        off = demi_dot3(f, d);
+        const double off = demi_d3_dot(across, demi_d3_sub(x[i], x[out[0]]));
         k = off < 0;
         if (fabs(off) > side[k] + 1e-9*most) { side[k] = fabs(off); far[k] = i; }
     }
     for (k = 0; k < 2; k++) if (far[k] >= 0) out[picked++] = far[k];
     return picked;
 }
+/* Those of count points across n whose gaps are below range, at most four. Answers how many. */
+static int demi_spots_take(demi_spots *out, demi_d3 *x, double *gap, int count, double range,
+                           demi_d3 n) {
+    int i, left = 0, picked[4];
+    for (i = 0; i < count; i++) {
+        if (!(gap[i] < range)) continue;
+        x[left] = x[i];
+        gap[left++] = gap[i];
+    }
+    out->count = demi_spots_pick(x, gap, left, n, picked);
+    for (i = 0; i < out->count; i++) {
+        out->x[i] = x[picked[i]];
+        out->gap[i] = gap[picked[i]];
+    }
+    return out->count;
+}
 /* The face whose normal is most along n; by how much. */
-static int demi_solid_facing(const demi_solid *s, const double *n, double *along) {
+static int demi_solid_facing(const demi_solid *s, demi_d3 n, double *along) {
     int f, best = -1;
     *along = -2;
     for (f = 0; f < s->faces; f++) {
-        const double c = demi_dot3(s->plane[f], n)*s->plane[f][3];
+        const double c = demi_d3_dot(s->face[f].slope, n)*s->face[f].high;
         if (c > *along) { *along = c; best = f; }
     }
     return best;
@@ -15493,72 +15750,51 @@ static int demi_solid_facing(const demi_solid *s, const double *n, double *along
 #define DEMI_FLUSH 0.9995
 /* Of body b's face that faces face f of a most, what lies over f: points, and gaps over its plane.
    */
-static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, double (*x)[3],
-                           double *gap, double *n) {
-    const int32_t *loop = a->rim + a->faces + 1 + a->rim[f];
-    const int sides = a->rim[f + 1] - a->rim[f];
-    const int32_t *other;
-    double along, back[3], d[3];
-    int g, i, k, count = 0;
-    for (k = 0; k < 3; k++) {
-        n[k] = a->plane[f][k]*a->plane[f][3];
-        back[k] = -n[k];
-    }
-    g = demi_solid_facing(b, back, &along);
+static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi_d3 *x,
+                           double *gap, demi_d3 *n) {
+    const demi_d3 up = *n = demi_d3_scale(a->face[f].slope, a->face[f].high);
+    double along;
+    const int g = demi_solid_facing(b, demi_d3_scale(up, -1), &along);
+    int i, count = 0;
     if (g < 0) return 0;
-    other = b->rim + b->faces + 1;
-    for (i = b->rim[g]; i < b->rim[g + 1]; i++)
-        memcpy(x[count++], b->corner[other[i]], sizeof *x);
-    for (i = 0; i < sides && count; i++) {
-        double e[3], in[3];
-        demi_sub3(a->corner[loop[i + 1 < sides ? i + 1 : 0]], a->corner[loop[i]], e);
-        demi_cross3(n, e, in);
-        count = demi_polygon_clip(x, count, in, a->corner[loop[i]]);
+    for (i = b->rim[g]; i < b->rim[g + 1]; i++) x[count++] = demi_solid_corner(b, g, i);
+    for (i = a->rim[f]; i < a->rim[f + 1] && count; i++) {
+        const demi_d3 o = demi_solid_corner(a, f, i);
+        const demi_d3 e = demi_d3_sub(demi_solid_corner(a, f, i + 1), o);
+        count = demi_polygon_clip(x, count, demi_d3_cross(up, e), o);
     }
     for (i = 0; i < count; i++) {
-        demi_sub3(x[i], a->corner[loop[0]], d);
-        gap[i] = demi_dot3(n, d);
-        for (k = 0; k < 3; k++) x[i][k] -= gap[i]*n[k]/2;
+        gap[i] = demi_d3_dot(up, demi_d3_sub(x[i], demi_solid_corner(a, f, a->rim[f])));
+        x[i] = demi_d3_plus(x[i], -gap[i]/2, up);
     }
     return count;
 }
 /* The contact of two that are no farther apart than range: 0: they are. facet: b is flat, and its
    plane comes first. guess: normal of a step ago, or 0. s: corners that told the gap. */
 static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
-                             const double *guess, demi_simplex *s, demi_spots *out) {
-    double x[DEMI_SECTION][3], gap[DEMI_SECTION], n[3], back[3], on_a, on_b, all, to_b[3];
-    int fa, fb, i, k, second, count = 0, left, picked[4];
-    memcpy(n, guess, sizeof n);
+                             demi_d3 guess, demi_simplex *s, demi_spots *out) {
+    demi_d3 x[DEMI_SECTION], n = guess, back;
+    double gap[DEMI_SECTION], on_a, on_b;
+    const double all = demi_solids_gap(a, b, &n, s);
+    int fa, fb, i, count = 0;
     out->count = 0;
-    all = demi_solids_gap(a, b, n, s);
+    out->normal = n;
     if (!(all < range)) return 0;
-    for (k = 0; k < 3; k++) back[k] = -n[k];
     fa = demi_solid_facing(a, n, &on_a);
-    fb = demi_solid_facing(b, back, &on_b);
-    second = on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9);
-    if (second) {
-        count = demi_faces_over(b, fb, a, x, gap, back);
-        for (k = 0; k < 3; k++) to_b[k] = -back[k];
-    } else if (on_a >= DEMI_FLUSH) count = demi_faces_over(a, fa, b, x, gap, to_b);
-    for (i = 0, left = 0; i < count; i++) {
-        if (!(gap[i] < range)) continue;
-        memmove(x[left], x[i], sizeof *x);
-        gap[left++] = gap[i];
+    fb = demi_solid_facing(b, demi_d3_scale(n, -1), &on_b);
+    if (on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9)) {
+        count = demi_faces_over(b, fb, a, x, gap, &back);
+        out->normal = demi_d3_scale(back, -1);
+    } else if (on_a >= DEMI_FLUSH) count = demi_faces_over(a, fa, b, x, gap, &out->normal);
+    if (demi_spots_take(out, x, gap, count, range, out->normal)) return out->count;
+    out->normal = n;                            /* corners, edges */
+    out->x[0] = demi_d(0, 0, 0);
+    for (i = 0; i < s->count; i++) {
+        const demi_d3 twice = demi_d3_add(a->corner[s->at[i].a], b->corner[s->at[i].b]);
+        out->x[0] = demi_d3_plus(out->x[0], s->part[i]/2, twice);
     }
-    memcpy(out->normal, left ? to_b : n, sizeof n);
-    if (!left) {                                /* corners, edges */
-        for (k = 0; k < 3; k++)
-            for (i = 0, x[0][k] = 0; i < s->count; i++)
-                x[0][k] += s->part[i]*(a->corner[s->at[i].a][k] + b->corner[s->at[i].b][k])/2;
-        gap[0] = all;
-        left = 1;
-    }
-    out->count = demi_spots_pick(x, gap, left, out->normal, picked);
-    for (i = 0; i < out->count; i++) {
-        memcpy(out->x[i], x[picked[i]], sizeof *x);
-        out->gap[i] = gap[picked[i]];
-    }
-    return out->count;
+    out->gap[0] = all;
+    return out->count = 1;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -15573,80 +15809,108 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
-/* Room in which the places of one body and one wall are found. candidates: how many there are. */
-DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
-    const demi_domain *domain = &w->domains[d];
+/* The candidates of one body on one wall, which it may touch. In a periodic world several
+   images of the body may be near the wall; demi_view_next steps through them in list order. */
+typedef struct demi_view {
+    const dem_world *w;
+    const demi_wall *wall;
+    int d;                         /* domain */
+    dem_real gone;                 /* m: a candidate with a larger gap is not near yet */
+    dem_vec3 at;                   /* m, centre of the part of the body, in the world */
+    const int32_t *element;        /* of the candidates of this image, count of them */
+    const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
+    int count, left;               /* left: count and those of the images to come */
+    dem_vec3 shift, x;             /* m: from body to image; the part in the wall's frame */
+} demi_view;
+/* The view of candidates first .. last - 1 of domain d, before its first image; `at` is not set. */
+DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last) {
+    const int k = d*w->wall_stride + first;
+    demi_view v;
+    v.w = w;
+    v.wall = &w->walls[w->wall_id[k]];
+    v.d = d;
+    v.gone = demi_walls_gone(w);
+    v.element = w->wall_element + k;
+    v.gap = w->wall_gap + k;
+    v.from = w->wall_shift + 3*(size_t)k;
+    v.count = 0;
+    v.left = last - first;
+    return v;
+}
+/* Goes on to the next image; 0: there is none. */
+DEM_INLINE int demi_view_next(demi_view *v) {
+    v->element += v->count;
+    v->gap += v->count;
+    v->from += 3*v->count;
+    v->left -= v->count;
+    v->count = v->left;
+    if (!v->left) return 0;
+    if (v->w->repeating)
+        for (v->count = 1; v->count < v->left &&
+             !memcmp(v->from, v->from + 3*v->count, 3*sizeof *v->from); v->count++) continue;
+    v->shift = demi_at(v->from);
+    v->x = demi_unrotate(v->wall->pose.rotation,
+                         demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
+    return 1;
+}
+/* Room (at) in which the places of one body and one wall are found. */
+DEM_INLINE demi_places demi_places_begin(const demi_view *v, demi_touching *at) {
     demi_places p;
     memset(&p, 0, sizeof p);
-    p.at = w->touching + domain->touching_first;
-    if (candidates > 10) {
+    p.at = at;
+    if (v->left > 10) {
         uint32_t size = 64;
-        while (size < 2*7*(uint32_t)candidates) size *= 2;
-        p.table = w->touching_table + 4*domain->touching_first;
+        while (size < 2*7*(uint32_t)v->left) size *= 2;
+        p.table = v->w->touching_table + 4*v->w->domains[v->d].touching_first;
         p.mask = size - 1;
         memset(p.table, 0, size*sizeof *p.table);
     }
     return p;
 }
-/* Candidates from k on that see the wall from the same image of their body: the end of them. */
-DEM_INLINE int demi_image_end(const dem_world *w, int base, int k, int last) {
-    const dem_real *s = w->wall_shift + 3*(size_t)(base + k);
-    int end = k + 1;
-    if (!w->repeating) return last;
-    while (end < last && !memcmp(s, w->wall_shift + 3*(size_t)(base + end), 3*sizeof *s)) end++;
-    return end;
+/* Can candidate k, a facet, be nearer than `within`? No where its gap has not closed, or its plane
+   is farther off. */
+DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
+    const dem_real *plane = DEMI_AT(v->wall->planes, v->element[k]);
+    const dem_real off = plane[0]*v->x.x + plane[1]*v->x.y + plane[2]*v->x.z - plane[3];
+    return !(v->gap[k] > v->gone) &&
+           !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
-/* Can candidate k, an element of a wall, be nearer than `within` to a place? No where its gap has
-   not closed, or its plane is farther off. */
-DEM_INLINE int demi_facet_near(const dem_world *w, const demi_wall *wall, int k, dem_real gone,
-                               dem_vec3 x, dem_real within) {
-    const dem_real *plane = DEMI_AT(wall->planes, w->wall_element[k]);
-    const dem_real off = plane[0]*x.x + plane[1]*x.y + plane[2]*x.z - plane[3];
-    return !(w->wall_gap[k] > gone) &&
-           !(DEMI_ABS(off) > within*DEM_R(1.001) + wall->plane_slack);
-}
-/* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
-   the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
-   measure, r less the distance or 1 - W0, as overlaps; range: what is nearer than that, too, with
-   overlaps below 0. In the world. */
-static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                             dem_vec3 at, dem_real r, const demi_part *part, dem_real range,
-                             demi_touching **out) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+/* Where an ellipsoid (part; null: a sphere of radius r) touches a surface of facets: normals,
+   points and shares, and what is left of its measure, r less the distance or 1 - W0, as overlaps;
+   range: what is nearer than that, too, with overlaps below 0. In the world. */
+static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part *part,
+                             dem_real range, demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const dem_real *R = wall->pose.rotation;
     const dem_real touch = part ? DEM_R(1) : r;
     const dem_real within = touch + (part ? range/demi_part_thin(part) : range);
-    demi_places p = demi_places_begin(w, d, last - first);
+    demi_places p = demi_places_begin(start, out);
     const int numbers = wall->number_count;
-    int k, q, from, end, one, reached;
-    for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+    int k, q, from, one, reached;
+    for (; demi_view_next(&v); p.offset += numbers) {
         from = p.count;
-        end = demi_image_end(w, base, k, last);
-        for (q = k, one = end, reached = 0; q < end && !part; q++) {
-            if (!demi_facet_near(w, wall, base + q, gone, x, within)) continue;
+        for (q = 0, one = v.count, reached = 0; q < v.count && !part; q++) {
+            if (!demi_facet_near(&v, q, within)) continue;
             if (!reached++) one = q;
         }
         if (reached == 1 && wall->lone) {
-            demi_facet_alone(wall, w->wall_element[base + one], x, within, &p);
-            if (p.count > from) p.at[from].shift = shift;
+            demi_facet_alone(wall, v.element[one], v.x, within, &p);
+            if (p.count > from) p.at[from].shift = v.shift;
             continue;
         }
-        for (q = one; q < end; q++)             /* spheres have a copy of the code for them */
-            if (demi_facet_near(w, wall, base + q, gone, x, within))
-                demi_facet_places(wall, w->wall_element[base + q], x, 0, within, &p);
-        for (q = k; q < end && part; q++)
-            if (!(w->wall_gap[base + q] > gone))
-                demi_facet_places(wall, w->wall_element[base + q], x, part, within, &p);
+        for (q = one; q < v.count; q++)         /* spheres have a copy of the code for them */
+            if (demi_facet_near(&v, q, within))
+                demi_facet_places(wall, v.element[q], v.x, 0, within, &p);
+        for (q = 0; q < v.count && part; q++)
+            if (!(v.gap[q] > v.gone))
+                demi_facet_places(wall, v.element[q], v.x, part, within, &p);
         for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
         if (q < p.count)                        /* something takes away: more than it should? */
-            demi_places_rings(wall, w->wall_element + base + k, end - k, x, part, within,
-                              demi_normal_is(w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
-                              w->touching_links +
-                              w->domains[d].touching_first, &p);
-        for (q = from; q < p.count; q++) p.at[q].shift = shift;
+            demi_places_rings(wall, v.element, v.count, v.x, part, within,
+                              demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
+                              v.w->touching_links + v.w->domains[v.d].touching_first, &p);
+        for (q = from; q < p.count; q++) p.at[q].shift = v.shift;
     }
     if (p.count > 1 || (p.count && p.at->share < 1))
         demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
@@ -15662,20 +15926,16 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
         n = t->overlap > 0 ? demi_scale(n, 1/demi_length(n)) : demi_v(0, 0, -1);
         t->overlap = touch - t->overlap;
         t->normal = demi_rotate(R, n);
-        t->point = demi_add(at, demi_rotate(R, to));
+        t->point = demi_add(v.at, demi_rotate(R, to));
     }
-    *out = p.at;
     return p.count;
 }
-/* --- where one part of a body, a sphere or an ellipsoid, touches one wall, from the candidates
-       first .. last - 1 of its body, those no farther than `gone`: normals, points, overlaps (of an
-       ellipsoid 1 - W0) and shares, in the world. at: its centre. --- */
-typedef int (*demi_touch_fn)(const dem_world *w, int d, int first, int last, dem_real gone,
-                             dem_vec3 at, const demi_part *part, demi_touching **places);
-static int demi_facets_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0,
-                             demi_range(w, part->radius), places);
+/* --- where one part of a body touches one wall, from its view before the first image: normals,
+       points, overlaps (of an ellipsoid 1 - W0) and shares, in the world, into `out`, the room of
+       its domain. --- */
+typedef int (*demi_touch_fn)(const demi_view *v, const demi_part *part, demi_touching *out);
+static int demi_facets_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_facets_touch(v, part->radius, 0, demi_range(v->w, part->radius), out);
 }
 /* Where a sphere touches a surface of revolution: pieces between their ends, rings where it lies
    beyond the ends of all pieces that meet there; a ring between two pieces that it touches takes
@@ -15716,33 +15976,27 @@ static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, de
    of so much larger a radius finds them); how: 0: as it is near to them, 1: as
    segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
    are. */
-DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                  dem_vec3 at, dem_real radius, demi_touching **places, int how,
-                                  demi_near_fn near) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const dem_real *R = wall->pose.rotation, range = demi_range(w, radius), r = radius + range;
-    demi_touching *out;
-    int k, q, end, count = 0;
-    *places = out = w->touching + w->domains[d].touching_first;
-    for (k = first; k < last; k = end) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+DEM_INLINE int demi_spheres_touch(const demi_view *start, dem_real radius, demi_touching *out,
+                                  int how, demi_near_fn near) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
+    const dem_real *R = wall->pose.rotation, range = demi_range(v.w, radius), r = radius + range;
+    int k, q, count = 0;
+    while (demi_view_next(&v)) {
         const int from = count;
-        end = demi_image_end(w, base, k, last);
-        if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, range, out + count);
-        else if (how == 3) count += demi_revolved_touch(wall, x, r, out + count);
-        else for (; k < end; k++) {
+        if (how == 2) count += demi_sieve_touch(&wall->sieve, v.x, r, range, out + count);
+        else if (how == 3) count += demi_revolved_touch(wall, v.x, r, out + count);
+        else for (k = 0; k < v.count; k++) {
             demi_touching *c = &out[count];
-            if (w->wall_gap[base + k] > gone) continue;
-            c->element = w->wall_element[base + k];
+            if (v.gap[k] > v.gone) continue;
+            c->element = v.element[k];
             c->share = wall->share;
             if (how == 1) {
-                c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
+                c->share = demi_segment_share(wall, c->element, v.x, r, &c->normal, &c->point,
                                               &c->overlap);
                 if (!(c->share > 0)) continue;
             } else {
-                c->overlap = near(wall, c->element, x, r, &c->normal, &c->point);
+                c->overlap = near(wall, c->element, v.x, r, &c->normal, &c->point);
                 if (!(c->overlap > 0)) continue;
             }
             count++;
@@ -15751,40 +16005,30 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
             out[q].overlap -= range;
             out[q].normal = demi_rotate(R, out[q].normal);
             out[q].point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, out[q].point)),
-                                    shift);
-            out[q].shift = shift;
+                                    v.shift);
+            out[q].shift = v.shift;
         }
     }
     return count;
 }
-static int demi_plane_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                              dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
-                              demi_plane_near);
+static int demi_plane_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 0, demi_plane_near);
 }
-static int demi_cylinder_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
-                              demi_cylinder_near);
+static int demi_cylinder_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 0, demi_cylinder_near);
 }
 /* Any other wall of elements. */
-static int demi_elements_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int kind = w->walls[w->wall_id[d*w->wall_stride + first]].kind;
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
-                              demi_nears[kind]);
+static int demi_elements_touch(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 0, demi_nears[v->wall->kind]);
 }
-static int demi_segments_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1, 0);
+static int demi_segments_touch(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 1, 0);
 }
-static int demi_revolved_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 3, 0);
+static int demi_revolved_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 3, 0);
 }
-static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
-                              dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2, 0);
+static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_spheres_touch(v, part->radius, out, 2, 0);
 }
 
 /* --- an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
@@ -15922,56 +16166,44 @@ static demi_part demi_part_local(const dem_real *R, const demi_part *p) {
     local.q = demi_quat_unit(dem_quat_multiply(demi_quat_of(turn), p->q));
     return local;
 }
-static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + first]];
-    const demi_part local = demi_part_local(wall->pose.rotation, part);
-    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, demi_range(w, part->radius),
-                             places);
+static int demi_facets_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    const demi_part local = demi_part_local(v->wall->pose.rotation, part);
+    return demi_facets_touch(v, 0, &local, demi_range(v->w, part->radius), out);
 }
 /* An ellipsoid and a wall, element by element. */
-static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places,
+static int demi_ellipsoid_touch(const demi_view *start, const demi_part *part, demi_touching *out,
                                 demi_ellipsoid_fn on) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const dem_real *R = wall->pose.rotation;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const dem_real range = demi_range(w, part->radius);
+    const dem_real range = demi_range(v.w, part->radius);
     const int two = wall->inside;
-    demi_touching *out;
-    dem_vec3 x, shift;
     int i, count = 0;
-    *places = out = w->touching + w->domains[d].touching_first;
-    for (i = first; i < last + two; i++) {
-        demi_touching *c = &out[count];
-        if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
-        shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
-        x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        c->element = i < last ? w->wall_element[base + i] : 1;
-        c->overlap = on(wall, c->element, &local, x, range, &c->normal, &c->point);
-        if (!(c->overlap > 0) && !(c->overlap > -range/demi_part_thin(&local))) continue;
-        c->normal = demi_rotate(R, c->normal);
-        if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
-        c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
-        c->shift = shift;
-        c->share = wall->share;
-        count++;
-    }
+    while (demi_view_next(&v))
+        for (i = 0; i < v.count + two; i++) {
+            demi_touching *c = &out[count];
+            if (v.gap[DEMI_MIN(i, v.count - 1)] > v.gone) continue;
+            c->element = i < v.count ? v.element[i] : 1;
+            c->overlap = on(wall, c->element, &local, v.x, range, &c->normal, &c->point);
+            if (!(c->overlap > 0) && !(c->overlap > -range/demi_part_thin(&local))) continue;
+            c->normal = demi_rotate(R, c->normal);
+            if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
+            c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), v.shift);
+            c->shift = v.shift;
+            c->share = wall->share;
+            count++;
+        }
     return count;
 }
-static int demi_plane_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_plane);
+static int demi_plane_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_plane);
 }
-static int demi_cylinder_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                   dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places,
-                                demi_ellipsoid_on_cylinder);
+static int demi_cylinder_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_cylinder);
 }
-static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
+static int demi_grain_ellipsoid(const demi_view *v, const demi_part *part, demi_touching *out) {
+    return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_grain);
 }
 
 /* --- how the normal of a ball's contact with a wall turns as the ball moves, all in the wall's
@@ -16078,7 +16310,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
     const dem_sieve_desc *s = &wall->sieve;
     const dem_vec3 n = b->normal, p = b->point;
     const dem_real R = s->radius, hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int wires = demi_sieve_wires(s);
     const int upright = !wires && s->thickness > 0 && DEMI_ABS(n.z) < hair;
     const int corner = b->number == DEMI_SIEVE_RIM + 1;      /* of a strip, or on the rim between */
     const int cross = b->number < DEMI_SIEVE_FACE && (b->number & DEMI_SIEVE_CROSS);
@@ -16140,13 +16372,13 @@ typedef struct demi_flats {
     demi_pressure press[DEMI_FLATS];
 } demi_flats;
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
-    const double size = sqrt(demi_dot3(s->force, s->force));
+    const double size = demi_d3_length(s->force);
     double most = -2;
     int i, best = 0;
     if (!(s->sum > 0) || !(size > 0)) return;
     for (i = 0; i < f->count; i++) {
-        const double *F = f->press[i].force;
-        const double along = demi_dot3(F, s->force)/(size*sqrt(demi_dot3(F, F)));
+        const demi_d3 F = f->press[i].force;
+        const double along = demi_d3_dot(F, s->force)/(size*demi_d3_length(F));
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && f->count < DEMI_FLATS) {
@@ -16187,17 +16419,16 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }
-/* Places of all of them, found in a frame of axes R. share: the wall's. */
-static int demi_flats_places(const demi_flats *f, const dem_real *R, dem_real share,
-                             const demi_part *part, dem_vec3 at, dem_vec3 shift,
-                             demi_touching *out) {
+/* Places of all of them, found in a frame of axes R. */
+static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
+                             const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
     int i, k, count = 0;
     for (i = 0; i < f->count; i++) {
         shared += f->press[i].shared;
-        force += sqrt(demi_dot3(f->press[i].force, f->press[i].force));
+        force += demi_d3_length(f->press[i].force);
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
@@ -16208,53 +16439,49 @@ static int demi_flats_places(const demi_flats *f, const dem_real *R, dem_real sh
             t->corner = k;
             t->corners = 4;
             t->overlap = (dem_real)overlap;
-            t->share = share*(dem_real)(p.force/(4*force));
+            t->share = v->wall->share*(dem_real)(p.force/(4*force));
             t->slope = (dem_real)demi_shared_slope(force, r, overlap);
             t->deep = (dem_real)f->press[i].deep;
             t->couple = p.couple;
             t->normal = demi_rotate(R, p.normal);
             t->spread = demi_rotate(R, demi_patch_spread(&p, k));
-            t->point = demi_add(demi_add(at, demi_rotate(R, p.point)), t->spread);
-            t->shift = shift;
+            t->point = demi_add(demi_add(v->at, demi_rotate(R, p.point)), t->spread);
+            t->shift = v->shift;
         }
     }
     return count;
 }
+/* Writes the corners of an element, about an origin in the wall's frame, and returns their number.
+   A line of a profile, which goes on along z, gets a third one above its first, so that it has the
+   normal of a triangle. */
+static int demi_facet_corners(const demi_wall *wall, int element, dem_vec3 origin, demi_d3 *x) {
+    const int corners = demi_wall_kinds[wall->kind].corners;
+    dem_vec3 y[3];
+    int i;
+    demi_wall_corners(wall, element, y);
+    for (i = 0; i < corners; i++) x[i] = demi_d3_of(demi_sub(y[i], origin));
+    if (corners == 3) return 3;
+    x[0].z = x[1].z = 0;
+    x[2] = demi_d(x[0].x, x[0].y, 1);
+    return 2;
+}
 /* The sides of an element of a surface, as half spaces: how many; its plane into n and at, n along
    or (way < 0) against the way its corners turn. 0: it is too thin. origin: of the axes, in the
    wall's frame. */
-static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, int way, double *n,
-                            double *at, double (*sides)[2][3]) {
-    const int corners = demi_wall_kinds[wall->kind].corners;
-    dem_vec3 y[3];
-    double x[3][3], e[3], f[3], up[3];
-    int i, k;
-    demi_wall_corners(wall, element, y);
+static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, int way,
+                            demi_d3 *n, double *at, demi_half *sides) {
+    demi_d3 x[3], up;
+    const int corners = demi_facet_corners(wall, element, origin, x);
+    int i;
+    up = demi_d3_normal(x[0], x[1], x[2]);
     for (i = 0; i < corners; i++) {
-        const dem_vec3 d = demi_sub(y[i], origin);
-        x[i][0] = (double)d.x; x[i][1] = (double)d.y; x[i][2] = (double)d.z;
+        const demi_d3 e = demi_d3_sub(x[(i + 1)%corners], x[i]);
+        sides[i].n = corners == 2 ? e : demi_d3_cross(up, e);   /* a line is drawn out along z */
+        sides[i].o = x[i];
     }
-    demi_sub3(x[1], x[0], e);
-    if (corners == 2) {                         /* a line, drawn out along z */
-        up[0] = e[1]; up[1] = -e[0]; up[2] = 0;
-        for (i = 0; i < 2; i++)
-            for (k = 0; k < 3; k++) {
-                sides[i][0][k] = i ? -e[k] : e[k];
-                sides[i][1][k] = x[i][k];
-            }
-        sides[0][0][2] = sides[1][0][2] = 0;
-    } else {
-        demi_sub3(x[2], x[0], f);
-        demi_cross3(e, f, up);
-        for (i = 0; i < 3; i++) {
-            demi_sub3(x[(i + 1)%3], x[i], e);
-            demi_cross3(up, e, sides[i][0]);
-            memcpy(sides[i][1], x[i], sizeof x[i]);
-        }
-    }
-    if (!(demi_unit3(up) > 0)) return 0;
-    for (k = 0; k < 3; k++) n[k] = way < 0 ? -up[k] : up[k];
-    *at = demi_dot3(n, x[0]);
+    if (!(demi_d3_length(up) > 0)) return 0;
+    *n = demi_d3_scale(demi_d3_unit(up), way < 0 ? -1 : 1);
+    *at = demi_d3_dot(*n, x[0]);
     return corners;
 }
 /* --- by how much a polyhedron is apart from walls, and the points that keep it off: for impulses,
@@ -16265,7 +16492,8 @@ enum { DEMI_GAP_POINTS = 24 };
 typedef struct demi_gap_group {
     int32_t element;                           /* the first */
     int count;
-    double x[DEMI_GAP_POINTS][3], n[DEMI_GAP_POINTS][3], gap[DEMI_GAP_POINTS];
+    demi_d3 x[DEMI_GAP_POINTS], n[DEMI_GAP_POINTS];
+    double gap[DEMI_GAP_POINTS];
 } demi_gap_group;
 typedef struct demi_gaps {
     int count, flat;               /* flat: what pushes within 60 degrees of z alone (of plates) */
@@ -16278,20 +16506,19 @@ static void demi_gap_group_pick(demi_gap_group *g) {
     int picked[4], i;
     g->count = demi_spots_pick(g->x, g->gap, g->count, g->n[0], picked);
     for (i = 0; i < g->count; i++) {
-        memcpy(g->x[i], all.x[picked[i]], sizeof *g->x);
-        memcpy(g->n[i], all.n[picked[i]], sizeof *g->n);
+        g->x[i] = all.x[picked[i]];
+        g->n[i] = all.n[picked[i]];
         g->gap[i] = all.gap[picked[i]];
     }
 }
 /* n: unit, from the polyhedron into the wall. */
-static void demi_gaps_add(demi_gaps *gaps, int32_t element, const double *n, const double *x,
-                          double gap) {
+static void demi_gaps_add(demi_gaps *gaps, int32_t element, demi_d3 n, demi_d3 x, double gap) {
     demi_gap_group *g;
     double most = -2;
     int i, best = 0;
-    if (!(gap < gaps->range) || (gaps->flat && fabs(n[2]) < 0.5)) return;
+    if (!(gap < gaps->range) || (gaps->flat && fabs(n.z) < 0.5)) return;
     for (i = 0; i < gaps->count; i++) {
-        const double along = demi_dot3(gaps->group[i].n[0], n);
+        const double along = demi_d3_dot(gaps->group[i].n[0], n);
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && gaps->count < DEMI_FLATS) {
@@ -16301,18 +16528,17 @@ static void demi_gaps_add(demi_gaps *gaps, int32_t element, const double *n, con
     }
     g = &gaps->group[best];
     if (g->count == DEMI_GAP_POINTS) demi_gap_group_pick(g);
-    memcpy(g->x[g->count], x, sizeof *g->x);
-    memcpy(g->n[g->count], n, sizeof *g->n);
+    g->x[g->count] = x;
+    g->n[g->count] = n;
     g->gap[g->count++] = gap;
 }
 /* A plane z = 0 of the wall's frame: corners. height: of the origin over it. */
 static void demi_plane_gaps(const demi_solid *s, double height, demi_gaps *gaps) {
-    static const double down[3] = {0, 0, -1};
     int i;
     for (i = 0; i < s->corners; i++) {
-        const double gap = s->corner[i][2] + height;
-        const double x[3] = {s->corner[i][0], s->corner[i][1], s->corner[i][2] - gap/2};
-        demi_gaps_add(gaps, 0, down, x, gap);
+        const demi_d3 c = s->corner[i];
+        const double gap = c.z + height;
+        demi_gaps_add(gaps, 0, demi_d(0, 0, -1), demi_d(c.x, c.y, c.z - gap/2), gap);
     }
 }
 /* A facet as a body: a triangle, or what a profile's line sweeps from reach below to reach above
@@ -16321,34 +16547,31 @@ static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin,
                             demi_solid *f) {
     static const int32_t triangle[9] = {0, 3, 6, 0, 1, 2, 0, 2, 1};
     static const int32_t strip[11] = {0, 4, 8, 0, 1, 2, 3, 0, 3, 2, 1};
-    dem_vec3 y[3];
-    double e[3], g[3];
-    int i, k;
-    demi_wall_corners(wall, element, y);
+    demi_d3 x[3], up;
+    const int line = demi_facet_corners(wall, element, origin, x) == 2;
+    int i;
     f->faces = 2;
-    f->corners = demi_wall_kinds[wall->kind].corners == 2 ? 4 : 3;
-    f->rim = f->corners == 4 ? strip : triangle;
-    f->centre[0] = f->centre[1] = f->centre[2] = 0;
+    f->corners = line ? 4 : 3;
+    f->rim = line ? strip : triangle;
+    f->centre = demi_d(0, 0, 0);
     for (i = 0; i < f->corners; i++) {
-        const dem_vec3 d = demi_sub(y[f->corners == 3 ? i : i == 1 || i == 2], origin);
-        double *c = f->corner[i];
-        c[0] = (double)d.x; c[1] = (double)d.y;
-        c[2] = f->corners == 3 ? (double)d.z : i < 2 ? -reach : reach;
-        for (k = 0; k < 3; k++) f->centre[k] += c[k]/f->corners;
+        demi_d3 *c = &f->corner[i];
+        *c = x[line ? i == 1 || i == 2 : i];
+        if (line) c->z = i < 2 ? -reach : reach;
+        f->centre = demi_d3_add(f->centre, demi_d3_over(*c, f->corners));
     }
-    demi_sub3(f->corner[1], f->corner[0], e);
-    demi_sub3(f->corner[2], f->corner[0], g);
-    demi_cross3(e, g, f->plane[0]);
-    if (!(demi_unit3(f->plane[0]) > 0)) return 0;
-    for (k = 0; k < 3; k++) f->plane[1][k] = -f->plane[0][k];
-    f->plane[0][3] = f->plane[1][3] = 1;        /* unit normals, for those who ask for no more */
+    up = demi_d3_normal(f->corner[0], f->corner[1], f->corner[2]);
+    if (!(demi_d3_length(up) > 0)) return 0;
+    f->face[0].slope = demi_d3_unit(up);
+    f->face[1].slope = demi_d3_scale(f->face[0].slope, -1);
+    f->face[0].high = f->face[1].high = 1;      /* unit normals, for those who ask for no more */
     return 1;
 }
 /* Is the facet's part that tells a gap, an edge or a corner (own: which of its corners), what the
    surface has nearest there? Not where another facet that has the same edge, or corner, goes on
    towards the body: that one tells its own. n: unit, from the body. */
 static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int count,
-                              const dem_vec3 *own, int owns, const double *n) {
+                              const dem_vec3 *own, int owns, demi_d3 n) {
     int i, k, e;
     for (i = 0; i < count; i++) {
         dem_vec3 y[3];
@@ -16365,8 +16588,7 @@ static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int c
                 const dem_vec3 edge = demi_unit(demi_sub(own[1], own[0]));
                 way = demi_sub(way, demi_scale(edge, demi_dot(way, edge)));
             }
-            if (-(n[0]*(double)way.x + n[1]*(double)way.y + n[2]*(double)way.z) >
-                1e-9*(double)demi_length(way)) return 0;
+            if (-demi_d3_dot(n, demi_d3_of(way)) > 1e-9*(double)demi_length(way)) return 0;
         }
     }
     return 1;
@@ -16375,35 +16597,25 @@ static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int c
    without end. 0: none. */
 static int demi_facet_under(const demi_solid *s, const demi_solid *f, double range,
                             demi_spots *out) {
-    double x[DEMI_SECTION][3], gap[DEMI_SECTION], up[3];
-    int picked[4], i, k, left = 0, count;
-    count = demi_faces_over(f, demi_dot3(f->plane[0], f->corner[0]) > 0, s, x, gap, up);
-    for (i = 0; i < count; i++) {
-        if (!(gap[i] < range)) continue;
-        memmove(x[left], x[i], sizeof *x);
-        gap[left++] = gap[i];
-    }
-    for (k = 0; k < 3; k++) out->normal[k] = -up[k];
-    out->count = left ? demi_spots_pick(x, gap, left, up, picked) : 0;
-    for (i = 0; i < out->count; i++) {
-        memcpy(out->x[i], x[picked[i]], sizeof *x);
-        out->gap[i] = gap[picked[i]];
-    }
-    return out->count;
+    demi_d3 x[DEMI_SECTION], up;
+    double gap[DEMI_SECTION];
+    const int side = demi_d3_dot(f->face[0].slope, f->corner[0]) > 0;
+    const int count = demi_faces_over(f, side, s, x, gap, &up);
+    out->normal = demi_d3_scale(up, -1);
+    return demi_spots_take(out, x, gap, count, range, up);
 }
 /* One facet. among: all that are near. Deep in it by little beside an edge that goes on, the least
    way out leads over the edge, into the facet beyond; then it is told as if it had no end. */
 static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
                               const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
-    static const double anywhere[3] = {0, 0, 0};
     demi_simplex tells;
     demi_solid f;
     demi_spots spots;
     dem_vec3 y[3], own[3];
     int i, k, owns = 0, has[3] = {0, 0, 0};
     if (!demi_facet_solid(wall, element, x, reach, &f) ||
-        !demi_solids_spots(s, &f, 1, gaps->range, anywhere, &tells, &spots)) return;
-    if (fabs(demi_dot3(spots.normal, f.plane[0])) < DEMI_FLUSH) {
+        !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
+    if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
         demi_wall_corners(wall, element, y);
         for (i = 0; i < tells.count; i++) {
@@ -16422,52 +16634,46 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
 }
 /* Places of all of them: by impulses the four of each direction that count; by a law with a range
    the nearest of all of a direction in which nothing presses, four times. pressed: how many places
-   are there already. */
-static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const dem_real *R, dem_real share,
-                            const demi_part *part, dem_vec3 at, dem_vec3 shift,
-                            const demi_touching *there, int pressed, demi_touching *out) {
-    const int impulsive = demi_impulsive(w);
+   there are before `out`. */
+static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real *R,
+                            const demi_part *part, int pressed, demi_touching *out) {
+    const int pressing = demi_response_is(v->w, DEMI_PRESSING);
     int i, k, e, count = 0;
     for (i = 0; i < gaps->count; i++) {
         demi_gap_group *g = &gaps->group[i];
         int nearest = 0, places = 4;
-        if (impulsive) {
+        if (!pressing) {
             demi_gap_group_pick(g);
             places = g->count;
         }
         for (k = 1; k < g->count; k++) if (g->gap[k] < g->gap[nearest]) nearest = k;
         for (k = 0; k < places; k++) {
             demi_touching *t = &out[count];
-            e = impulsive ? k : nearest;
+            e = pressing ? nearest : k;
             memset(t, 0, sizeof *t);
             t->element = g->element;
             t->corner = k;
             t->corners = places;
             t->overlap = (dem_real)-g->gap[e];
-            t->share = share/(dem_real)places;
+            t->share = v->wall->share/(dem_real)places;
             t->slope = 1;
             t->deep = t->overlap/demi_part_thin(part);
-            t->normal = demi_rotate(R, demi_v((dem_real)g->n[e][0], (dem_real)g->n[e][1],
-                                              (dem_real)g->n[e][2]));
-            t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)g->x[e][0],
-                                                          (dem_real)g->x[e][1],
-                                                          (dem_real)g->x[e][2])));
-            t->shift = shift;
-            for (e = 0; e < pressed; e++)
-                if (demi_dot(there[e].normal, t->normal) > DEM_R(0.95)) break;
-            if (e < pressed || (!impulsive && !(t->overlap < 0))) break;
+            t->normal = demi_rotate(R, demi_d3_real(g->n[e]));
+            t->point = demi_add(v->at, demi_rotate(R, demi_d3_real(g->x[e])));
+            t->shift = v->shift;
+            for (e = 1; e <= pressed; e++)
+                if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
+            if (e <= pressed || (pressing && !(t->overlap < 0))) break;
             count++;
         }
     }
     return count;
 }
 /* Places of both, of one image of the body. */
-static int demi_wall_places(const dem_world *w, const demi_flats *flats, demi_gaps *gaps,
-                            const dem_real *R, dem_real share, const demi_part *part, dem_vec3 at,
-                            dem_vec3 shift, demi_touching *out) {
-    const int pressed = demi_flats_places(flats, R, share, part, at, shift, out);
-    return pressed + demi_gaps_places(w, gaps, R, share, part, at, shift, out, pressed,
-                                      out + pressed);
+static int demi_wall_places(const demi_view *v, const demi_flats *flats, demi_gaps *gaps,
+                            const dem_real *R, const demi_part *part, demi_touching *out) {
+    const int pressed = demi_flats_places(v, flats, R, part, out);
+    return pressed + demi_gaps_places(v, gaps, R, part, pressed, out + pressed);
 }
 /* Sides of an element where its sheet ends: bits. There it is alone, or one of three or more; not
    where another lies along part of it. */
@@ -16500,37 +16706,21 @@ DEM_INLINE int32_t demi_sheet_of(const demi_wall *wall, int element) {
     const int32_t own = wall->sheet[element];
     return own < 0 ? -own : own;
 }
-/* m2: how far a segment is from the origin. */
-static double demi_segment_near2(const double *p, const double *q) {
-    double part[2], d2 = 0;
-    int k;
-    demi_near_segment(p, q, part);
-    for (k = 0; k < 3; k++) d2 += (part[0]*p[k] + part[1]*q[k])*(part[0]*p[k] + part[1]*q[k]);
-    return d2;
-}
 /* within: m, how far the body reaches. */
 static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin,
                             double within) {
     const int32_t sheet = demi_sheet_of(wall, element);
-    const int corners = demi_wall_kinds[wall->kind].corners, open = demi_facet_ends(wall, element);
-    double x[3][3], part[3] = {0, 0, 0}, e[3], f[3] = {0, 0, 1}, up[3], v[3], d2, over;
-    dem_vec3 y[3];
+    const int open = demi_facet_ends(wall, element);
+    double part[3] = {0, 0, 0}, d2, over;
+    demi_d3 x[3], up;
+    const int corners = demi_facet_corners(wall, element, origin, x);
     int i, k;
-    demi_wall_corners(wall, element, y);
-    for (i = 0; i < corners; i++) {
-        const dem_vec3 d = demi_sub(y[i], origin);
-        x[i][0] = (double)d.x; x[i][1] = (double)d.y; x[i][2] = corners == 2 ? 0 : (double)d.z;
-    }
-    demi_sub3(x[1], x[0], e);
-    if (corners == 3) demi_sub3(x[2], x[0], f);
+    up = demi_d3_normal(x[0], x[1], x[2]);
+    if (!(demi_d3_length(up) > 0)) return;
     if (corners == 3) demi_near_triangle(x[0], x[1], x[2], part);
     else demi_near_segment(x[0], x[1], part);
-    demi_cross3(e, f, up);
-    if (!(demi_unit3(up) > 0)) return;
-    for (k = 0; k < 3; k++)
-        for (i = 0, v[k] = 0; i < corners; i++) v[k] += part[i]*x[i][k];
-    d2 = demi_dot3(v, v);
-    over = demi_dot3(up, x[0])*(wall->sheet[element] < 0 ? -1 : 1);
+    d2 = demi_d3_square(demi_triangle_point(part, x[0], x[1], x[2]));
+    over = demi_d3_dot(demi_d3_unit(up), x[0])*(wall->sheet[element] < 0 ? -1 : 1);
     for (i = 0; i < s->count && s->sheet[i] != sheet; i++) continue;
     if (i == DEMI_SHEETS) return;
     if (i == s->count) s->ends[s->count++] = 0;
@@ -16538,7 +16728,7 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
              (d2 > s->near2[i]*(1 - 1e-9) && !(fabs(over) > fabs(s->over[i])))) d2 = -1;
     for (k = 0; k < corners && !s->ends[i]; k++)
         s->ends[i] = open >> k & 1 &&
-            demi_segment_near2(x[k], x[corners == 3 ? (k + 1)%3 : k]) < within*within;
+            demi_near_segment(x[k], x[corners == 3 ? (k + 1)%3 : k], part) < within*within;
     if (d2 < 0) return;
     s->sheet[i] = sheet;
     s->near2[i] = d2;
@@ -16562,31 +16752,29 @@ static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int elem
 /* One element, from a polyhedron about the origin of the axes. way: of its normal. */
 static void demi_solid_on_element(const demi_wall *wall, int element, const demi_solid *s,
                                   dem_vec3 x, int way, demi_pressure *press) {
-    double sides[3][2][3], n[3], at;
+    demi_half sides[3];
+    demi_d3 n;
+    double at;
     int count;
     memset(press, 0, sizeof *press);
-    if (wall->kind == DEMI_WALL_PLANE) {
-        n[0] = n[1] = 0;
-        n[2] = -1;
-        demi_solid_on_flat(s, n, (double)x.z, 0, 0, 0, press);
-    } else if ((count = demi_facet_sides(wall, element, x, way, n, &at, sides)) != 0)
+    if (wall->kind == DEMI_WALL_PLANE)
+        demi_solid_on_flat(s, demi_d(0, 0, -1), (double)x.z, 0, 0, 0, press);
+    else if ((count = demi_facet_sides(wall, element, x, way, &n, &at, sides)) != 0)
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
 /* The elements of one sheet that are near a body, seen from one side: of the sheet's first facet
-   way. x: of the body, in the wall's frame; within: how far it reaches, m. */
+   way. within: how far the body reaches, m. */
 typedef struct demi_sheet {
+    const demi_view *v;
     const demi_wall *wall;
-    const int32_t *element;
-    const dem_real *gap;
-    dem_real gone, within;
-    int count, way;
+    dem_real within;
+    int way;
     int32_t sheet;
-    dem_vec3 x;
 } demi_sheet;
 /* Is element i of the list one of the sheet's? Then, which way its normal goes; 0: it is not. */
 DEM_INLINE int demi_sheet_turn(const demi_sheet *t, int i) {
-    const int element = t->element[i];
-    if (t->gap[i] > t->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+    const int element = t->v->element[i];
+    if (t->v->gap[i] > t->v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
     return t->wall->sheet[element] < 0 ? -t->way : t->way;
 }
 /* The sheet's mean normals at both corners of a side where it ends; 0: it does not. */
@@ -16601,96 +16789,84 @@ static const demi_border *demi_facet_border(const demi_wall *wall, int32_t side)
 }
 /* Half of the curtain of a side, from its corner at o to its middle c, down along m; way: along the
    side, so that m x way is the curtain's normal. */
-static void demi_curtain_half(const demi_solid *s, const double *o, const double *c,
-                              const double *m, const double *way, demi_pressure *press) {
-    double by[3][2][3], e[3], n[3], along, size;
-    int k;
-    demi_sub3(c, o, e);
-    demi_cross3(m, way, n);
-    if (!(demi_unit3(n) > 0)) return;
-    along = demi_dot3(e, m);
-    size = demi_dot3(e, e);
-    for (k = 0; k < 3; k++) {
-        by[0][0][k] = m[k] - along/size*e[k];
-        by[1][0][k] = e[k] - along*m[k];
-        by[2][0][k] = -by[1][0][k];
-        by[0][1][k] = by[1][1][k] = o[k];
-        by[2][1][k] = c[k];
-    }
-    demi_solid_on_flat(s, n, demi_dot3(n, o), by, 3, 0, press);
+static void demi_curtain_half(const demi_solid *s, demi_d3 o, demi_d3 c, demi_d3 m, demi_d3 way,
+                              demi_pressure *press) {
+    const demi_d3 e = demi_d3_sub(c, o), n = demi_d3_unit(demi_d3_cross(m, way));
+    const double along = demi_d3_dot(e, m), size = demi_d3_square(e);
+    demi_half by[3];
+    if (!(demi_d3_square(n) > 0)) return;
+    by[0].n = demi_d3_plus(m, -along/size, e);
+    by[1].n = demi_d3_plus(e, -along, m);
+    by[2].n = demi_d3_scale(by[1].n, -1);
+    by[0].o = by[1].o = o;
+    by[2].o = c;
+    demi_solid_on_flat(s, n, demi_d3_dot(n, o), by, 3, 0, press);
 }
 /* What is missing between both halves at the middle of a side, where the sheet's normal is a at the
    corner before and b at that behind: the sector between lines along both. */
-static void demi_curtain_fold(const demi_solid *s, const double *c, const double *a,
-                              const double *b, demi_pressure *press) {
-    const double along = demi_dot3(a, b);
-    double by[2][2][3], n[3];
-    int k;
-    demi_cross3(a, b, n);
-    if (!(demi_unit3(n) > 1e-9)) return;
-    for (k = 0; k < 3; k++) {
-        by[0][0][k] = b[k] - along*a[k];
-        by[1][0][k] = a[k] - along*b[k];
-        by[0][1][k] = by[1][1][k] = c[k];
-    }
-    demi_solid_on_flat(s, n, demi_dot3(n, c), by, 2, 0, press);
+static void demi_curtain_fold(const demi_solid *s, demi_d3 c, demi_d3 a, demi_d3 b,
+                              demi_pressure *press) {
+    const demi_d3 across = demi_d3_cross(a, b), n = demi_d3_unit(across);
+    const double along = demi_d3_dot(a, b);
+    demi_half by[2];
+    if (!(demi_d3_length(across) > 1e-9)) return;
+    by[0].n = demi_d3_plus(b, -along, a);
+    by[1].n = demi_d3_plus(a, -along, b);
+    by[0].o = by[1].o = c;
+    demi_solid_on_flat(s, n, demi_d3_dot(n, c), by, 2, 0, press);
 }
 /* Does the curtain at a side (3*element + side) reach over the plane of its element, n the normal,
    where the sheet is folded sharply? */
-static int demi_curtain_bends(const demi_sheet *t, int32_t side, const double *n) {
+static int demi_curtain_bends(const demi_sheet *t, int32_t side, demi_d3 n) {
     const demi_border *mean = demi_facet_border(t->wall, side);
-    const dem_vec3 up = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    const dem_vec3 up = demi_d3_real(n);
     return mean && (demi_dot(mean->normal[0], up)*(dem_real)t->way < 0 ||
                     demi_dot(mean->normal[1], up)*(dem_real)t->way < 0);
 }
 /* The curtain at a side (3*element + side) where its sheet ends: from there down along the sheet's
    normal, without end. What is beyond the sheet and within its curtains is closed and does not
    change as the body moves, so that energy is conserved. n: the element's normal. */
-static void demi_sheet_curtain(const demi_sheet *t, int32_t side, double (*sides)[2][3],
-                               const double *n, const demi_solid *s, demi_pressure *press) {
-    const int k = side%3;
+static void demi_sheet_curtain(const demi_sheet *t, int32_t side, const demi_half *sides,
+                               demi_d3 n, const demi_solid *s, demi_pressure *press) {
+    const demi_half *end = sides + side%3, *next = sides + (side + 1)%3;
+    const demi_d3 in = demi_d3_unit(end->n), way = demi_d3_cross(in, n);       /* n x way = in */
     const demi_border *mean;
-    const double *end[2];
-    double m[2][3], in[3], way[3], edge[3], c[3];
+    demi_d3 m[2], c;
     int q;
     memset(press, 0, sizeof *press);
-    memcpy(in, sides[k][0], sizeof in);
-    demi_unit3(in);
     if (demi_wall_per(t->wall) == 2) {
-        double by[1][2][3];
-        memcpy(by[0][0], n, sizeof by[0][0]);
-        memcpy(by[0][1], sides[k][1], sizeof by[0][1]);
-        demi_solid_on_flat(s, in, demi_dot3(in, by[0][1]), by, 1, 0, press);
+        demi_half by;
+        by.n = n;
+        by.o = end->o;
+        demi_solid_on_flat(s, in, demi_d3_dot(in, by.o), &by, 1, 0, press);
         return;
     }
     mean = demi_facet_border(t->wall, side);
     if (!mean) return;
-    for (q = 0; q < 2; q++) {
-        const dem_vec3 d = demi_scale(mean->normal[q], (dem_real)t->way);
-        end[q] = sides[(k + q)%3][1];
-        m[q][0] = (double)d.x; m[q][1] = (double)d.y; m[q][2] = (double)d.z;
-    }
-    demi_sub3(end[1], end[0], edge);
-    for (q = 0; q < 3; q++) c[q] = (end[0][q] + end[1][q])/2;
-    demi_cross3(in, n, way);                    /* n x way = in */
-    for (q = 0; q < 2; q++) demi_curtain_half(s, end[q], c, m[q], way, press);
-    q = demi_dot3(way, edge) < 0;               /* from which corner to which */
+    for (q = 0; q < 2; q++)
+        m[q] = demi_d3_of(demi_scale(mean->normal[q], (dem_real)t->way));
+    c = demi_d3_scale(demi_d3_add(end->o, next->o), 0.5);
+    demi_curtain_half(s, end->o, c, m[0], way, press);
+    demi_curtain_half(s, next->o, c, m[1], way, press);
+    q = demi_d3_dot(way, demi_d3_sub(next->o, end->o)) < 0;    /* from which corner to which */
     demi_curtain_fold(s, c, m[q], m[!q], press);
 }
 /* All of a sheet with its curtains. */
 static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
     demi_pressure press;
-    double sides[3][2][3], n[3], at;
+    demi_half sides[3];
+    demi_d3 n;
+    double at;
     int i, k, count, ends, beyond;
-    for (i = 0; i < t->count; i++) {
-        const int element = t->element[i], way = demi_sheet_turn(t, i);
+    for (i = 0; i < t->v->count; i++) {
+        const int element = t->v->element[i], way = demi_sheet_turn(t, i);
         const dem_real *plane = t->wall->planes + 4*element;
-        const dem_real off = demi_dot(demi_at(plane), t->x) - plane[3];
+        const dem_real off = demi_dot(demi_at(plane), t->v->x) - plane[3];
         if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
-        count = demi_facet_sides(t->wall, element, t->x, way, n, &at, sides);
+        count = demi_facet_sides(t->wall, element, t->v->x, way, &n, &at, sides);
         if (!count) continue;
         ends = demi_facet_ends(t->wall, element);
-        beyond = demi_dot3(n, s->corner[demi_solid_far(s, n)]) > at;
+        beyond = demi_d3_dot(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
         if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
         if (beyond) demi_flats_add(flats, element, &press);
@@ -16721,95 +16897,79 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
     }
 }
 /* Any wall whose elements are flat. */
-static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int impulsive = demi_impulsive(w);
+    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
     demi_sheets sheets;
     demi_sheet sheet;
     demi_solid s;
-    int k, from, end, way, count = 0;
-    *places = w->touching + w->domains[d].touching_first;
-    gaps.range = (double)demi_range(w, part->radius);
+    int k, way, count = 0;
+    gaps.range = (double)demi_range(v.w, part->radius);
     gaps.flat = 0;
+    sheet.v = &v;
     sheet.wall = wall;
-    sheet.gone = gone;
     sheet.within = part->radius*DEM_R(1.001);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    for (k = first; k < last; k = end) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(wall->pose.rotation,
-                                         demi_sub(demi_add(at, shift), wall->pose.position));
+    while (demi_view_next(&v)) {
         flats.count = gaps.count = sheets.count = 0;
-        end = demi_image_end(w, base, k, last);
-        sheet.element = w->wall_element + base + k;
-        sheet.gap = w->wall_gap + base + k;
-        sheet.count = end - k;
-        sheet.x = x;
-        for (from = k; wall->sheet && !impulsive && from < end; from++)
-            if (!(w->wall_gap[base + from] > gone) && wall->sheet[w->wall_element[base + from]])
-                demi_sheets_add(&sheets, wall, w->wall_element[base + from], x,
-                                (double)sheet.within);
+        for (k = 0; wall->sheet && pressing && k < v.count; k++)
+            if (!(v.gap[k] > v.gone) && wall->sheet[v.element[k]])
+                demi_sheets_add(&sheets, wall, v.element[k], v.x, (double)sheet.within);
         demi_sheets_press(&sheets, &sheet, &s, &flats);
-        for (from = k; k < end; k++) {
-            const int32_t element = w->wall_element[base + k];
-            const int which = impulsive || !wall->sheet ? -1
+        for (k = 0; k < v.count; k++) {
+            const int32_t element = v.element[k];
+            const int which = !pressing || !wall->sheet ? -1
                 : demi_sheets_which(&sheets, wall, element);
-            if (w->wall_gap[base + k] > gone || (wall->sheet && !wall->sheet[element])) continue;
-            if (!impulsive && (which < 0 || !sheets.ends[which])) {
-                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, x) : 1;
-                demi_solid_on_element(wall, element, &s, x, way, &press);
+            if (v.gap[k] > v.gone || (wall->sheet && !wall->sheet[element])) continue;
+            if (pressing && (which < 0 || !sheets.ends[which])) {
+                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, v.x) : 1;
+                demi_solid_on_element(wall, element, &s, v.x, way, &press);
                 demi_flats_add(&flats, element, &press);
             }
             if (!(gaps.range > 0)) continue;
-            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)x.z, &gaps);
-            else demi_element_gaps(wall, element, w->wall_element + base + from, end - from, &s, x,
+            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
+            else demi_element_gaps(wall, element, v.element, v.count, &s, v.x,
                                    2*(double)part->radius + gaps.range, &gaps);
         }
-        count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
-                                  shift, *places + count);
+        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
     }
     return count;
 }
 /* A wall of grains, each a ball. */
-static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
+                                 demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const dem_real *R = wall->pose.rotation;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    demi_touching *out = *places = w->touching + w->domains[d].touching_first;
     demi_solid s;
     int k, count = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    for (k = first; k < last; k++) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*w->wall_element[base + k]), x);
-        const double c[3] = {(double)ball.x, (double)ball.y, (double)ball.z};
-        double q[3], off;
+    while (demi_view_next(&v)) for (k = 0; k < v.count; k++) {
+        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*v.element[k]), v.x);
+        const demi_d3 c = demi_d3_of(ball);
+        demi_d3 q;
+        double off;
         demi_touching *t = &out[count];
-        if (w->wall_gap[base + k] > gone) continue;
-        off = demi_solid_near(&s, c, q);
-        if (!(off < (double)(wall->radius + demi_range(w, part->radius)))) continue;
+        if (v.gap[k] > v.gone) continue;
+        off = demi_solid_near(&s, c, &q);
+        if (!(off < (double)(wall->radius + demi_range(v.w, part->radius)))) continue;
         memset(t, 0, sizeof *t);
-        t->element = w->wall_element[base + k];
+        t->element = v.element[k];
         t->overlap = wall->radius - (dem_real)off;
         t->deep = t->overlap/wall->radius;
         t->share = wall->share;
         t->slope = 1;
-        t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
-                                                      (dem_real)q[2])));
-        t->normal = demi_v((dem_real)(c[0] - q[0]), (dem_real)(c[1] - q[1]),
-                           (dem_real)(c[2] - q[2]));
+        t->point = demi_add(v.at, demi_rotate(R, demi_d3_real(q)));
+        t->normal = demi_d3_real(demi_d3_sub(c, q));
         t->normal = off < 0 || off > 0 ? demi_scale(demi_rotate(R, t->normal), (dem_real)(1/off))
                                        : demi_unit(demi_rotate(R, ball));
-        t->shift = shift;
+        t->shift = v.shift;
         count++;
     }
     return count;
@@ -16831,20 +16991,17 @@ typedef struct demi_generator {
     int open[2];                   /* 1: at that end the surface stops, or bends away */
 } demi_generator;
 static void demi_generator_press(const demi_solid *s, const demi_generator *l, double angle,
-                                 double width, const double *x0, demi_pressure *out) {
-    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    static const double part[3] = {5.0/18, 8.0/18, 5.0/18};
+                                 double width, demi_d3 x0, demi_pressure *out) {
     const double c = demi_cos(angle), sn = demi_sin(angle);
     const double out_by = l->b - l->a, up_by = l->h - l->g;
-    const double size = sqrt(out_by*out_by + up_by*up_by);
-    const double e[3] = {out_by*c, out_by*sn, up_by};
-    const double o[3] = {l->a*c - x0[0], l->a*sn - x0[1], l->g - x0[2]};
-    const double n[3] = {l->side*e[2]/size*c, l->side*e[2]/size*sn,
-                         -l->side*out_by/size};
+    const double size = sqrt(out_by*out_by + up_by*up_by), tilt = l->side*up_by/size;
+    const demi_d3 e = demi_d(out_by*c, out_by*sn, up_by);
+    const demi_d3 o = demi_d3_sub(demi_d(l->a*c, l->a*sn, l->g), x0);
+    const demi_d3 n = demi_d(tilt*c, tilt*sn, -l->side*out_by/size);
     double lo = 0, hi = 1, from;
-    int f, i, k, face = -1;
+    int f, i, face = -1;
     for (f = 0; f < s->faces; f++) {            /* where it is inside */
-        const double u = demi_solid_in(s, f, o), slope = -demi_dot3(s->plane[f], e);
+        const double u = demi_solid_in(s, f, o), slope = -demi_d3_dot(s->face[f].slope, e);
         if (slope > 0) lo = DEMI_MAX(lo, -u/slope);
         else if (slope < 0) hi = DEMI_MIN(hi, -u/slope);
         else if (u < 0) return;
@@ -16853,7 +17010,7 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
         double to = hi, least = 1e300, steep = 0;
         int next = -1;
         for (f = 0; f < s->faces && face < 0; f++) {    /* the one in force at its beginning */
-            const double slope = -demi_dot3(s->plane[f], e);
+            const double slope = -demi_d3_dot(s->face[f].slope, e);
             const double u = demi_solid_in(s, f, o) + slope*from;
             if (u < least - 1e-12 || (u < least + 1e-12 && slope < steep)) {
                 least = u; steep = slope; next = f;
@@ -16862,17 +17019,17 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
         if (face < 0) face = next;
         next = -1;
         for (f = 0; f < s->faces; f++) {        /* until another one takes over */
-            const double slope = demi_dot3(s->plane[face], e) - demi_dot3(s->plane[f], e);
+            const double slope = demi_d3_dot(s->face[face].slope, e) -
+                demi_d3_dot(s->face[f].slope, e);
             const double over = demi_solid_in(s, f, o) - demi_solid_in(s, face, o);
             if (!(slope < 0)) continue;
             if (-over/slope > from && -over/slope < to) { to = -over/slope; next = f; }
         }
         for (i = 0; i < 3; i++) {
-            const double t = from + at[i]*(to - from), r = l->a + t*out_by;
-            double x[3];
-            for (k = 0; k < 3; k++) x[k] = o[k] + t*e[k];
-            demi_pressure_point(out, x, DEMI_MAX(demi_solid_in(s, face, x), 0),
-                             part[i]*(to - from)*size*r*width, n, demi_dot3(x, n));
+            const double t = from + demi_gauss3_at[i]*(to - from), r = l->a + t*out_by;
+            const demi_d3 x = demi_d3_plus(o, t, e);
+            demi_pressure_point(out, s, face, x, demi_gauss3[i]*(to - from)*size*r*width, n,
+                                demi_d3_dot(x, n));
         }
         from = to;
         face = next;
@@ -16880,20 +17037,19 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
     }
 }
 /* Angles at which the line from p to q crosses the surface, into angle: how many, 0 to 2. */
-static int demi_generator_cross(const demi_generator *l, const double *p, const double *q,
-                                double *angle) {
-    const double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+static int demi_generator_cross(const demi_generator *l, demi_d3 p, demi_d3 q, double *angle) {
+    const demi_d3 d = demi_d3_sub(q, p);
     const int level = !(l->h > l->g || l->h < l->g);
     const double flat = level ? 0 : (l->b - l->a)/(l->h - l->g);
-    const double r0 = l->a + flat*(p[2] - l->g), dr = flat*d[2];
-    const double A = d[0]*d[0] + d[1]*d[1] - dr*dr, B = p[0]*d[0] + p[1]*d[1] - r0*dr;
-    const double C = p[0]*p[0] + p[1]*p[1] - r0*r0, D = B*B - A*C;
+    const double r0 = l->a + flat*(p.z - l->g), dr = flat*d.z;
+    const double A = d.x*d.x + d.y*d.y - dr*dr, B = p.x*d.x + p.y*d.y - r0*dr;
+    const double C = p.x*p.x + p.y*p.y - r0*r0, D = B*B - A*C;
     double t[2];
     int i, count = 0;
     if (level) {
-        if ((p[2] > l->g) == (q[2] > l->g)) return 0;
-        t[0] = (l->g - p[2])/d[2];
-        *angle = demi_atan2(p[1] + t[0]*d[1], p[0] + t[0]*d[0]);
+        if ((p.z > l->g) == (q.z > l->g)) return 0;
+        t[0] = (l->g - p.z)/d.z;
+        *angle = demi_atan2(p.y + t[0]*d.y, p.x + t[0]*d.x);
         return 1;
     }
     if (!(D > 0)) return 0;
@@ -16901,7 +17057,7 @@ static int demi_generator_cross(const demi_generator *l, const double *p, const 
     t[1] = B > 0 ? C/(-B - sqrt(D)) : (-B + sqrt(D))/A;
     for (i = 0; i < 2; i++)
         if (t[i] >= 0 && t[i] <= 1)
-            angle[count++] = demi_atan2(p[1] + t[i]*d[1], p[0] + t[i]*d[0]);
+            angle[count++] = demi_atan2(p.y + t[i]*d.y, p.x + t[i]*d.x);
     return count;
 }
 /* Does the surface go on from a ring to another one into the wall, as a piece l's side has it? */
@@ -16932,20 +17088,27 @@ static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x
     }
     return l;
 }
+/* How far off the axis, m. */
+DEM_INLINE double demi_off_axis(demi_d3 x) { return sqrt(x.x*x.x + x.y*x.y); }
+/* The point of a line from (a, g) to (a + e, g + f), out and up, nearest to a point that is u out
+   and v up from its beginning: how far off that is, squared. */
+static double demi_line_off2(double u, double v, double e, double f) {
+    double t = (u*e + v*f)/(e*e + f*f);
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f);
+}
 /* The side of a surface of revolution on which x is: by the piece nearest to it, of equally near
    ones by that from whose line it is farthest. */
-static double demi_rings_side(const demi_wall *wall, dem_vec3 x) {
-    const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
+static double demi_rings_side(const demi_wall *wall, demi_d3 x) {
+    const double out = demi_off_axis(x);
     double least = 1e300, far = 0, side = 1;
     int i;
     for (i = 0; i + 1 < wall->ring_count; i++) {
         const double a = (double)wall->ring_radius[i], g = (double)wall->ring_height[i];
         const double e = (double)wall->ring_radius[i + 1] - a;
         const double f = (double)wall->ring_height[i + 1] - g;
-        const double u = out - a, v = (double)x.z - g, over = (v*e - u*f)/sqrt(e*e + f*f);
-        double t = (u*e + v*f)/(e*e + f*f), d2;
-        t = t < 0 ? 0 : t > 1 ? 1 : t;
-        d2 = (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f);
+        const double u = out - a, v = x.z - g, over = (v*e - u*f)/sqrt(e*e + f*f);
+        const double d2 = demi_line_off2(u, v, e, f);
         if (d2 > least*(1 + 1e-9) || (d2 > least*(1 - 1e-9) && !(fabs(over) > fabs(far)))) continue;
         least = DEMI_MIN(least, d2);
         far = over;
@@ -16955,11 +17118,10 @@ static double demi_rings_side(const demi_wall *wall, dem_vec3 x) {
 }
 /* Does a surface of revolution end at its first ring (end 0) or last (1), near a body of this
    radius about x? Not on its axis, nor where it closes. */
-static int demi_rings_end(const demi_wall *wall, int end, dem_vec3 x, double radius) {
+static int demi_rings_end(const demi_wall *wall, int end, demi_d3 x, double radius) {
     const int ring = end ? wall->ring_count - 1 : 0, other = end ? 0 : wall->ring_count - 1;
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
-    const double off = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y) - r;
-    const double up = (double)x.z - z;
+    const double off = demi_off_axis(x) - r, up = x.z - z;
     return r > 0 && off*off + up*up < radius*radius &&
         !(fabs((double)wall->ring_radius[other] - r) + fabs((double)wall->ring_height[other] - z) <
           1e-9*r);
@@ -16984,21 +17146,16 @@ static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double 
     return l;
 }
 /* Does a body of this radius about x reach it? */
-static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radius) {
-    const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
-    const double e = l->b - l->a, f = l->h - l->g, u = out - l->a, v = (double)x.z - l->g;
-    double t = (u*e + v*f)/(e*e + f*f);
-    t = t < 0 ? 0 : t > 1 ? 1 : t;
-    return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f) < radius*radius;
+static int demi_generator_near(const demi_generator *l, demi_d3 x, double radius) {
+    const double out = demi_off_axis(x);
+    return demi_line_off2(out - l->a, x.z - l->g, l->b - l->a, l->h - l->g) < radius*radius;
 }
 /* Is x on its far side? Then n is the way into the wall. */
-static int demi_generator_beyond(const demi_generator *l, const double *x, double *n) {
-    const double out = sqrt(x[0]*x[0] + x[1]*x[1]), e = l->b - l->a, f = l->h - l->g;
-    const double size = sqrt(e*e + f*f);
-    n[0] = l->side*f/size*(out > 0 ? x[0]/out : 1);
-    n[1] = l->side*f/size*(out > 0 ? x[1]/out : 0);
-    n[2] = -l->side*e/size;
-    return l->side*((l->a - out)*f - (l->g - x[2])*e) < 0;
+static int demi_generator_beyond(const demi_generator *l, demi_d3 x, demi_d3 *n) {
+    const double out = demi_off_axis(x), e = l->b - l->a, f = l->h - l->g;
+    const double size = sqrt(e*e + f*f), flat = l->side*f/size;
+    *n = demi_d(flat*(out > 0 ? x.x/out : 1), flat*(out > 0 ? x.y/out : 0), -l->side*e/size);
+    return l->side*((l->a - out)*f - (l->g - x.z)*e) < 0;
 }
 /* How far out the surface is at a height. */
 static double demi_generator_radius(const demi_generator *l, double z) {
@@ -17006,22 +17163,23 @@ static double demi_generator_radius(const demi_generator *l, double z) {
 }
 /* Angles at which lines of the surface come into the plane of a face, at its lowest and highest
    corners: how many, 0 to 4. */
-static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f,
-                               const double *x0, double *angle) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    const double *a = s->plane[f], size = sqrt(a[0]*a[0] + a[1]*a[1]);
+static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f, demi_d3 x0,
+                               double *angle) {
+    const demi_d3 a = s->face[f].slope;
+    const double size = demi_off_axis(a);
     double z[2] = {1e300, -1e300};
     int i, count = 0;
     for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-        z[0] = DEMI_MIN(z[0], s->corner[loops[i]][2] + x0[2]);
-        z[1] = DEMI_MAX(z[1], s->corner[loops[i]][2] + x0[2]);
+        const double up = demi_solid_corner(s, f, i).z + x0.z;
+        z[0] = DEMI_MIN(z[0], up);
+        z[1] = DEMI_MAX(z[1], up);
     }
     for (i = 0; i < 2; i++) {
         const double to = size*demi_generator_radius(l, z[i]);
-        const double c = 1 + a[0]*x0[0] + a[1]*x0[1] - a[2]*(z[i] - x0[2]);
+        const double c = 1 + a.x*x0.x + a.y*x0.y - a.z*(z[i] - x0.z);
         double half, mid;
         if (!(fabs(c) < to)) continue;
-        mid = demi_atan2(a[1], a[0]);
+        mid = demi_atan2(a.y, a.x);
         half = demi_atan2(sqrt((to - c)*(to + c)), c);
         angle[count++] = mid - half;
         angle[count++] = mid + half;
@@ -17030,38 +17188,36 @@ static int demi_generator_face(const demi_generator *l, const demi_solid *s, int
 }
 /* Angles at which a ring, where a piece ends, comes through a plane n.y = c, y from the centre,
    within the body: how many, 0 to 2. */
-static int demi_ring_cross(const demi_solid *s, double r, double z, const double *n, double c,
-                           const double *x0, double *angle) {
-    const double to = r*sqrt(n[0]*n[0] + n[1]*n[1]);
-    const double over = c + n[0]*x0[0] + n[1]*x0[1] - n[2]*(z - x0[2]);
+static int demi_ring_cross(const demi_solid *s, double r, double z, demi_d3 n, double c,
+                           demi_d3 x0, double *angle) {
+    const double to = r*demi_off_axis(n);
+    const double over = c + n.x*x0.x + n.y*x0.y - n.z*(z - x0.z);
     double mid, half;
     int i, f, count = 0;
     if (!(fabs(over) < to)) return 0;
-    mid = demi_atan2(n[1], n[0]);
+    mid = demi_atan2(n.y, n.x);
     half = demi_atan2(sqrt((to - over)*(to + over)), over);
     for (i = -1; i < 2; i += 2) {
         const double at = mid + i*half;
-        const double y[3] = {r*demi_cos(at) - x0[0], r*demi_sin(at) - x0[1], z - x0[2]};
+        const demi_d3 y = demi_d3_sub(demi_d(r*demi_cos(at), r*demi_sin(at), z), x0);
         for (f = 0; f < s->faces && demi_solid_in(s, f, y) > -1e-9; f++) continue;
         if (f == s->faces) angle[count++] = at;
     }
     return count;
 }
 /* Those of all its faces, and of the sides of its pyramids; radius: of the body. */
-static int demi_generator_end(const demi_solid *s, double r, double z, const double *x0,
-                              double radius, double *angle) {
-    const double off = sqrt(x0[0]*x0[0] + x0[1]*x0[1]) - r, up = x0[2] - z;
-    const int32_t *loops = s->rim + s->faces + 1;
+static int demi_generator_end(const demi_solid *s, double r, double z, demi_d3 x0, double radius,
+                              double *angle) {
+    const double off = demi_off_axis(x0) - r, up = x0.z - z;
     int f, i, count = 0;
     if (!(r > 0) || !(off*off + up*up < radius*radius)) return 0;
     for (f = 0; f < s->faces; f++) {
-        count += demi_ring_cross(s, r, z, s->plane[f], 1, x0, angle + count);
+        count += demi_ring_cross(s, r, z, s->face[f].slope, 1, x0, angle + count);
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            double n[3];
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
             if (a > b) continue;
-            demi_cross3(s->corner[a], s->corner[b], n);
-            count += demi_ring_cross(s, r, z, n, 0, x0, angle + count);
+            count += demi_ring_cross(s, r, z, demi_d3_cross(s->corner[a], s->corner[b]), 0, x0,
+                                     angle + count);
         }
     }
     return count;
@@ -17071,14 +17227,14 @@ enum { DEMI_CROSSINGS = 2*(3*DEM_POLYHEDRON_FACES + DEMI_HULL_CORNERS) +
        4*DEM_POLYHEDRON_FACES + 4*4*DEM_POLYHEDRON_FACES + 4 };
 /* Is the body wholly above or below a piece, or beyond the plane that touches its widest ring where
    that is nearest to the body's centre? */
-static int demi_generator_apart(const demi_solid *s, const demi_generator *l, const double *x0) {
-    const double wide = DEMI_MAX(l->a, l->b)*sqrt(x0[0]*x0[0] + x0[1]*x0[1]);
+static int demi_generator_apart(const demi_solid *s, const demi_generator *l, demi_d3 x0) {
+    const double wide = DEMI_MAX(l->a, l->b)*demi_off_axis(x0);
     int i, above = 0, below = 0, beyond = 0;
     for (i = 0; i < s->corners; i++) {
-        const double *c = s->corner[i], z = x0[2] + c[2];
-        above += z > DEMI_MAX(l->g, l->h);
-        below += z < DEMI_MIN(l->g, l->h);
-        beyond += x0[0]*(x0[0] + c[0]) + x0[1]*(x0[1] + c[1]) > wide;
+        const demi_d3 c = demi_d3_add(x0, s->corner[i]);
+        above += c.z > DEMI_MAX(l->g, l->h);
+        below += c.z < DEMI_MIN(l->g, l->h);
+        beyond += x0.x*c.x + x0.y*c.y > wide;
     }
     return above == s->corners || below == s->corners || beyond == s->corners;
 }
@@ -17086,53 +17242,40 @@ static int demi_generator_apart(const demi_solid *s, const demi_generator *l, co
    or of its pyramids, cross it, what they share changes smoothly. Seen from inside, where it is
    convex, only corners reach it, and what leads to them. x: of its centre; whole: it must not be
    beyond. */
-static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, dem_vec3 x,
+static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, demi_d3 x0,
                                     int whole, int32_t element, demi_flats *flats) {
-    static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
-                                 0.9305681557970263};
-    static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
-                                   0.17392742256872692};
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-    const int32_t *loops = s->rim + s->faces + 1;
-    const int inside = (l->h > l->g || l->h < l->g) &&
-        x0[0]*x0[0] + x0[1]*x0[1] <
-        demi_generator_radius(l, x0[2])*demi_generator_radius(l, x0[2]);
+    const double here = demi_generator_radius(l, x0.z), radius = demi_solid_radius(s);
+    const int level = !(l->h > l->g || l->h < l->g);
+    const int inside = !level && x0.x*x0.x + x0.y*x0.y < here*here;
     unsigned char beyond[DEMI_HULL_CORNERS];
-    double angle[DEMI_CROSSINGS], p[3], q[3], radius = 0;
+    demi_d3 p[DEMI_HULL_CORNERS], n;
+    double angle[DEMI_CROSSINGS];
     demi_pressure press;
     int f, i, k, count = 0, any = 0;
     memset(&press, 0, sizeof press);
-    if (whole && demi_generator_beyond(l, x0, p)) {
-        demi_pressure_beyond(s, p, &press);
+    if (whole && demi_generator_beyond(l, x0, &n)) {
+        demi_pressure_beyond(s, n, &press);
         demi_flats_add(flats, element, &press);
         return;
     }
     if (demi_generator_apart(s, l, x0)) return;
     for (i = 0; i < s->corners; i++) {
-        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
-        const double r = demi_generator_radius(l, x0[2] + s->corner[i][2]);
-        radius = DEMI_MAX(radius, demi_dot3(s->corner[i], s->corner[i]));
-        beyond[i] = !inside || !(r > 0) || u*u + v*v > r*r;
+        double r;
+        p[i] = demi_d3_add(x0, s->corner[i]);
+        r = demi_generator_radius(l, p[i].z);
+        beyond[i] = !inside || !(r > 0) || p[i].x*p[i].x + p[i].y*p[i].y > r*r;
         any |= beyond[i];
     }
     if (!any) return;
-    radius = sqrt(radius);
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            if (a > b || (!beyond[a] && !beyond[b])) continue;  /* once: two faces have it */
-            for (k = 0; k < 3; k++) {
-                p[k] = x0[k] + s->corner[a][k];
-                q[k] = x0[k] + s->corner[b][k];
-            }
-            count += demi_generator_cross(l, p, q, angle + count);
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
+            if (a < b && (beyond[a] || beyond[b]))      /* once: two faces have it */
+                count += demi_generator_cross(l, p[a], p[b], angle + count);
         }
-    for (i = 0; i < s->corners; i++) {
-        if (!beyond[i]) continue;
-        for (k = 0; k < 3; k++) p[k] = x0[k] + s->corner[i][k];
-        count += demi_generator_cross(l, x0, p, angle + count);
-    }
-    for (f = 0; f < s->faces && !inside && (l->h > l->g || l->h < l->g); f++)
+    for (i = 0; i < s->corners; i++)
+        if (beyond[i]) count += demi_generator_cross(l, x0, p[i], angle + count);
+    for (f = 0; f < s->faces && !inside && !level; f++)
         count += demi_generator_face(l, s, f, x0, angle + count);
     count += demi_generator_end(s, l->a, l->g, x0, radius, angle + count);
     count += demi_generator_end(s, l->b, l->h, x0, radius, angle + count);
@@ -17146,8 +17289,8 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         const int pieces = 1 + (int)(width/0.2);
         for (f = 0; f < pieces && (!f || press.sum > had); f++)     /* none of its lines, or all */
             for (k = 0; k < 4 && width > 1e-15; k++)
-                demi_generator_press(s, l, angle[i] + (f + at[k])*width/pieces,
-                                     part[k]*width/pieces, x0, &press);
+                demi_generator_press(s, l, angle[i] + (f + demi_gauss4_at[k])*width/pieces,
+                                     demi_gauss4[k]*width/pieces, x0, &press);
         if (width > 1e-9 && press.sum > had) continue;
         if (width > 1e-9 || i == count) {       /* a gap: what is beyond is another contact */
             demi_flats_add(flats, element, &press);
@@ -17157,43 +17300,37 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
 }
 /* A point of a body near one piece of a surface of revolution, if it lies over it; its gap, m. n:
    unit, into the wall, at the point's line; out, up, level: as below. */
-static double demi_generator_add(const demi_generator *l, const double *n, const double *x0,
-                                 const double *x, double out, double up, double level,
-                                 int32_t element, demi_gaps *gaps) {
-    const double e = l->b - l->a, f = l->h - l->g, z = x0[2] + x[2];
-    const double across = sqrt(n[0]*n[0] + n[1]*n[1]), size = sqrt(e*e + f*f);
-    const double r = across > 0 ? fabs(n[0]*(x0[0] + x[0]) + n[1]*(x0[1] + x[1]))/across
-        : sqrt((x0[0] + x[0])*(x0[0] + x[0]) + (x0[1] + x[1])*(x0[1] + x[1]));
-    const double gap = out*r + up*z - level, along = (r - l->a)*e + (z - l->g)*f;
-    double o[3];
-    int k;
+static double demi_generator_add(const demi_generator *l, demi_d3 n, demi_d3 x0, demi_d3 x,
+                                 double out, double up, double level, int32_t element,
+                                 demi_gaps *gaps) {
+    const demi_d3 y = demi_d3_add(x0, x);
+    const double e = l->b - l->a, f = l->h - l->g, across = demi_off_axis(n);
+    const double size = sqrt(e*e + f*f);
+    const double r = across > 0 ? fabs(n.x*y.x + n.y*y.y)/across : demi_off_axis(y);
+    const double gap = out*r + up*y.z - level, along = (r - l->a)*e + (y.z - l->g)*f;
     if (along < 0 || along > e*e + f*f) return 1e300;
     /* deeper than it is far from an end: that one's ring, or the next piece, tells of it */
     if (gap < 0 && ((l->open[0] && along < -gap*size) ||
                     (l->open[1] && e*e + f*f - along < -gap*size))) return 1e300;
-    for (k = 0; k < 3; k++) o[k] = x[k] + n[k]*gap/2;
-    demi_gaps_add(gaps, element, n, o, gap);
+    demi_gaps_add(gaps, element, n, demi_d3_plus(x, gap/2, n), gap);
     return gap;
 }
 /* One piece of a surface of revolution that bends away from the body: the plane through one of its
    lines that keeps most of it off, sought by the side on which its nearest corner lies; then where
    the body is cut by the plane through that line and the axis. x0: of the centre. m: of the
    surface's normal, towards the body, out and up; level: m.x of its points. */
-static void demi_generator_line(const demi_solid *s, const double *x0, double out, double up,
+static void demi_generator_line(const demi_solid *s, demi_d3 x0, double out, double up,
                                 double level, const demi_generator *l, int32_t element,
                                 demi_gaps *gaps) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    double lo = 0, hi = 0, c = 1, sn = 0, least = 0, lowest = 1e300;
-    double at[DEMI_HULL_CORNERS][3], off[DEMI_HULL_CORNERS], n[3], o[3];
-    const double middle = sqrt(x0[0]*x0[0] + x0[1]*x0[1]);
-    const double ax = middle > 0 ? x0[0]/middle : 1, ay = middle > 0 ? x0[1]/middle : 0;
-    int i, k, f, turn, nearest = 0;
+    double lo = 0, hi = 0, c = 1, sn = 0, least = 0, lowest = 1e300, off[DEMI_HULL_CORNERS];
+    const double middle = demi_off_axis(x0);
+    const double ax = middle > 0 ? x0.x/middle : 1, ay = middle > 0 ? x0.y/middle : 0;
+    demi_d3 at[DEMI_HULL_CORNERS], n;
+    int i, f, turn, nearest = 0;
     for (i = 0; i < s->corners; i++) {          /* seen from the axis: out, aside, up */
-        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
-        at[i][0] = ax*u + ay*v;
-        at[i][1] = ax*v - ay*u;
-        at[i][2] = x0[2] + s->corner[i][2];
-        off[i] = demi_atan2(at[i][1], at[i][0]);
+        const demi_d3 y = demi_d3_add(x0, s->corner[i]);
+        at[i] = demi_d(ax*y.x + ay*y.y, ax*y.y - ay*y.x, y.z);
+        off[i] = demi_atan2(at[i].y, at[i].x);
         lo = DEMI_MIN(lo, off[i]);
         hi = DEMI_MAX(hi, off[i]);
     }
@@ -17203,7 +17340,7 @@ static void demi_generator_line(const demi_solid *s, const double *x0, double ou
         sn = demi_sin(angle);
         least = 1e300;
         for (i = 0; i < s->corners; i++) {
-            const double d = out*(at[i][0]*c + at[i][1]*sn) + up*at[i][2] - level;
+            const double d = out*(at[i].x*c + at[i].y*sn) + up*at[i].z - level;
             if (d < least) { least = d; nearest = i; }
         }
         if (!turn && !(lo < 0 || hi > 0)) break;
@@ -17212,25 +17349,24 @@ static void demi_generator_line(const demi_solid *s, const double *x0, double ou
         if (!(hi - lo > 1e-15)) break;
     }
     if (!(least < gaps->range)) return;
-    n[0] = -out*(ax*c - ay*sn); n[1] = -out*(ay*c + ax*sn); n[2] = -up;
+    n = demi_d(-out*(ax*c - ay*sn), -out*(ay*c + ax*sn), -up);
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
-            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            const double p = at[a][1]*c - at[a][0]*sn, q = at[b][1]*c - at[b][0]*sn, t = p/(p - q);
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
+            const double p = at[a].y*c - at[a].x*sn, q = at[b].y*c - at[b].x*sn;
             double gap;
             if (a > b || (p > 0) == (q > 0)) continue;
-            for (k = 0; k < 3; k++)
-                o[k] = s->corner[a][k] + t*(s->corner[b][k] - s->corner[a][k]);
-            gap = demi_generator_add(l, n, x0, o, out, up, level, element, gaps);
+            gap = demi_generator_add(l, n, x0, demi_d3_between(s->corner[a], s->corner[b],
+                                                               p/(p - q)), out, up, level,
+                                     element, gaps);
             lowest = DEMI_MIN(lowest, gap);
         }
     if (lowest > least + 1e-9*middle)           /* a corner that is cut nowhere */
         demi_generator_add(l, n, x0, s->corner[nearest], out, up, level, element, gaps);
 }
 /* One piece of a surface of revolution: where it bends round the body, corners. */
-static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, dem_vec3 x,
+static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, demi_d3 x0,
                                 int32_t element, demi_gaps *gaps) {
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
     const double e = l->b - l->a, f = l->h - l->g, size = sqrt(e*e + f*f);
     const double out = -l->side*f/size, up = l->side*e/size, level = out*l->a + up*l->g;
     int i;
@@ -17239,37 +17375,34 @@ static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, de
         return;
     }
     for (i = 0; i < s->corners; i++) {
-        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
-        const double r = sqrt(u*u + v*v);
-        const double n[3] = {r > 0 ? -out*u/r : -out, r > 0 ? -out*v/r : 0, -up};
+        const demi_d3 y = demi_d3_add(x0, s->corner[i]);
+        const double r = demi_off_axis(y);
+        const demi_d3 n = demi_d(r > 0 ? -out*y.x/r : -out, r > 0 ? -out*y.y/r : 0, -up);
         demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
     }
 }
-/* The point of a ring at an angle about the axis, and the body's point nearest to it, to. Where
-   tell is not null, it is told as that element where neither piece that ends in the ring goes on
-   towards the body. How far apart, m. */
-static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s,
-                              const double *x0, double angle, const int32_t *tell, double *to,
-                              demi_gaps *gaps) {
+/* How far the point of a ring at an angle about the axis is from the body, m. Where tell is not
+   null, it is told as that element where neither piece that ends in the ring goes on towards the
+   body. */
+static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s, demi_d3 x0,
+                              double angle, const int32_t *tell, demi_gaps *gaps) {
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
     const double c = demi_cos(angle), sn = demi_sin(angle);
-    const double y[3] = {r*c - x0[0], r*sn - x0[1], z - x0[2]};
-    const double off = demi_solid_near(s, y, to);
-    double n[3], o[3], along;
-    int i, k;
+    const demi_d3 y = demi_d3_sub(demi_d(r*c, r*sn, z), x0);
+    demi_d3 to, n;
+    const double off = demi_solid_near(s, y, &to);
+    int i;
     if (!tell || !(off < gaps->range) || !(off > 0 || off < 0)) return off;
-    for (k = 0; k < 3; k++) {
-        n[k] = (y[k] - to[k])/off;
-        o[k] = (y[k] + to[k])/2;
-    }
+    n = demi_d3_over(demi_d3_sub(y, to), off);
     for (i = -1; i < 2; i += 2) {
         const int other = ring + i;
+        double along;
         if (other < 0 || other >= wall->ring_count) continue;
-        along = (n[0]*c + n[1]*sn)*((double)wall->ring_radius[other] - r) +
-            n[2]*((double)wall->ring_height[other] - z);
+        along = (n.x*c + n.y*sn)*((double)wall->ring_radius[other] - r) +
+            n.z*((double)wall->ring_height[other] - z);
         if (-along > 1e-9*r) return off;
     }
-    demi_gaps_add(gaps, *tell, n, o, off);
+    demi_gaps_add(gaps, *tell, n, demi_d3_scale(demi_d3_add(y, to), 0.5), off);
     return off;
 }
 /* A ring of a surface of revolution, at the end of a piece: points all round as far as a body of
@@ -17277,20 +17410,18 @@ static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid 
    deeper, than its neighbours the one that is most so (golden section). */
 enum { DEMI_RING_POINTS = 17 };
 static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, const demi_solid *s,
-                           dem_vec3 x, double radius, demi_gaps *gaps) {
+                           demi_d3 x0, double radius, demi_gaps *gaps) {
     static const double golden = 0.6180339887498949;
     const double r = (double)wall->ring_radius[ring], reach = (radius + gaps->range)/r;
-    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-    const double off = sqrt(x0[0]*x0[0] + x0[1]*x0[1]) - r;
-    const double up = x0[2] - (double)wall->ring_height[ring], angle = demi_atan2(x0[1], x0[0]);
+    const double off = demi_off_axis(x0) - r, angle = demi_atan2(x0.y, x0.x);
+    const double up = x0.z - (double)wall->ring_height[ring];
     const double half = reach < 1 ? demi_atan2(reach, sqrt(1 - reach*reach)) : DEMI_PI;
     const double step = 2*half/(DEMI_RING_POINTS - 1);
-    double far[DEMI_RING_POINTS], q[3];
+    double far[DEMI_RING_POINTS];
     int i, turn;
     if (!(off*off + up*up < (radius + gaps->range)*(radius + gaps->range))) return;
     for (i = 0; i < DEMI_RING_POINTS; i++)
-        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, &element, q,
-                                 gaps);
+        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, &element, gaps);
     for (i = 0; i < DEMI_RING_POINTS; i++) {
         const int last = i + 1 == DEMI_RING_POINTS;
         double lo = angle - half + (i - 1)*step, hi = lo + 2*step, at[2], found[2];
@@ -17298,7 +17429,7 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
             !(far[i] < gaps->range + step*r)) continue;
         for (turn = 0; turn < 2; turn++) {
             at[turn] = turn ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
-            found[turn] = demi_ring_point(wall, ring, s, x0, at[turn], 0, q, gaps);
+            found[turn] = demi_ring_point(wall, ring, s, x0, at[turn], 0, gaps);
         }
         for (turn = 0; turn < 30; turn++) {
             const int less = found[1] < found[0];
@@ -17307,9 +17438,9 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
             at[!less] = at[less];
             found[!less] = found[less];
             at[less] = less ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
-            found[less] = demi_ring_point(wall, ring, s, x0, at[less], 0, q, gaps);
+            found[less] = demi_ring_point(wall, ring, s, x0, at[less], 0, gaps);
         }
-        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, q, gaps);
+        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, gaps);
     }
 }
 /* All of a cylinder, or of a surface of revolution seen from one side, with the curtains at its
@@ -17317,64 +17448,61 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
 static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec3 x,
                              dem_real radius, double side, int ends, demi_flats *flats) {
     const int round = wall->kind == DEMI_WALL_CYLINDER, pieces = round ? 1 : wall->ring_count - 1;
+    const demi_d3 x0 = demi_d3_of(x);
     int i;
     for (i = 0; i < pieces; i++) {
         const demi_generator l = demi_generator_of(wall, i, x, radius, side);
-        if (round || demi_generator_near(&l, x, (double)radius))
-            demi_solid_on_generator(s, &l, x, round, i, flats);
+        if (round || demi_generator_near(&l, x0, (double)radius))
+            demi_solid_on_generator(s, &l, x0, round, i, flats);
     }
     for (i = 0; i < 2; i++) {
         demi_generator l;
         if (!(ends >> i & 1)) continue;
         l = demi_rings_curtain(wall, i, (double)radius, side);
-        demi_solid_on_generator(s, &l, x, 0, i ? 2*pieces : pieces, flats);
+        demi_solid_on_generator(s, &l, x0, 0, i ? 2*pieces : pieces, flats);
     }
 }
 /* A cylinder, or a surface of revolution, piece by piece. */
-static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
+                                 demi_touching *out) {
+    demi_view v = *start;
+    const demi_wall *wall = v.wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
     const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
-    const int impulsive = demi_impulsive(w);
-    const double range = (double)demi_range(w, part->radius);
+    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const double range = (double)demi_range(v.w, part->radius);
     double side;
     demi_flats flats, seen[2];
     demi_gaps gaps;
     demi_solid s;
-    int k, i, end, ends, count = 0;
-    *places = w->touching + w->domains[d].touching_first;
+    int i, ends, count = 0;
     gaps.range = range;
     gaps.flat = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    for (k = first; k < last; k = end) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(wall->pose.rotation,
-                                         demi_sub(demi_add(at, shift), wall->pose.position));
+    while (demi_view_next(&v)) {
+        const dem_vec3 x = v.x;
+        const demi_d3 x0 = demi_d3_of(x);
         flats.count = gaps.count = 0;
-        end = demi_image_end(w, base, k, last);
-        if (w->wall_gap[base + k] > gone) continue;
-        side = demi_rings_side(wall, x);
+        if (*v.gap > v.gone) continue;
+        side = demi_rings_side(wall, x0);
         for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            ends |= demi_rings_end(wall, i, x, (double)part->radius) << i;
-        if (!impulsive && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
-        for (i = 0; i < 2 && !impulsive && ends; i++) {
+            ends |= demi_rings_end(wall, i, x0, (double)part->radius) << i;
+        if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
+        for (i = 0; i < 2 && pressing && ends; i++) {
             seen[i].count = 0;
             if (!i || seen[0].count)
                 demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
         }
-        if (!impulsive && ends) demi_flats_sides(seen, &flats);
+        if (pressing && ends) demi_flats_sides(seen, &flats);
         for (i = 0; i < pieces && range > 0; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
             if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */
-                demi_generator_near(&l, x, (double)part->radius + range))
-                demi_generator_gaps(&s, &l, x, i, &gaps);
+                demi_generator_near(&l, x0, (double)part->radius + range))
+                demi_generator_gaps(&s, &l, x0, i, &gaps);
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            demi_ring_gaps(wall, i, pieces + i, &s, x, (double)part->radius, &gaps);
-        count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
-                                  shift, *places + count);
+            demi_ring_gaps(wall, i, pieces + i, &s, x0, (double)part->radius, &gaps);
+        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
     }
     return count;
 }
@@ -17428,24 +17556,26 @@ static int32_t demi_plate_hole(const demi_plate *p, double u, double v, double *
     }
     return number;
 }
+/* From the middle of the hole at c to x, rounded to dem_real. */
+static demi_d3 demi_plate_from(demi_d3 x, const double *c) {
+    return demi_d3_of(demi_d3_real(demi_d(x.x - c[0], x.y - c[1], x.z)));
+}
 /* Is (u, v) over solid? n: unit, at the wall of the hole in whose cell it lies, into the solid;
    off: m, how far it is beyond that wall. Of a corner of a hole two walls: two: the other one's. */
-static int demi_plate_solid(const demi_plate *p, double u, double v, double (*n)[3], double *off) {
+static int demi_plate_solid(const demi_plate *p, double u, double v, demi_d3 *n, double *off) {
     double c[2], x, y, r;
     demi_plate_hole(p, u, v, c);
     x = u - c[0];
     y = v - c[1];
-    memset(n, 0, 2*sizeof *n);
     if (p->round) {
         r = sqrt(x*x + y*y);
-        n[0][0] = r > 0 ? x/r : 1;
-        n[0][1] = r > 0 ? y/r : 0;
+        n[0] = r > 0 ? demi_d(x/r, y/r, 0) : demi_d(1, 0, 0);
         off[0] = r - p->a;
         off[1] = -1e300;
         return off[0] > 0;
     }
-    n[0][1] = y < 0 ? -1 : 1;
-    n[1][0] = x < 0 ? -1 : 1;
+    n[0] = demi_d(0, y < 0 ? -1 : 1, 0);
+    n[1] = demi_d(x < 0 ? -1 : 1, 0, 0);
     off[0] = fabs(y) - p->b;
     off[1] = p->px > 0 ? fabs(x) - p->a : -1e300;
     return off[0] > 0 || off[1] > 0;
@@ -17453,104 +17583,100 @@ static int demi_plate_solid(const demi_plate *p, double u, double v, double (*n)
 
 /* --- for springs --- */
 
+/* What is no farther than `far` from a point along n. */
+static demi_half demi_half_of(demi_d3 middle, demi_d3 n, double far) {
+    demi_half half;
+    half.n = demi_d3_scale(n, -1);
+    half.o = demi_d3_plus(middle, far, n);
+    return half;
+}
 /* A rectangle of a surface: middle, half sizes along two axes of the frame, normal along the third
    into the solid. half 0: without end. x: of the centre. */
-static void demi_plate_flat(const demi_solid *s, const double *x, const double *middle,
-                            const double *half, int across, double way, int32_t element,
-                            demi_flats *flats) {
-    double sides[4][2][3], n[3] = {0, 0, 0}, at;
+static void demi_plate_flat(const demi_solid *s, demi_d3 x, demi_d3 middle, demi_d3 size,
+                            int across, double way, int32_t element, demi_flats *flats) {
+    static const demi_d3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const demi_d3 from = demi_d3_sub(middle, x);
+    demi_half sides[4];
     demi_pressure press;
-    int i, k, e, count = 0;
-    n[across] = way;
-    at = way*(middle[across] - x[across]);
-    memset(sides, 0, sizeof sides);
+    int i, k, count = 0;
     memset(&press, 0, sizeof press);
-    for (i = 0; i < 3; i++)
-        for (k = -1; k < 2 && i != across && half[i] > 0; k += 2) {
-            sides[count][0][i] = -k;
-            for (e = 0; e < 3; e++) sides[count][1][e] = middle[e] - x[e];
-            sides[count++][1][i] += k*half[i];
-        }
-    demi_solid_on_flat(s, n, at, sides, count, 0, &press);
+    for (i = 0; i < 3; i++) {
+        const double half = demi_d3_dot(axis[i], size);
+        for (k = -1; k < 2 && i != across && half > 0; k += 2)
+            sides[count++] = demi_half_of(from, demi_d3_scale(axis[i], k), half);
+    }
+    demi_solid_on_flat(s, demi_d3_scale(axis[across], way), way*demi_d3_dot(axis[across], from),
+                       sides, count, 0, &press);
     demi_flats_add(flats, element, &press);
 }
 /* Solid of a plate with square holes or slots about the hole at c: half of the bars on both sides
    of it, and the hole's walls. */
-static void demi_plate_press(const demi_plate *p, const demi_solid *s, const double *x,
-                             const double *c, int32_t number, demi_flats *flats) {
+static void demi_plate_press(const demi_plate *p, const demi_solid *s, demi_d3 x, const double *c,
+                             int32_t number, demi_flats *flats) {
     const double bar_x = (p->px - 2*p->a)/4, bar_y = (p->py - 2*p->b)/4;
+    const int closed = p->px > 0;
     int k, side;
     for (side = -1; side < 2; side += 2) {
         for (k = -1; k < 2; k += 2) {           /* k: which face */
-            const double row[3] = {c[0], c[1] + side*(p->b + bar_y), k*p->half};
-            const double link[3] = {c[0] + side*(p->a + bar_x), c[1], k*p->half};
-            const double row_half[3] = {p->px/2, bar_y, 0}, link_half[3] = {bar_x, p->b, 0};
-            demi_plate_flat(s, x, row, row_half, 2, -k, DEMI_SIEVE_FACE, flats);
-            if (p->px > 0) demi_plate_flat(s, x, link, link_half, 2, -k, DEMI_SIEVE_FACE, flats);
+            const demi_d3 row = demi_d(c[0], c[1] + side*(p->b + bar_y), k*p->half);
+            const demi_d3 link = demi_d(c[0] + side*(p->a + bar_x), c[1], k*p->half);
+            demi_plate_flat(s, x, row, demi_d(p->px/2, bar_y, 0), 2, -k, DEMI_SIEVE_FACE, flats);
+            if (closed)
+                demi_plate_flat(s, x, link, demi_d(bar_x, p->b, 0), 2, -k, DEMI_SIEVE_FACE, flats);
         }
-        {
-            const double row[3] = {c[0], c[1] + side*p->b, 0};
-            const double link[3] = {c[0] + side*p->a, c[1], 0};
-            const double row_half[3] = {p->a, 0, p->half}, link_half[3] = {0, p->b, p->half};
-            demi_plate_flat(s, x, row, row_half, 1, side, number + (side > 0), flats);
-            if (p->px > 0) demi_plate_flat(s, x, link, link_half, 0, side,
-                                           number + 2 + (side > 0), flats);
-        }
+        demi_plate_flat(s, x, demi_d(c[0], c[1] + side*p->b, 0), demi_d(p->a, 0, p->half), 1, side,
+                        number + (side > 0), flats);
+        if (closed)
+            demi_plate_flat(s, x, demi_d(c[0] + side*p->a, c[1], 0), demi_d(0, p->b, p->half), 0,
+                            side, number + 2 + (side > 0), flats);
     }
 }
 /* The same about a round one: the faces of its cell less the hole's disc, and its wall. */
-static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, const double *x,
+static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, demi_d3 x,
                                    const double *c, int32_t number, demi_flats *flats) {
-    const dem_vec3 from = demi_v((dem_real)(x[0] - c[0]), (dem_real)(x[1] - c[1]), (dem_real)x[2]);
-    const double hole[3] = {c[0] - x[0], c[1] - x[1], p->a};
+    const demi_d3 middle = demi_d(c[0] - x.x, c[1] - x.y, 0);
+    const double hole[3] = {middle.x, middle.y, p->a};
     const int six = p->lattices > 1, count = six ? 6 : 4;
     demi_generator l;
-    int i, k, e;
+    int i, k;
     memset(&l, 0, sizeof l);
     for (k = -1; k < 2; k += 2) {               /* k: which face */
-        const double n[3] = {0, 0, -(double)k}, at = k*x[2] - p->half;
-        double sides[6][2][3];
+        demi_half sides[6];
         demi_pressure press;
-        memset(sides, 0, sizeof sides);
         memset(&press, 0, sizeof press);
         for (i = 0; i < count; i++) {
             const double turn = DEMI_PI*(six ? i/3.0 : i/2.0);
-            const double way[2] = {demi_cos(turn), demi_sin(turn)};
-            for (e = 0; e < 2; e++) {
-                sides[i][0][e] = -way[e];
-                sides[i][1][e] = c[e] - x[e] + way[e]*p->px/2;
-            }
+            sides[i] = demi_half_of(middle, demi_d(demi_cos(turn), demi_sin(turn), 0), p->px/2);
         }
-        demi_solid_on_flat(s, n, at, sides, count, hole, &press);
+        demi_solid_on_flat(s, demi_d(0, 0, -k), k*x.z - p->half, sides, count, hole, &press);
         demi_flats_add(flats, DEMI_SIEVE_FACE, &press);
     }
     l.a = l.b = p->a;
     l.g = -p->half;
     l.h = p->half;
     l.side = 1;
-    demi_solid_on_generator(s, &l, from, 0, number, flats);
+    demi_solid_on_generator(s, &l, demi_plate_from(x, c), 0, number, flats);
 }
 
 /* --- for impulses, and laws with a range --- */
 
 /* The corners of a body, x the place of its centre. A sheet has no inside: a corner is beyond it
    where the way to it from the centre passes through solid. */
-static void demi_plate_corners(const demi_plate *p, const demi_solid *s, const double *x,
+static void demi_plate_corners(const demi_plate *p, const demi_solid *s, demi_d3 x,
                                demi_gaps *gaps) {
     const int sheet = !(p->half > 0);
-    int i, k, e;
+    int i, e;
     for (i = 0; i < s->corners; i++) {
-        const double *c = s->corner[i];
-        const double at[3] = {x[0] + c[0], x[1] + c[1], x[2] + c[2]};
-        double n[3][3], off[2], gap[3], o[3], t = 1;
+        const demi_d3 c = s->corner[i], at = demi_d3_add(x, c);
+        demi_d3 n[3];
+        double off[2], gap[3], t = 1;
         int solid, one, count = 1;
-        if (sheet && (at[2] > 0) != (x[2] > 0)) t = x[2]/(x[2] - at[2]);
-        solid = demi_plate_solid(p, x[0] + t*c[0], x[1] + t*c[1], n, off);
-        n[2][0] = n[2][1] = 0;
-        n[2][2] = (sheet ? x[2] : at[2]) < 0 ? 1 : -1;
+        if (sheet && (at.z > 0) != (x.z > 0)) t = x.z/(x.z - at.z);
+        solid = demi_plate_solid(p, x.x + t*c.x, x.y + t*c.y, n, off);
+        n[2] = demi_d(0, 0, (sheet ? x.z : at.z) < 0 ? 1 : -1);
         gap[0] = -off[0];
         gap[1] = -off[1];
-        gap[2] = -n[2][2]*at[2] - p->half;
+        gap[2] = -n[2].z*at.z - p->half;
         one = 2;
         if (!solid) {                           /* in a hole: beside its walls, if there at all */
             if (sheet || gap[2] > 0) continue;
@@ -17559,78 +17685,62 @@ static void demi_plate_corners(const demi_plate *p, const demi_solid *s, const d
         } else if (!sheet && !(off[0] > 0 && off[1] > 0))
             for (e = 0; e < 2; e++)             /* in solid: out by the shortest way */
                 if (off[e] > 0 && gap[e] > gap[one]) one = e;
-        for (e = one; e < one + count; e++) {
-            for (k = 0; k < 3; k++) o[k] = c[k] + n[e][k]*gap[e]/2;
-            demi_gaps_add(gaps, DEMI_SIEVE_FACE, n[e], o, gap[e]);
-        }
+        for (e = one; e < one + count; e++)
+            demi_gaps_add(gaps, DEMI_SIEVE_FACE, n[e], demi_d3_plus(c, gap[e]/2, n[e]), gap[e]);
     }
 }
 /* A line from a to b, in a body's frame, and what lies `thick` around it: a wire, or (0) the rim of
    a hole, where neither the face, which goes on along out, nor the hole's wall, along down (a sheet
    has none), goes on towards the body. A face of the body that lies along the line is held by both
    ends of what it covers. */
-static void demi_line_gaps(const demi_solid *s, const double *a, const double *b, double thick,
-                           const double *out, const double *down, int32_t element,
-                           demi_gaps *gaps) {
-    const int32_t *loop = s->rim + s->faces + 1;
+static void demi_line_gaps(const demi_solid *s, demi_d3 a, demi_d3 b, double thick, demi_d3 out,
+                           demi_d3 down, int32_t element, demi_gaps *gaps) {
+    const demi_d3 along = demi_d3_sub(b, a);
     demi_solid line;
     demi_simplex tells;
-    double n[3] = {0, 0, 0}, along[3], t[2] = {0, 1}, on, gap;
-    int i, k, f;
+    demi_d3 n = demi_d(0, 0, 0);
+    double t[2] = {0, 1}, on, gap;
+    int i, k, f, ends;
     line.faces = 0;
     line.rim = 0;
     line.corners = 2;
-    for (k = 0; k < 3; k++) {
-        line.corner[0][k] = a[k];
-        line.corner[1][k] = b[k];
-        line.centre[k] = (a[k] + b[k])/2;
-    }
-    gap = demi_solids_gap(s, &line, n, &tells) - thick;
-    if (!(gap < gaps->range) || -demi_dot3(n, out) > 1e-9 || -demi_dot3(n, down) > 1e-9)
+    line.corner[0] = a;
+    line.corner[1] = b;
+    line.centre = demi_d3_scale(demi_d3_add(a, b), 0.5);
+    gap = demi_solids_gap(s, &line, &n, &tells) - thick;
+    if (!(gap < gaps->range) || -demi_d3_dot(n, out) > 1e-9 || -demi_d3_dot(n, down) > 1e-9)
         return;
     f = demi_solid_facing(s, n, &on);
-    demi_sub3(b, a, along);
-    if (on >= DEMI_FLUSH && fabs(demi_dot3(s->plane[f], along)*s->plane[f][3]) <
-        sqrt((1 - DEMI_FLUSH*DEMI_FLUSH)*demi_dot3(along, along)))
-        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {       /* between the sides of the face */
-            const double *p = s->corner[loop[i]];
-            const double *q = s->corner[loop[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]]];
-            double e[3], in[3], from[3], at, way;
-            demi_sub3(q, p, e);
-            demi_cross3(s->plane[f], e, in);
-            demi_sub3(a, p, from);
-            at = demi_dot3(in, from);
-            way = demi_dot3(in, along);
-            if (way > 0) t[0] = DEMI_MAX(t[0], -at/way);
-            else if (way < 0) t[1] = DEMI_MIN(t[1], -at/way);
-            else if (at < 0) t[1] = -1;
-        }
-    else t[1] = -1;
-    for (i = 0; i < 2; i++) {
-        const int ends = t[0] < t[1];
-        double x[3] = {0, 0, 0}, m[3], d[3];
-        for (k = 0; k < 3; k++) m[k] = ends ? s->plane[f][k]*s->plane[f][3] : n[k];
-        for (k = 0; k < 3 && ends; k++) x[k] = a[k] + t[i]*along[k];
-        for (f = ends ? f : 0; f < tells.count && !ends; f++)
-            for (k = 0; k < 3; k++) x[k] += tells.part[f]*line.corner[tells.at[f].b][k];
-        if (ends) {
-            demi_sub3(x, s->corner[loop[s->rim[f]]], d);
-            gap = demi_dot3(m, d) - thick;
-        }
-        for (k = 0; k < 3; k++) x[k] -= m[k]*(thick + gap/2);
-        demi_gaps_add(gaps, element, m, x, gap);
-        if (!ends) break;
+    ends = on >= DEMI_FLUSH && fabs(demi_d3_dot(s->face[f].slope, along)*s->face[f].high) <
+        sqrt((1 - DEMI_FLUSH*DEMI_FLUSH)*demi_d3_square(along));
+    for (i = ends ? s->rim[f] : 0; ends && i < s->rim[f + 1]; i++) {   /* sides of the face */
+        const demi_d3 p = demi_solid_corner(s, f, i);
+        const demi_d3 e = demi_d3_sub(demi_solid_corner(s, f, i + 1), p);
+        const demi_d3 in = demi_d3_cross(s->face[f].slope, e);
+        const double at = demi_d3_dot(in, demi_d3_sub(a, p)), way = demi_d3_dot(in, along);
+        if (way > 0) t[0] = DEMI_MAX(t[0], -at/way);
+        else if (way < 0) t[1] = DEMI_MIN(t[1], -at/way);
+        else if (at < 0) t[1] = -1;
+    }
+    ends = ends && t[0] < t[1];
+    if (ends) n = demi_d3_scale(s->face[f].slope, s->face[f].high);
+    for (i = 0; i < 1 + ends; i++) {
+        demi_d3 x = ends ? demi_d3_plus(a, t[i], along) : demi_d(0, 0, 0);
+        for (k = 0; k < tells.count && !ends; k++)
+            x = demi_d3_plus(x, tells.part[k], line.corner[tells.at[k].b]);
+        if (ends)
+            gap = demi_d3_dot(n, demi_d3_sub(x, demi_solid_corner(s, f, s->rim[f]))) - thick;
+        demi_gaps_add(gaps, element, n, demi_d3_plus(x, -(thick + gap/2), n), gap);
     }
 }
 /* The rims of the hole at c, above and below; reach: how far a rim without end is followed, m. */
-static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const double *x,
-                            const double *c, int32_t number, double reach, demi_gaps *gaps) {
+static void demi_plate_rims(const demi_plate *p, const demi_solid *s, demi_d3 x, const double *c,
+                            int32_t number, double reach, demi_gaps *gaps) {
     const double far = 2*p->a + reach;
     demi_wall washer;
     int k, side, set;
     if (p->round) {
-        const dem_vec3 from = demi_v((dem_real)(x[0] - c[0]), (dem_real)(x[1] - c[1]),
-                                     (dem_real)x[2]);
+        const demi_d3 from = demi_plate_from(x, c);
         memset(&washer, 0, sizeof washer);
         washer.ring_count = p->half > 0 ? 4 : 2;
         for (k = 0; k < washer.ring_count; k++) {
@@ -17646,14 +17756,13 @@ static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const doub
             for (set = 0; set < 1 + (p->px > 0); set++) {   /* along x; along y */
                 const double off = side*(set ? p->a : p->b), half = set ? p->b : p->a;
                 const double size = half > 0 ? half : reach;
-                const double down[3] = {0, 0, p->half > 0 ? -(double)k : 0};
-                double a[3], b[3], out[3] = {0, 0, 0};
-                a[set] = c[set] - x[set] - size;
-                b[set] = c[set] - x[set] + size;
-                a[!set] = b[!set] = c[!set] - x[!set] + off;
-                a[2] = b[2] = k*p->half - x[2];
-                out[!set] = side;
-                demi_line_gaps(s, a, b, 0, out, down, number + 2*set + (side > 0), gaps);
+                const demi_d3 along = demi_d(!set, set, 0), aside = demi_d(set, !set, 0);
+                const demi_d3 rim = demi_d3_plus(demi_d(c[0] - x.x, c[1] - x.y, k*p->half - x.z),
+                                                 off, aside);
+                demi_line_gaps(s, demi_d3_plus(rim, -size, along), demi_d3_plus(rim, size, along),
+                               0, demi_d3_scale(aside, side),
+                               demi_d(0, 0, p->half > 0 ? -k : 0), number + 2*set + (side > 0),
+                               gaps);
             }
 }
 
@@ -17662,36 +17771,35 @@ static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const doub
 /* A plate, about x, up to reach from there: the cells of holes that the body lies over. A body that
    ends within `hair` of a face lies on it: it does not catch at the rims of holes that it slides
    over. */
-static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, const double *x,
-                             double reach, double hair, int springs, demi_flats *flats,
+static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, demi_d3 x,
+                             double reach, double hair, int pressing, demi_flats *flats,
                              demi_gaps *gaps) {
     const demi_plate p = demi_plate_of(sieve);
-    const double cell[2] = {0.6*p.px, 0.6*p.py};        /* of one with six sides, too */
-    double lo[3], hi[3], u, v, c[2];
+    const double r = gaps->range;
+    const demi_d3 cell = demi_d(0.6*p.px, 0.6*p.py, 0); /* of one with six sides, too */
+    const demi_d3 range = demi_d(r, r, r);
+    demi_d3 lo = demi_d(0, 0, 0), hi = lo;
+    double u, v, c[2];
     int i, k;
-    for (k = 0; k < 3; k++) {
-        lo[k] = hi[k] = 0;
-        for (i = 0; i < s->corners; i++) {
-            lo[k] = DEMI_MIN(lo[k], s->corner[i][k]);
-            hi[k] = DEMI_MAX(hi[k], s->corner[i][k]);
-        }
-        lo[k] += x[k] - gaps->range - (k < 2 ? cell[k] : 0);
-        hi[k] += x[k] + gaps->range + (k < 2 ? cell[k] : 0);
+    for (i = 0; i < s->corners; i++) {
+        lo = demi_d3_lowest(lo, s->corner[i]);
+        hi = demi_d3_highest(hi, s->corner[i]);
     }
-    if (lo[2] > p.half || hi[2] < -p.half) return;
-    gaps->flat = fabs(lo[2] + gaps->range - p.half) < hair ||
-        fabs(hi[2] - gaps->range + p.half) < hair;
+    lo = demi_d3_add(lo, demi_d3_sub(demi_d3_sub(x, range), cell));
+    hi = demi_d3_add(hi, demi_d3_add(demi_d3_add(x, range), cell));
+    if (lo.z > p.half || hi.z < -p.half) return;
+    gaps->flat = fabs(lo.z + r - p.half) < hair || fabs(hi.z - r + p.half) < hair;
     if (gaps->range > 0) demi_plate_corners(&p, s, x, gaps);
     for (k = 0; k < p.lattices; k++) {
         const double du = p.px > 0 ? p.px : 1, shift_x = k*p.px/2, shift_y = k*p.py/2;
-        const double u0 = p.px > 0 ? (floor((lo[0] - shift_x)/du) + 1)*du + shift_x : x[0];
-        const double u1 = p.px > 0 ? hi[0] : x[0] + 0.5;
-        const double v0 = (floor((lo[1] - shift_y)/p.py) + 1)*p.py + shift_y;
-        for (v = v0; v < hi[1]; v += p.py)
+        const double u0 = p.px > 0 ? (floor((lo.x - shift_x)/du) + 1)*du + shift_x : x.x;
+        const double u1 = p.px > 0 ? hi.x : x.x + 0.5;
+        const double v0 = (floor((lo.y - shift_y)/p.py) + 1)*p.py + shift_y;
+        for (v = v0; v < hi.y; v += p.py)
             for (u = u0; u < u1; u += du) {
                 const int32_t number = demi_plate_hole(&p, u, v, c);
-                if (springs && p.round) demi_plate_press_round(&p, s, x, c, number, flats);
-                else if (springs) demi_plate_press(&p, s, x, c, number, flats);
+                if (pressing && p.round) demi_plate_press_round(&p, s, x, c, number, flats);
+                else if (pressing) demi_plate_press(&p, s, x, c, number, flats);
                 if (gaps->range > 0) demi_plate_rims(&p, s, x, c, number, reach, gaps);
             }
     }
@@ -17699,11 +17807,12 @@ static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, c
 /* One set of parallel wires: each a cylinder about z of a frame of axes turn. x: of the centre, in
    the sieve's. */
 static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_solid *s, dem_vec3 x,
-                             double reach, int springs, demi_flats *flats, demi_gaps *gaps) {
+                             double reach, int pressing, demi_flats *flats, demi_gaps *gaps) {
     const double pitch = (double)(sieve->aperture + sieve->bar), q = (double)sieve->bar/2;
     const double h = (double)(set ? -sieve->lift/2 : sieve->lift/2);
     const double u = (double)(set ? x.y : x.x), v = (double)(set ? x.x : x.y);
-    const double last = floor((u + reach + q)/pitch - 0.5), none[3] = {0, 0, 0};
+    const double last = floor((u + reach + q)/pitch - 0.5);
+    const demi_d3 none = demi_d(0, 0, 0);
     demi_generator l;
     double k;
     memset(&l, 0, sizeof l);
@@ -17713,38 +17822,31 @@ static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_so
     l.side = -1;
     for (k = floor((u - reach - q)/pitch - 0.5) + 1; k <= last; k++) {
         const dem_real across = (dem_real)(u - (k + 0.5)*pitch), up = x.z - (dem_real)h;
-        const dem_vec3 from = set ? demi_v(across, up, x.x) : demi_v(up, across, x.y);
+        const demi_d3 from = demi_d3_of(set ? demi_v(across, up, x.x) : demi_v(up, across, x.y));
         const int32_t number = demi_sieve_number(k, 0, set);
-        if (springs) demi_solid_on_generator(s, &l, from, 1, number, flats);
-        if (gaps->range > 0) {
-            const double a[3] = {-(double)from.x, -(double)from.y, -reach};
-            const double b[3] = {-(double)from.x, -(double)from.y, reach};
-            demi_line_gaps(s, a, b, q, none, none, number, gaps);
-        }
+        if (pressing) demi_solid_on_generator(s, &l, from, 1, number, flats);
+        if (gaps->range > 0)
+            demi_line_gaps(s, demi_d(-from.x, -from.y, -reach), demi_d(-from.x, -from.y, reach), q,
+                           none, none, number, gaps);
     }
 }
-static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const dem_sieve_desc *sieve = &wall->sieve;
-    const dem_real *R = wall->pose.rotation;
-    const int wires = sieve->kind == DEM_SIEVE_WIRES || sieve->kind == DEM_SIEVE_BARS;
-    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1, springs = !demi_impulsive(w);
-    const double range = (double)demi_range(w, part->radius);
+static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
+                                 demi_touching *out) {
+    demi_view v = *start;
+    const dem_sieve_desc *sieve = &v.wall->sieve;
+    const dem_real *R = v.wall->pose.rotation;
+    const int wires = demi_sieve_wires(sieve), sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1;
+    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const double range = (double)demi_range(v.w, part->radius);
     const double reach = (double)part->radius + range;
     demi_flats flats;
     demi_gaps gaps;
     demi_solid s;
-    int k, set, i, e, count = 0;
-    *places = w->touching + w->domains[d].touching_first;
+    int set, i, e, count = 0;
     gaps.range = range;
     gaps.flat = 0;
-    for (k = first; k < last; k++) {
-        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-        if (w->wall_gap[base + k] > gone) continue;
+    while (demi_view_next(&v)) {
+        if (*v.gap > v.gone) continue;
         for (set = 0; set < sets; set++) {
             dem_real turn[9];
             demi_part local;
@@ -17753,11 +17855,10 @@ static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last,
             local = demi_part_local(turn, part);
             demi_solid_of(&local, demi_v(0, 0, 0), &s);
             flats.count = gaps.count = 0;
-            if (wires) demi_wires_touch(sieve, set, &s, x, reach, springs, &flats, &gaps);
-            else demi_plate_touch(sieve, &s, x0, reach, 1e-3*(double)demi_part_thin(part), springs,
-                                  &flats, &gaps);
-            count += demi_wall_places(w, &flats, &gaps, turn, wall->share, part, at, shift,
-                                      *places + count);
+            if (wires) demi_wires_touch(sieve, set, &s, v.x, reach, pressing, &flats, &gaps);
+            else demi_plate_touch(sieve, &s, demi_d3_of(v.x), reach,
+                                  1e-3*(double)demi_part_thin(part), pressing, &flats, &gaps);
+            count += demi_wall_places(&v, &flats, &gaps, turn, part, out + count);
         }
     }
     return count;
@@ -17769,7 +17870,6 @@ static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(D
 /* Why a part does not know a wall, and what to do; 0: it does. */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
     const dem_sieve_desc *s = &wall->sieve;
-    const int plate = s->kind != DEM_SIEVE_WIRES && s->kind != DEM_SIEVE_BARS;
     if (!demi_touches[wall->kind][part])
         return "contacts between the two are not available; make bodies clusters of spheres, or "
                "the wall a mesh or a resolved profile";
@@ -17779,7 +17879,7 @@ static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int 
     if (s->radius > 0)
         return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
                "cylinder around it";
-    if (plate && !(s->thickness > 0) && !demi_impulsive(w))
+    if (!demi_sieve_wires(s) && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
         return "a sheet without thickness has no inside for springs to act on; give the sieve a "
             "thickness, or use impulses";
     return 0;
@@ -17880,19 +17980,19 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
                                  dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_BALL;
     const demi_part *ball = first ? p : q;
-    const double x[3] = {0, 0, 0};
-    double at[3], off;
+    demi_d3 at;
+    double off;
     demi_solid s;
     demi_solid_of(first ? q : p, first ? gap : demi_scale(gap, -1), &s);
-    off = demi_solid_near(&s, x, at);
+    off = demi_solid_near(&s, demi_d(0, 0, 0), &at);
     c->overlap = ball->radius - (dem_real)off;
     if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
-    c->normal = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    c->normal = demi_d3_real(at);
     c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
                                    : demi_unit(gap);
     c->deep = c->overlap/ball->radius;
     c->r_eff = ball->radius;
-    c->arm_a = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    c->arm_a = demi_d3_real(at);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -17905,18 +18005,17 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
                                 dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
     const demi_part *egg = first ? p : q;
-    const double x[3] = {0, 0, 0};
     dem_vec3 at, n;
-    double near[3], W0;
+    demi_d3 near;
+    double W0;
     demi_solid s;
     demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
-    W0 = demi_solid_near(&s, x, near);
+    W0 = demi_solid_near(&s, demi_d(0, 0, 0), &near);
     if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
         return 0;
-    at = demi_v((dem_real)near[0]*egg->axes.x, (dem_real)near[1]*egg->axes.y,
-                (dem_real)near[2]*egg->axes.z);
-    n = demi_v((dem_real)near[0]/egg->axes.x, (dem_real)near[1]/egg->axes.y,
-               (dem_real)near[2]/egg->axes.z);
+    at = demi_d3_real(near);
+    n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
+    at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
     c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the gradient passes through the polyhedron's point */
@@ -17944,22 +18043,20 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     const double ra = demi_part_equal(p), rb = demi_part_equal(q);
     const double range = (double)demi_range(w, p->radius + q->radius);
     const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
-    const double guess[3] = {(double)from.x, (double)from.y, (double)from.z};
     demi_simplex tells;
     demi_solid a, b;
     int k, nearest = 0;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
-    if (!demi_solids_spots(&a, &b, 0, range, guess, &tells, spots)) return 0;
-    c->normal = demi_v((dem_real)spots->normal[0], (dem_real)spots->normal[1],
-                       (dem_real)spots->normal[2]);
+    if (!demi_solids_spots(&a, &b, 0, range, demi_d3_of(from), &tells, spots)) return 0;
+    c->normal = demi_d3_real(spots->normal);
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = p->centre;
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
-    if (demi_impulsive(w)) return 1;
+    if (!demi_response_is(w, DEMI_PRESSING)) return 1;
     for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
     for (k = 0; k < 4; k++) {
-        if (k != nearest) memcpy(spots->x[k], spots->x[nearest], sizeof *spots->x);
+        spots->x[k] = spots->x[nearest];
         spots->gap[k] = spots->gap[nearest];
     }
     spots->count = 4;
@@ -17974,8 +18071,8 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_pressure s;
     double overlap;
     (void)lambda;
-    if (demi_impulsive(w)) return demi_polyhedra_near(w, p, q, gap, c, spots);
-    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)))
+    if (!demi_response_is(w, DEMI_PRESSING) || demi_face_keeps(p, q, gap) ||
+        demi_face_keeps(q, p, demi_scale(gap, -1)))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
@@ -18036,16 +18133,19 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     return c;
 }
 
-/* Number in its domain of the old contact with the same partner and parts, or with the same wall,
-   part and element, among those that body a had; -1: none. */
-DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds, int b,
-                              int part_a, int part_b, int wall, int element, int corner) {
+/* --- which contact of a step ago a new one continues: its number in its domain, or -1. old: the
+       contacts that body a had. --- */
+
+/* The one with the same partner and parts, or with the same wall, part, element and corner. */
+DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds,
+                              const demi_kept *c) {
     const int first = (int)(old - demi_kept_of(w, d));
     int *next = &w->domains[d].kept_same, n, i = *next - first;
     if (i < 0 || i >= olds) i = 0;              /* mostly it is the one after the last */
     for (n = 0; n < olds; n++) {
-        if (old[i].element == element && old[i].wall == wall && old[i].part_a == part_a &&
-            old[i].b == b && old[i].part_b == part_b && old[i].corner == corner) {
+        if (old[i].element == c->element && old[i].wall == c->wall &&
+            old[i].part_a == c->part_a && old[i].b == c->b && old[i].part_b == c->part_b &&
+            old[i].corner == c->corner) {
             *next = first + i + 1;
             return first + i;
         }
@@ -18053,62 +18153,62 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
     }
     return -1;
 }
-/* The same for a polyhedron's contact with a wall by springs: round walls, wires and holes are one
-   element on all sides of the body, so of several the one of the nearest normal, within 45
-   degrees. */
-static int demi_kept_turned(const dem_world *w, int d, const demi_kept *old, int olds,
-                            const demi_kept *c) {
-    dem_real nearest = DEM_R(0.7);
+/* Where that is not enough, the one that fits best:
+       TURNED   a polyhedron on a wall, by springs: of its element and corner the nearest normal
+                within 45 degrees, since round walls, wires and holes are one element on all sides
+       NEAREST  polyhedra by impulses: of the same pair or wall and within about 18 degrees the
+                nearest point that no contact before this one continues
+       SLID     on a wall, where nothing else fits: the body slid on to a neighbouring element */
+enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
+/* How well old contact o, number `from`, fits c, which slid on: by their normals; where those are
+   nearly the same (within some 3 degrees), rather one that nothing continues yet; then the same
+   wall, and the same sign of what they count. A place of a surface that begins at depth has split
+   off another one, and takes a copy of its memory: as often as two come, one that takes away comes
+   with them (>>facets). Walls that do not move against each other are one here. */
+static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
+                               const demi_kept *fresh, int freshs, const demi_kept *c) {
+    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
+    const demi_wall *wall = &w->walls[c->wall];
+    const int crossed = demi_wall_is(wall, DEMI_CROSSED), faceted = demi_faceted(wall);
+    const int alike = (o->weight < 0) == (c->share < 0);
+    int j, taken = 0;
+    if (w->walls[o->wall].group != wall->group || ((crossed || !(c->share < 0)) && !alike))
+        return DEMI_FAR_OFF;
+    for (j = 0; j < freshs && !taken; j++)
+        taken = fresh[j].wall == o->wall && fresh[j].element == o->element;
+    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* one alone may: the nearest */
+        const dem_real nearer = demi_dot(o->normal, demi_sub(fresh[j].normal, c->normal));
+        taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
+            (fresh[j].from == from || (fresh[j].from < 0 &&
+             (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
+    }
+    if (taken && (!faceted || !(2*c->overlap > o->overlap))) return DEMI_FAR_OFF;
+    return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
+        (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
+}
+/* fresh: all new contacts of the pair, or with the wall; NEAREST: those up to c. */
+static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
+                          const demi_kept *fresh, int freshs, const demi_kept *c,
+                          enum demi_fit how) {
+    const int first = (int)(old - demi_kept_of(w, d));
+    dem_real most = DEMI_FAR_OFF;
     int i, best = -1;
     for (i = 0; i < olds; i++) {
-        const dem_real along = demi_dot(old[i].normal, c->normal);
-        if (old[i].element != c->element || old[i].wall != c->wall || old[i].b >= 0 ||
-            old[i].part_a != c->part_a || old[i].corner != c->corner || !(along > nearest))
-            continue;
-        nearest = along;
-        best = (int)(old - demi_kept_of(w, d)) + i;
-    }
-    return best;
-}
-/* How well an old contact fits a new one: by their normals; where those are nearly the same (within
-   some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
-   what they count. */
-DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, int sign) {
-    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    return demi_dot(old, now) + (taken ? 0 : DEM_R(1e-3)) + (wall ? hair : 0) + (sign ? 2*hair : 0);
-}
-/* The same for a contact with a wall where that finds none: the one of the same part and of nearest
-   normal, within about 18 degrees, that nothing else continues: the grain slid on to the neighbour.
-   A place of a surface that begins at depth has split off another one, and takes a copy of its
-   memory: as often as two come, one that takes away comes with them (>>facets). Walls that do not
-   move against each other are one here. fresh: all that are new with this wall. */
-static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int olds,
-                          const demi_kept *fresh, int freshs, const demi_kept *c) {
-    const int first = (int)(old - demi_kept_of(w, d));
-    const int crossed = demi_wall_is(&w->walls[c->wall], DEMI_CROSSED);
-    const int faceted = demi_faceted(&w->walls[c->wall]);
-    dem_real nearest = 0;
-    int i, j, best = -1;
-    for (i = 0; i < olds; i++) {
-        dem_real along;
-        int taken = 0;
-        if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) || old[i].b >= 0 ||
-            old[i].part_a != c->part_a || old[i].corner != c->corner ||
-            w->walls[old[i].wall].group != w->walls[c->wall].group ||
-            ((crossed || !(c->share < 0)) && (old[i].weight < 0) != (c->share < 0))) continue;
-        for (j = 0; j < freshs && !taken; j++)
-            taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
-        for (j = 0; j < freshs && !taken && !faceted; j++) {    /* one alone may: the nearest */
-            const dem_real nearer = demi_dot(old[i].normal, demi_sub(fresh[j].normal, c->normal));
-            taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
-                (fresh[j].from == first + i || (fresh[j].from < 0 &&
-                 (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
+        const demi_kept *o = &old[i], *f = fresh;
+        dem_real fit = demi_dot(o->normal, c->normal);
+        if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
+            o->part_a != c->part_a || o->part_b != c->part_b ||
+            (o->wall != c->wall && how != DEMI_FIT_SLID) ||
+            (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
+            (o->element != c->element && how == DEMI_FIT_TURNED)) continue;
+        if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
+        if (how == DEMI_FIT_NEAREST) {
+            const dem_vec3 way = demi_sub(o->arm_a, c->arm_a);
+            while (f < c && f->from != first + i) f++;
+            fit = f < c ? DEMI_FAR_OFF : -demi_dot(way, way);
         }
-        along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
-                           (old[i].weight < 0) == (c->share < 0));
-        if (!(along > nearest)) continue;
-        if (taken && (!faceted || !(2*c->overlap > old[i].overlap))) continue;
-        nearest = along;
+        if (!(fit > most)) continue;
+        most = fit;
         best = first + i;
     }
     return best;
@@ -18269,7 +18369,7 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
         if (!at) return 0;
         if (k) memcpy(at, c, offsetof(demi_kept, coef));
         at->corner = k;
-        if (k) at->from = demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k);
+        if (k) at->from = demi_kept_same(w, d, old, olds, at);
         at->spread = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
                               demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
         if (k) {
@@ -18280,27 +18380,6 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     c->arm_a = demi_add(c->arm_a, c->spread);
     c->arm_b = demi_add(c->arm_b, c->spread);
     return 1;
-}
-/* Where impulses hold polyhedra: which of a step ago each point of one contact continues: the
-   nearest, of the same pair or wall and within about 18 degrees, that none before it does. first:
-   of all points so far; its last is asked about. */
-static int demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, int olds,
-                             const demi_kept *first, const demi_kept *c) {
-    const int begin = (int)(old - demi_kept_of(w, d));
-    dem_real least = DEM_R(1e30);
-    int i, best = -1;
-    for (i = 0; i < olds; i++) {
-        const dem_vec3 way = demi_sub(old[i].arm_a, c->arm_a);
-        const demi_kept *f;
-        if (old[i].b != c->b || old[i].part_a != c->part_a || old[i].part_b != c->part_b ||
-            old[i].wall != c->wall || !(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) ||
-            !(demi_dot(way, way) < least)) continue;
-        for (f = first; f < c && f->from != begin + i; f++) continue;
-        if (f < c) continue;
-        least = demi_dot(way, way);
-        best = begin + i;
-    }
-    return best;
 }
 /* A contact of polyhedra by its points: arm_a and arm_b are to the first one's centre. 0: no room.
    */
@@ -18313,8 +18392,7 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
     c->share /= (dem_real)spots->count;
     c->corners = spots->count;
     for (k = 0; k < spots->count; k++) {
-        const dem_vec3 x = demi_v((dem_real)spots->x[k][0], (dem_real)spots->x[k][1],
-                                  (dem_real)spots->x[k][2]);
+        const dem_vec3 x = demi_d3_real(spots->x[k]);
         demi_kept *at = k ? demi_kept_new(w, d) : c;
         if (!at) return 0;
         if (k) memcpy(at, c, offsetof(demi_kept, coef));
@@ -18323,8 +18401,9 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         at->arm_b = demi_add(base_b, x);
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
-        at->from = demi_impulsive(w) ? demi_kept_nearest(w, d, old, olds, c, at)
-            : demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k);
+        at->from = demi_response_is(w, DEMI_PRESSING)
+            ? demi_kept_same(w, d, old, olds, at)
+            : demi_kept_best(w, d, old, olds, c, k + 1, at, DEMI_FIT_NEAREST);
     }
     return 1;
 }
@@ -18336,7 +18415,7 @@ DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int sen
     c->a = a; c->b = b; c->part_a = i; c->part_b = j;
     c->wall = c->element = -1;
     c->send = send;
-    c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1, 0);
+    c->from = demi_kept_same(w, d, old, olds, c);
     return c;
 }
 /* The contact of two parts, if they touch: all that touch finds of it. 0: no room. */
@@ -18500,9 +18579,7 @@ static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)}
 static double demi_wall_r_eff(const demi_wall *wall, double r) {
     const double q = (double)wall->sieve.bar/2;
     if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
-    if (wall->sieve.kind == DEM_SIEVE_WIRES || wall->sieve.kind == DEM_SIEVE_BARS)
-        return r*sqrt(q/(r + q));
-    return r;
+    return demi_sieve_wires(&wall->sieve) ? r*sqrt(q/(r + q)) : r;
 }
 /* A sheet, which pushes to both sides, pushes a body on once its centre is through. Then contact c
    has turned round within a step, and nothing is left of the one before: its overlap is what is
@@ -18530,18 +18607,15 @@ static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
     return p->kind != DEMI_ELLIPSOID || place->overlap > 0 ||
         demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
 }
-/* Contacts of part k with one wall, from candidates first .. last - 1 of its body: all of them,
-   then what each continues. shaped: 0 for a sphere, which has a copy of the code: its places weigh
-   by themselves, as they are found. */
-DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int shaped, int k,
+/* Contacts of part k of a body with one wall: all of them, then what each continues. shaped: 0 for
+   a sphere, which has a copy of the code: its places weigh by themselves, as they are found. */
+DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
                                   const demi_part *p, const demi_kept *old, int olds) {
-    const int base = d*w->wall_stride, body = w->wall_body[base + first];
-    const int id = w->wall_id[base + first];
-    const demi_wall *wall = &w->walls[id];
-    const dem_vec3 at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
-    demi_touching *found = 0;
-    const int places = demi_touches[wall->kind][p->kind](w, d, first, last, demi_walls_gone(w), at,
-                                                         p, &found);
+    const demi_wall *wall = v->wall;
+    const int d = v->d, id = (int)(wall - w->walls);
+    const dem_vec3 at = v->at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
+    demi_touching *found = w->touching + w->domains[d].touching_first;
+    const int places = demi_touches[wall->kind][p->kind](v, p, found);
     demi_kept *fresh = 0, *c;
     int i, e, count = 0;
     for (i = 0; i < places; i++) {
@@ -18559,19 +18633,20 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         if (!shaped || p->kind == DEMI_BALL) {  /* the commonest, without a call */
             demi_ball_on_wall(w, wall, p, &found[i], c);
             if (shaped && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED && c->overlap > 0)
-                demi_wall_bend(wall, w->wall_element + base + first, last - first,
+                demi_wall_bend(wall, v->element, v->left,
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = !shaped || !c->corners
-            ? demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner)
-            : demi_impulsive(w) ? demi_kept_nearest(w, d, old, olds, fresh, c)
-            : demi_kept_turned(w, d, old, olds, c);
+        c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
+            : demi_kept_best(w, d, old, olds, fresh, count, c,
+                             demi_response_is(w, DEMI_PRESSING) ? DEMI_FIT_TURNED
+                                                                : DEMI_FIT_NEAREST);
     for (i = 0, c = fresh; i < count; i++, c++) {
-        if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
+        if (c->from < 0 && olds)
+            c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* under way: to the end */
@@ -18582,36 +18657,34 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
 }
 /* Is a ball clear of what its body may touch of a wall? Told at once for a plane, which most balls
    of a cluster beside it are clear of; 0: to be looked at. */
-DEM_INLINE int demi_ball_clear(const dem_world *w, int candidate, int count, dem_vec3 at,
-                               dem_real r) {
-    const demi_wall *wall = &w->walls[w->wall_id[candidate]];
-    const dem_real *R = wall->pose.rotation;
+DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
+    const dem_real *R = v->wall->pose.rotation;
     dem_vec3 x;
-    if (wall->kind != DEMI_WALL_PLANE || count > 1) return 0;
-    x = demi_sub(demi_add(at, demi_at(w->wall_shift + 3*(size_t)candidate)), wall->pose.position);
-    return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(w, r))*DEM_R(1.001);
+    if (v->wall->kind != DEMI_WALL_PLANE || v->left > 1) return 0;
+    x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
+    return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
 /* Of one body with one wall. */
 static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
                                       const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
+    demi_view v = demi_view_of(w, d, first, last);
     const dem_real *balls;
     dem_real lone[4];
     int k, count;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
-        demi_kept_on_wall(w, d, first, last, 0, 0, &sphere, old, olds);
+        demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
         return;
     }
     balls = demi_balls_of(w, body, lone, &count);
     for (k = 0; k < parts; k++) {
         demi_part p;
-        if (balls && demi_ball_clear(w, d*w->wall_stride + first, last - first,
-                                     demi_add(demi_at(w->bodies.pos + 4*body),
-                                              demi_at(balls + 4*k)), balls[4*k + 3])) continue;
+        if (balls && demi_ball_clear(&v, demi_add(demi_at(w->bodies.pos + 4*body),
+                                                  demi_at(balls + 4*k)), balls[4*k + 3])) continue;
         p = demi_part_now(w, body, k);
-        demi_kept_on_wall(w, d, first, last, 1, k, &p, old, olds);
+        demi_kept_on_wall(w, &v, body, 1, k, &p, old, olds);
     }
     demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
 }
@@ -20498,9 +20571,7 @@ static void demi_knots_ahead(dem_world *w) {
             const dem_vec3 I = demi_at(w->bodies.moment + 4*body);
             const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z), m = dem_quat_unrotate(q, turn);
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
-            if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_flight_spiral(&q, L, I, inv, dt);
-            else if (w->desc.rotation == DEM_ROTATION_FINCHAM) demi_flight_fincham(&q, L, I, dt);
-            else demi_flight_splitting(&q, L, I, dt);
+            demi_rotation_rows[w->desc.rotation].fly(&q, L, I, inv, dt);
         } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
         s->knots[i].turned = q;
     }
@@ -20652,21 +20723,17 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
-        const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
-                             (double)w->desc.gravity.z};
+        const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
         if (k->mover >= 0)
-            s->knots[k->group].work -= (g[0]*k->x[0] + g[1]*k->x[1] + g[2]*k->x[2])*
-                (double)(w->bodies.mass[k->mover]*s->dt);
+            s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
         const double paid = group->open > 1 || !(group->work > group->bank) ? 1
             : DEMI_MAX(group->bank, 0)/group->work;
         const dem_real by = (dem_real)paid*s->dt;
-        const dem_vec3 way = demi_v((dem_real)k->x[0]*by, (dem_real)k->x[1]*by,
-                                    (dem_real)k->x[2]*by);
-        const dem_vec3 turn = demi_v((dem_real)k->x[3]*by, (dem_real)k->x[4]*by,
-                                     (dem_real)k->x[5]*by);
+        const dem_vec3 way = demi_scale(demi_d3_real(demi_d3_at(k->x)), by);
+        const dem_vec3 turn = demi_scale(demi_d3_real(demi_d3_at(k->x + 3)), by);
         dem_quat q;
         dem_real *o;
         if (!group->guarded || !group->open) continue;
@@ -21266,6 +21333,23 @@ enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };
    alone.
    --------------------------------------------------------------------------------------------- */
 
+/* Takes the time step as given, since no contact is too short for it; refuses what the solver does
+   not support. */
+static dem_result demi_impulses_settle(dem_world *w) {
+    const demi_solver_row *solver = &demi_solvers[w->desc.solver];
+    if (demi_impulses_twist(w) && !solver->moments)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
+                         "spinning friction, which the solver %s does not support; leave "
+                         "desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+    if (demi_joints_in_force(w) && !solver->joints)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
+                         "solver %s does not support; leave desc.solver at "
+                         "DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+    w->clock.dt = w->desc.dt;
+    w->clock.press_since = w->clock.steps;
+    w->stage.dt_valid = 1;
+    return DEM_OK;
+}
 /* Room for all contacts there may be. 0: memory ran out. */
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
@@ -21273,7 +21357,6 @@ static int demi_impulses_room(dem_world *w) {
     const size_t bodies = (size_t)w->bodies.count;
     size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
-    if (!demi_impulsive(w)) return 1;
     if (!demi_joints_room(w)) return 0;
     movers += (size_t)w->joint_count;
     for (d = 0; d < w->domain_count; d++) {
@@ -21513,7 +21596,7 @@ static void demi_some_ahead(dem_world *w, int index) {
             w->bodies.pos[k] += w->bodies.vel[k]*h;
     if (!w->bodies.orienting) return;
     memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
-    demi_orient_move(w, 0, begin, end, DEMI_TURN_AHEAD);
+    demi_orient_move(w, 0, begin, end);
 }
 static void demi_some_back(dem_world *w, int index) {
     const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
@@ -21567,33 +21650,27 @@ static void demi_impulses_due(dem_world *w) {
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
 }
-/* What was due is done, now that bodies have moved by it. */
-static void demi_impulses_book(dem_world *w) {
+/* What was due is done, now that bodies have moved by it; of springs nothing is due. */
+static void demi_due_book(dem_world *w) {
     static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
     int i;
     for (i = 0; i < 4; i++) w->booked.energy[flows[i]] += w->booked.due[i];
     w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
     w->booked.throughput += fabs(w->booked.due[3]);
 }
-/* One pair of spheres, if it pushes or overlaps, as demi_contact_force tells those of springs. */
-static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info *out,
-                             dem_vec3 *branch) {
+/* One near pair, if it has an impulse or overlaps: see demi_response_row. */
+static int demi_impulses_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                              dem_vec3 *gap) {
     const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;
     const dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
-    const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-    const demi_periods periods = demi_periods_of(w);
+    const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
     const dem_vec3 way = demi_near_way(w, at);
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
     if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
-    out->a = dem_body_id_get(w, a);
-    out->b = dem_body_id_get(w, b);
-    out->wall = 0;
     out->normal = demi_scale(way, 1/l);
     out->overlap = overlap;
-    if (branch) *branch = way;
-    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(way, x[3]/(x[3] + y[3]))));
+    *gap = way;
     out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
                           demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
     return 1;
@@ -22144,18 +22221,15 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
    a cylinder touches it; in a sieve's sheet there is no room, holes or not; the inside of a closed
    mesh is a place like any other. */
 static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
-    int j, a, b, c, f[3], l[3];
+    int j, n;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
+        dem_vec3 shift;
         if (wall->kind == DEMI_WALL_NONE) continue;
-        demi_wall_images(w, wall, x, radius, f, l);
-        for (c = f[2]; c <= l[2]; c++)
-            for (b = f[1]; b <= l[1]; b++)
-                for (a = f[0]; a <= l[0]; a++) {
-                    const dem_vec3 at = demi_add(x, demi_wall_shift(w, a, b, c));
-                    if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
-                                             demi_sub(at, wall->pose.position)), radius)) return 0;
-                }
+        for (n = 0; demi_wall_image(w, wall, x, radius, n, &shift); n++)
+            if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
+                                     demi_sub(demi_add(x, shift), wall->pose.position)), radius))
+                return 0;
     }
     return 1;
 }
@@ -22543,6 +22617,27 @@ static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc
     m = demi_shape_index(w, call, d->shapes[k]);
     return m < 0 || demi_walls_strange(w, call, m);
 }
+/* Of the sizes that were copied: what is drawn from. */
+static uint64_t demi_digest_sizes(const void *item) {
+    const demi_feed *f = (const demi_feed *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
+    return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
+}
+/* Rows of the desc, with which a demi_feed begins; `inside` keeps its name in files. */
+#define DEMI_FED(field, type) DEMI_ROW(dem_feed_desc, field, type)
+static const demi_field_row demi_feed_rows[] = {DEMI_FED(material, 'i'),
+    {"class_count", 0, DEMI_WHERE(dem_feed_desc, class_count), 'i', 0, DEMI_OVER, DEM_CLASSES, "",
+     0, 0, 0, "set it to the number of entries of radius and amount"}, DEMI_FED(radius, 'r'),
+    DEMI_FED(amount, 'd'), DEMI_FED(limited, 'i'), DEMI_FED(by_mass, 'i'),
+    DEMI_LIMITED(dem_feed_desc, rate, 'd', DEMI_FROM | DEMI_UNDER, 1e15, "1/s"),
+    DEMI_LIMITED(dem_feed_desc, start, 'd', DEMI_FROM, DBL_MAX, "s"),
+    DEMI_LIMITED_IF(dem_feed_desc, end, 'd', DEMI_FROM, DBL_MAX, "s", 0, 1, 0, 0),
+    DEMI_FED(box, 'v'), DEMI_FED(round, 'i'),
+    DEMI_LIMITED(dem_feed_desc, velocity, 'v', DEMI_ANY, DEMI_FARTHEST, "m/s"),
+    DEMI_LIMITED(dem_feed_desc, spread, 'r', DEMI_FROM, DEMI_FARTHEST, "m/s"), DEMI_FED(seed, 'u'),
+    DEMI_FED(materials, 'i'), DEMI_FED(shapes, 'i'), DEMI_ROW_NULL(demi_feed, desc.inside),
+    DEMI_ROW_DIGEST("sizes", demi_digest_sizes), DEMI_ROW_FREE(dem_feed_desc, inside_user),
+    DEMI_ROW_FREE(dem_feed_desc, sizes), DEMI_ROW_END};
 DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
     const char *call = "dem_feed_add";
@@ -22551,12 +22646,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     int k, m = 0, shaped = 0;
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
-    if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required); set "
-                  "it to the number of entries of radius and amount", call, d->class_count,
-                  (int)DEM_CLASSES);
-        return id;
-    }
+    if (demi_rows_check(w, call, demi_feed_rows, d, "")) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
@@ -22581,16 +22671,9 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
             feed.limit[k] = (uint64_t)count;
         }
     }
-    if (!demi_finite_double(d->rate) || !demi_finite_double(d->start) ||
-        !demi_finite_double(d->end) || !(d->rate >= 0) || !(d->rate < 1e15) ||
-        !(d->start >= 0) || !(d->end >= 0) || !(d->spread >= 0) ||
-        !((double)d->spread <= DEMI_FARTHEST) || !demi_place(d->velocity) ||
-        (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s, "
-                  "velocity up to %g m/s; all must be finite and at most %g, all but the velocity "
-                  ">= 0, the end 0 or after the start; a feed of all grains at once (rate 0) "
-                  "needs `limited`, or it never ends", call, d->rate, d->start, d->end,
-                  (double)d->spread, demi_size(d->velocity), DEMI_FARTHEST);
+    if (!(d->rate > 0) && !d->limited) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is 0, which means all grains at once, and such "
+                  "a feed needs `limited`, or it never ends; set limited or a rate", call);
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
@@ -22809,24 +22892,28 @@ DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state 
     return DEM_OK;
 }
 
+static const demi_field_row demi_outlet_rows[] = {
+    DEMI_ROW(dem_outlet_desc, frame, 'i'), DEMI_ROW(dem_outlet_desc, box, 'v'),
+    DEMI_LIMITED(dem_outlet_desc, beyond, 'r', DEMI_FROM, DBL_MAX, "m"),
+    DEMI_LIMITED(dem_outlet_desc, wanted_min, 'r', DEMI_FROM, DBL_MAX, "m"),
+    DEMI_LIMITED(dem_outlet_desc, wanted_max, 'r', DEMI_FROM, DBL_MAX, "m"),
+    DEMI_LIMITED(dem_outlet_desc, class_count, 'i', DEMI_FROM, DEM_CLASSES, ""),
+    DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
+    DEMI_ROW(dem_outlet_desc, keep, 'i'), DEMI_ROW_END};
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
     const char *call = "dem_outlet_add";
     demi_outlet outlet;
     dem_outlet id;
-    int kept = 0, k;
-    int bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
-        !demi_finite(d->beyond) || !demi_finite(d->wanted_min) || !demi_finite(d->wanted_max) ||
-        !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
-        (d->wanted_max > 0 && !(d->wanted_max > d->wanted_min));
+    int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
+    if (demi_rows_check(w, call, demi_outlet_rows, d, "")) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, beyond is %g m, wanted is %g to "
-                  "%g m; there must be 0 to %d classes with ascending radii, lengths must be "
-                  ">= 0, and wanted_min below wanted_max", call, d->class_count, (double)d->beyond,
-                  (double)d->wanted_min, (double)d->wanted_max, (int)DEM_CLASSES);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wanted is %g to %g m, and there are %d classes; "
+                  "wanted_min must be below wanted_max, and the radii of classes > 0, finite and "
+                  "ascending", call, (double)d->wanted_min, (double)d->wanted_max, d->class_count);
         return id;
     }
     if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
@@ -23479,10 +23566,9 @@ static double demi_spin_fastest(const dem_world *w) {
             most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
     return most;
 }
-/* Settles dt before stepping: chosen or checked. */
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
-    if (demi_impulsive(w))
+    if (!demi_response_is(w, DEMI_LASTING))
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts of "
                          "this world are impulses, which have no contact time; choose a step in "
                          "which grains move by less than a tenth of their radius");
@@ -23499,27 +23585,11 @@ static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
                      "grain far too light: find it with dem_world_check_print", dt, DEMI_DT_LEAST,
                      by);
 }
-/* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
-   A change of the step ends half steps of the old one first. */
-static dem_result demi_dt_settle(dem_world *w) {
+/* The time step of springs for the scene as it is, given or chosen; one that is not stable is
+   refused. A change of the step ends half steps of the old one first. */
+static dem_result demi_springs_settle(dem_world *w) {
     dem_advice a;
     double spin;
-    if (w->stage.dt_valid) return DEM_OK;
-    if (demi_impulsive(w)) {                    /* as given: no contact is too short for it */
-        if (demi_impulses_twist(w) && !demi_solvers[w->desc.solver].moments)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
-                             "spinning friction, which the solver %s does not support; leave "
-                             "desc.solver at DEM_SOLVER_GAUSS_SEIDEL",
-                             demi_solvers[w->desc.solver].name);
-        if (demi_joints_in_force(w) && !demi_solvers[w->desc.solver].joints)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
-                             "solver %s does not support; leave desc.solver at "
-                             "DEM_SOLVER_GAUSS_SEIDEL", demi_solvers[w->desc.solver].name);
-        w->clock.dt = w->desc.dt;
-        w->clock.press_since = w->clock.steps;
-        w->stage.dt_valid = 1;
-        return DEM_OK;
-    }
     if (!w->bodies.count && !w->feed_count) {          /* nothing to limit it: walls still move */
         if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
@@ -23556,7 +23626,7 @@ static dem_result demi_dt_settle(dem_world *w) {
 /* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
    given stays. */
 static int demi_outgrown(const dem_world *w) {
-    return !demi_impulsive(w) && !(w->desc.impact_speed > 0) &&
+    return demi_response_is(w, DEMI_LASTING) && !(w->desc.impact_speed > 0) &&
         w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
 /* The fastest body that moves, m/s. */
@@ -23569,7 +23639,8 @@ static double demi_fastest(const dem_world *w) {
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
-/* m/s, how fast a body may be in the next step by the forces that act now. */
+/* m/s, how fast a body may be in the next step by the forces that act now, with the midpoint rule
+   exactly. */
 static double demi_fastest_next(const dem_world *w) {
     double most = 0;
     int i, k;
@@ -23584,7 +23655,7 @@ static double demi_fastest_next(const dem_world *w) {
             a2 += a*a;
             v2 += v*v;
         }
-        if (inv > 0 && demi_impulsive(w)) most = DEMI_MAX(most, sqrt(v2));     /* exactly */
+        if (inv > 0 && demi_response_is(w, DEMI_MIDWAY)) most = DEMI_MAX(most, sqrt(v2));
         else if (inv > 0)
             most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.vel + 4*i)) +
                             sqrt(a2)*(double)w->clock.dt);
@@ -23592,10 +23663,11 @@ static double demi_fastest_next(const dem_world *w) {
     return most;
 }
 /* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
-   and walls unseen; but for impulses that see both come from as far off as they may go together.
+   and walls unseen; but for contacts that are foreseen from as far off as both may go together.
    speed: a bound, m/s; named: 1 where w has bodies to look for it. */
 static dem_result demi_speed_check(dem_world *w, double speed, int named) {
-    const double seen = demi_impulsive(w) ? w->margin.reach/2 : 0;
+    const int foreseen = demi_response_is(w, DEMI_FORESEEN);
+    const double seen = foreseen ? w->margin.reach/2 : 0;
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
     double most = 0;
     char who[80] = "a body";
@@ -23614,7 +23686,7 @@ static dem_result demi_speed_check(dem_world *w, double speed, int named) {
                      "use at most %.2g s%s, or find what made it so fast",
                      (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
                      0.1*radius/speed,
-                     demi_impulsive(w) ? ", or a law_range of twice that distance" : "");
+                     foreseen ? ", or a law_range of twice that distance" : "");
 }
 /* The same of walls that are thin: planes and cylinders cannot be passed. */
 static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
@@ -23639,7 +23711,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
 static void demi_held_report(const dem_world *w, FILE *out) {
     const demi_held *h = &w->clock.held;
     char who[64] = "a body";
-    if (demi_impulsive(w) || w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
+    if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
     fprintf(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
             h->from/(double)w->clock.dt, h->from);
     if (h->body > 0)
@@ -23686,14 +23758,15 @@ static dem_result demi_dt_check(dem_world *w) {
     int worst = 0;
     if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
     /* after a change of the scene the last kick may be that of a body which is gone */
-    result = demi_speed_check(w, demi_impulsive(w) ? demi_fastest_next(w)
+    result = demi_speed_check(w, demi_response_is(w, DEMI_MIDWAY) ? demi_fastest_next(w)
                               : w->clock.steps == w->clock.press_since
                               ? DEMI_MIN(demi_fastest(w) + w->margin.last_change,
                                          demi_fastest_next(w))
                               : w->margin.last_change + w->booked.speed_max, 1);
     if (result == DEM_OK)
         result = demi_wall_speed_check(w, (double)w->effects.radius_min, (double)w->clock.dt);
-    if (result != DEM_OK || w->clock.steps < w->clock.press_due || demi_impulsive(w)) return result;
+    if (result != DEM_OK || w->clock.steps < w->clock.press_due ||
+        !demi_response_is(w, DEMI_LASTING)) return result;
     limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
     demi_press_looked(&w->clock, w);
@@ -23738,6 +23811,7 @@ static void demi_ledger_book(dem_world *w) {
                                 DEMI_E_FORCE};
     double walls = 0;
     size_t i;
+    if (!w->desc.ledger) return;
     for (i = 0; i < sizeof flows/sizeof *flows; i++) {
         const double part = demi_sum_energy(w, flows[i]);
         w->booked.energy[flows[i]] += part;
@@ -23809,46 +23883,31 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>fields
-   Means on a grid. What is there at a place (a grain at its centre, a piece of the line between two
-   centres) is put into the cell it is in, or spread over the cells about it; in a periodic world
-   wherever one of its images is. A field is one array of sums, block after block, so that whoever
-   saves, copies or adds up fields need not know which there are. First how a contact looks to a
-   user: stress is made of that.
+   >>responses
+   The table of responses: what springs do and what impulses do where a step, or whoever looks at
+   contacts, calls the response in force. Their traits: DEMI_RESPONSES in >>layout.
    --------------------------------------------------------------------------------------------- */
-/* One kept contact, as users see it. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
-    const demi_periods p = demi_periods_of(w);
-    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
-    out->a = dem_body_id_get(w, c->a);
-    out->b = dem_body_id_get(w, c->b);
-    out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
-    out->normal = c->normal;
-    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
-    out->point = demi_place_of(&p, x);
-    out->overlap = c->overlap;
-    out->force = c->force;
+/* Springs: forces of all contacts that a domain owns, one after the other. */
+static void demi_springs(dem_world *w, int d) {
+    w->kernel(w, d);
+    demi_kept_clear(w, d);
+    demi_kept_respond(w, d);
 }
-/* One near pair, if it touches: its force by the law of the run on a copy of its memory, and,
-   unless null, the way from a's centre to b's. */
-static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
-                              dem_vec3 *branch) {
+/* One near pair, if it touches: its force by the law of the run, on a copy of its history. */
+static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                             dem_vec3 *gap) {
     demi_run r = demi_run_of(w, 0, w->effects.uniform);
     const demi_span span = demi_span_of(w, d, p, 1);
-    const int a = span.a[0], b = span.b[0];
-    const demi_periods periods = demi_periods_of(w);
     dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
     demi_calling was;
-    dem_vec3 gap;
     int e;
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
-    if (demi_impulsive(w)) return demi_impulse_info(w, d, p, out, branch);
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
-    gap = demi_rows_at(&tile.gap, 0);
+    *gap = demi_rows_at(&tile.gap, 0);
     demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
     if (!(tile.touch[0] > 0)) return 0;
     if (!out) return 1;
@@ -23862,16 +23921,67 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     demi_law(w, &c, memory, &f);
     demi_look_called(w, was);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
+    out->normal = demi_row(tile.normal, 0);
+    out->overlap = tile.overlap[0];
+    out->force = demi_row(tile.force, 0);
+    return 1;
+}
+
+typedef struct demi_response_row {
+    dem_result (*settle)(dem_world *w);         /* the time step of the scene as it is */
+    int (*room)(dem_world *w);                  /* for the contacts found; 0: memory ran out */
+    void (*respond)(dem_world *w, int domain);  /* forces of a domain's contacts, */
+    void (*solve)(dem_world *w);                /* or of all contacts at once */
+    void (*book)(dem_world *w);                 /* work and losses, after the forces of a step */
+    /* normal, overlap and force of entry p of a domain's near list, and the way from a's centre to
+       b's; without `out` nothing but the answer. 0: the two do not act on each other */
+    int (*info)(const dem_world *w, int domain, int p, dem_contact_info *out, dem_vec3 *gap);
+} demi_response_row;
+#define DEMI_RESPONSE_ROW(NAME, MEMORY, VECTORS, TRAITS, ...) {__VA_ARGS__},
+static const demi_response_row demi_responses[] = {DEMI_RESPONSES(DEMI_RESPONSE_ROW)};
+/* Settles the time step before stepping, unless it suits the scene already. */
+static dem_result demi_dt_settle(dem_world *w) {
+    return w->stage.dt_valid ? DEM_OK : demi_responses[w->desc.response].settle(w);
+}
+/* Entry p of the near list of domain d as users see it; unless null, *branch receives the way from
+   a's centre to b's. 0: the two do not act on each other. */
+static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
+                              dem_vec3 *branch) {
+    const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)p;
+    const int a = w->near.a[at], b = w->near.b[at];
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const demi_periods periods = demi_periods_of(w);
+    dem_vec3 gap;
+    if (!demi_responses[w->desc.response].info(w, d, p, out, &gap)) return 0;
+    if (!out) return 1;
     out->a = dem_body_id_get(w, a);
     out->b = dem_body_id_get(w, b);
     out->wall = 0;
-    out->normal = demi_row(tile.normal, 0);
-    out->overlap = tile.overlap[0];
+    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(gap, x[3]/(x[3] + y[3]))));
     if (branch) *branch = gap;
-    gap = demi_scale(gap, w->bodies.pos[4*a + 3]/(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]));
-    out->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), gap));
-    out->force = demi_row(tile.force, 0);
     return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>fields
+   Means on a grid. What is there at a place (a grain at its centre, a piece of the line between two
+   centres) is put into the cell it is in, or spread over the cells about it; in a periodic world
+   wherever one of its images is. A field is one array of sums, block after block, so that whoever
+   saves, copies or adds up fields need not know which there are. First how a persistent contact
+   looks to a user: stress is made of all contacts.
+   --------------------------------------------------------------------------------------------- */
+/* One kept contact, as users see it. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+    const demi_periods p = demi_periods_of(w);
+    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
+    out->a = dem_body_id_get(w, c->a);
+    out->b = dem_body_id_get(w, c->b);
+    out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
+    out->normal = c->normal;
+    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
+    out->point = demi_place_of(&p, x);
+    out->overlap = c->overlap;
+    out->force = c->force;
 }
 /* Blocks of a field's sums: where each begins, and how many numbers of a cell stand together in
    it. */
@@ -24073,6 +24183,13 @@ static void demi_fields_sample(dem_world *w) {
     }
 }
 
+/* Checked in dem_field_add. */
+static const demi_field_row demi_field_rows[] = {
+    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
+    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
+    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
+    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
@@ -24230,10 +24347,8 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
             w->bodies.half_vel[4*i + 2] = w->bodies.half_spin[4*i] = w->bodies.half_spin[4*i + 1] =
                 0;
         }
-    if (w->bodies.orienting)
-        demi_orient_move(w, domain, begin, end, demi_impulsive(w) ? DEMI_TURN_HALVES
-                         : DEMI_TURN_STEP);
-    if (demi_impulsive(w)) memset(w->bodies.went + begin, 1, (size_t)(end - begin));
+    if (w->bodies.orienting) demi_orient_move(w, domain, begin, end);
+    if (demi_response_is(w, DEMI_MIDWAY)) memset(w->bodies.went + begin, 1, (size_t)(end - begin));
     for (i = begin; i + DEMI_LANES <= end; i += DEMI_LANES) {
         DEMI_VECTOR
         for (l = 0; l < DEMI_LANES; l++) demi_pace_look(w, i + l, pace, l);
@@ -24264,9 +24379,7 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
             if (q->restless == 1) q->restless = 0;
         } else {
             for (k = 4*i; k < 4*end; k++) x[k] += u[k]*dt;
-            if (w->bodies.orienting)
-                demi_orient_move(w, domain, i, end, demi_impulsive(w) ? DEMI_TURN_HALVES
-                                 : DEMI_TURN_STEP);
+            if (w->bodies.orienting) demi_orient_move(w, domain, i, end);
         }
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
@@ -24301,22 +24414,22 @@ static void demi_domain_move(dem_world *w, int d) {
         domain->check += (double)pace.sum[i];
     }
     /* where contacts are found, bodies have gone with the velocity of the end of the step */
-    for (i = domain->begin; i < domain->end && demi_impulsive(w); i++) {
+    for (i = domain->begin; i < domain->end && demi_response_is(w, DEMI_MIDWAY); i++) {
         const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
         domain->speed2 = DEMI_MAX(domain->speed2, (double)demi_dot(v, v));
     }
     if (w->desc.ledger) domain->energy[DEMI_E_GRAVITY] = demi_gravity_work(w, domain);
 }
 
-/* What fields of force see: of impulses the middle of the step to come, velocities as they have
-   changed in the step before. */
+/* Time and velocities that fields of force see: of now, or with the midpoint rule in the middle of
+   the next step, if velocities go on as in the last one. */
 static double demi_field_time(const dem_world *w) {
-    return w->clock.time + (demi_impulsive(w) ? (double)w->clock.dt/2 : 0);
+    return w->clock.time + (demi_response_is(w, DEMI_MIDWAY) ? (double)w->clock.dt/2 : 0);
 }
 DEM_INLINE dem_vec3 demi_field_rate(const dem_world *w, const dem_real *now, const dem_real *half,
                                     int i) {
     const dem_vec3 v = demi_at(now + 4*i);
-    return demi_impulsive(w) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
+    return demi_response_is(w, DEMI_MIDWAY) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
 }
 /* Forces and torques of a field that sees whole bodies. */
 static void demi_domain_fields(dem_world *w, int d) {
@@ -24366,6 +24479,7 @@ static void demi_domain_clear(dem_world *w, int d) {
 /* All contacts that a domain owns. Its own bodies are summed here; forces on bodies of other
    domains stay in slots until all have answered (demi_cross_gather). */
 static void demi_domain_respond(dem_world *w, int d) {
+    const demi_response_row *response = &demi_responses[w->desc.response];
     const size_t walls = (size_t)w->wall_count;
     demi_domain_clear(w, d);
     if (walls) memset(w->wall_sums + (size_t)d*walls, 0, walls*sizeof *w->wall_sums);
@@ -24373,15 +24487,12 @@ static void demi_domain_respond(dem_world *w, int d) {
         const size_t row = (size_t)w->bodies.real_count*walls;
         memset(w->wall_rates + (size_t)d*row, 0, row*sizeof *w->wall_rates);
     }
-    if (demi_impulsive(w)) return;              /* all contacts are solved together */
-    w->kernel(w, d);
-    demi_kept_clear(w, d);
-    demi_kept_respond(w, d);
+    if (response->respond) response->respond(w, d);
 }
 /* What others did to this domain's bodies, in the order of their entries. */
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
-    if (w->cross_entries && !demi_impulsive(w)) demi_cross_gather(w, d);
+    if (w->cross_entries && demi_responses[w->desc.response].respond) demi_cross_gather(w, d);
     if (demi_own(w)) {                          /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
@@ -24409,17 +24520,19 @@ static void demi_walls_rates(dem_world *w) {
                 c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
         }
 }
-/* Forces at the present positions and velocities; wall loads. */
-static void demi_forces(dem_world *w) {
+/* Forces at the present positions and velocities; wall loads. 0: memory ran out. */
+static int demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
+    const demi_response_row *response = &demi_responses[w->desc.response];
     demi_kept *kept = w->kept_now;
     int d, i, k;
+    if (response->room && !response->room(w)) return 0;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
     }
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
-    if (demi_impulsive(w)) demi_impulses(w);
+    if (response->solve) response->solve(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
@@ -24450,8 +24563,8 @@ static void demi_forces(dem_world *w) {
     for (d = 0; d < w->domain_count; d++)
         w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
     if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
-    if (demi_impulsive(w)) demi_impulses_due(w);
-    else if (w->desc.ledger) demi_ledger_book(w);
+    response->book(w);
+    return 1;
 }
 
 /* Which two bodies overlap most, of the smaller radius. Answers by how much. */
@@ -24581,7 +24694,7 @@ static dem_result demi_step_move(dem_world *w) {
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
-    w->stage.synced = demi_impulsive(w);
+    w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -24604,7 +24717,7 @@ static dem_result demi_step_move(dem_world *w) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->booked.energy[DEMI_E_GRAVITY] += work;
         w->booked.throughput += fabs(work);
-        if (demi_impulsive(w)) demi_impulses_book(w);
+        demi_due_book(w);
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -24612,7 +24725,7 @@ static dem_result demi_step_move(dem_world *w) {
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(wall, w->clock.time, &pose);
-        if (!demi_impulsive(w))
+        if (!demi_response_is(w, DEMI_MIDWAY))
             demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
         if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
@@ -24694,8 +24807,7 @@ static dem_result demi_step_answer(dem_world *w) {
     }
 
     /* 3 touch, 4 respond, 5 gather */
-    if (!demi_touch(w) || !demi_impulses_room(w)) return demi_no_memory(w, "dem_world_step");
-    demi_forces(w);
+    if (!demi_touch(w) || !demi_forces(w)) return demi_no_memory(w, "dem_world_step");
     demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
@@ -24713,10 +24825,10 @@ static dem_result demi_step_answer(dem_world *w) {
                      2*w->solver.limited > w->solver.count ? "where sweeps converge slowly"
                      : "the others carry more load than so many sweeps pass on");
 }
-/* The same where contacts are found: impulses, half a step ahead. */
+/* The same where contacts are found: with the midpoint rule half a step ahead. */
 static dem_result demi_answer(dem_world *w, dem_result (*answer)(dem_world *w)) {
     dem_result result;
-    if (!demi_impulsive(w)) return answer(w);
+    if (!demi_response_is(w, DEMI_MIDWAY)) return answer(w);
     demi_ahead(w);
     result = answer(w);
     demi_ahead_back(w);
@@ -24746,8 +24858,7 @@ static dem_result demi_refresh_answer(dem_world *w) {
     w->stage.pairs_changed = 0;
     demi_kernel_choose(w);
     w->stage.forces_valid = 0;
-    if (!demi_touch(w) || !demi_impulses_room(w)) return demi_no_memory(w, "dem_world_step");
-    demi_forces(w);
+    if (!demi_touch(w) || !demi_forces(w)) return demi_no_memory(w, "dem_world_step");
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     w->stage.forces_valid = 1;
     return DEM_OK;
@@ -24776,7 +24887,7 @@ DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 or %g to "
                          "%g s; 0 lets the library choose", (double)dt, DEMI_DT_LEAST,
                          DEMI_FARTHEST);
-    if (demi_impulsive(w) && !(dt > 0))
+    if (!demi_response_is(w, DEMI_LASTING) && !(dt > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
                          "no contact time to choose it from; set it, for example 1e-3 s for "
                          "grains of millimetres");
@@ -25035,6 +25146,7 @@ DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_counters dem_counters_get(const dem_world *w) {
     dem_counters c;
+    const int pressing = w && w->bodies.shaped && demi_response_is(w, DEMI_PRESSING);
     int d, k;
     memset(&c, 0, sizeof c);
     if (!w) return c;
@@ -25044,7 +25156,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
-        for (k = 0; k < w->domains[d].kept && w->bodies.shaped && !demi_impulsive(w); k++) {
+        for (k = 0; k < w->domains[d].kept && pressing; k++) {
             const demi_kept *kept = demi_kept_of(w, d) + k;     /* corners: one contact of four */
             c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
         }
@@ -25176,7 +25288,7 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     for (i = 0; i < w->memory_stride; i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
-        if (!demi_impulsive(w) && i == laws->at_sliding) {
+        if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
             if (!sticks) continue;
             number = 24;
         } else if (demi_laws_keep(w)) {
@@ -25662,8 +25774,7 @@ static int demi_outline_grow(dem_world *w, demi_outline *o) {
 }
 /* Twice the area of a triangle of three corners, positive if it turns left. */
 static double demi_outline_turn(const demi_outline *o, int a, int b, int c) {
-    const double *p = o->xy + 2*a, *q = o->xy + 2*b, *r = o->xy + 2*c;
-    return (q[0] - p[0])*(r[1] - p[1]) - (q[1] - p[1])*(r[0] - p[0]);
+    return demi_turn_of(o->xy, a, b, c);
 }
 static int demi_outline_same(const demi_outline *o, int a, int b) {
     return !(o->xy[2*a] < o->xy[2*b] || o->xy[2*a] > o->xy[2*b] ||
@@ -25671,40 +25782,33 @@ static int demi_outline_same(const demi_outline *o, int a, int b) {
 }
 /* The corners as seen along the normal, and whether they lie in a plane. */
 static void demi_outline_lay(demi_outline *o, const dem_real *vertices) {
-    double n[3] = {0, 0, 0}, mean[3] = {0, 0, 0}, lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
-    double far = 0, length;
-    int i, k, axis = 0;
+    const demi_d3 first = demi_d3_of(demi_at(vertices + 3*o->corner[0]));
+    demi_d3 n = demi_d(0, 0, 0), mean = n, lo = n, hi = n;
+    double far = 0, length, size, x[3];
+    int i, back, axis = 0;
     for (i = 0; i < o->count; i++) {
-        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
-        const dem_real *b = vertices + 3*o->corner[(i + 1)%o->count];
-        double p[3], q[3];
-        for (k = 0; k < 3; k++) {
-            p[k] = (double)a[k] - (double)zero[k];
-            q[k] = (double)b[k] - (double)zero[k];
-            mean[k] += p[k]/o->count;
-            lo[k] = DEMI_MIN(lo[k], p[k]);
-            hi[k] = DEMI_MAX(hi[k], p[k]);
-        }
-        for (k = 0; k < 3; k++) n[k] += p[(k + 1)%3]*q[(k + 2)%3] - p[(k + 2)%3]*q[(k + 1)%3];
+        const demi_d3 p = demi_d3_sub(demi_d3_of(demi_at(vertices + 3*o->corner[i])), first);
+        const int32_t next = o->corner[(i + 1)%o->count];
+        n = demi_d3_add(n, demi_d3_cross(p, demi_d3_sub(demi_d3_of(demi_at(vertices + 3*next)),
+                                                        first)));
+        mean = demi_d3_add(mean, demi_d3_over(p, o->count));
+        lo = demi_d3_lowest(lo, p);
+        hi = demi_d3_highest(hi, p);
     }
-    for (k = 0; k < 3; k++) {
-        size = DEMI_MAX(size, hi[k] - lo[k]);
-        if (fabs(n[k]) > fabs(n[axis])) axis = k;
-    }
-    length = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+    size = DEMI_MAX(hi.x - lo.x, DEMI_MAX(hi.y - lo.y, hi.z - lo.z));
+    demi_d3_put(x, n);
+    for (i = 1; i < 3; i++) if (fabs(x[i]) > fabs(x[axis])) axis = i;
+    back = x[axis] < 0;
+    length = demi_d3_length(n);
     o->near = 1e-10*size*size;
     o->bent = 0;
     o->crossed = !(length > o->near);
     for (i = 0; i < o->count; i++) {
-        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
-        double p[3], off = 0;
-        for (k = 0; k < 3; k++) {
-            p[k] = (double)a[k] - (double)zero[k];
-            off += n[k]*(p[k] - mean[k]);
-        }
-        far = DEMI_MAX(far, fabs(off));
-        o->xy[2*i] = p[n[axis] < 0 ? (axis + 2)%3 : (axis + 1)%3];
-        o->xy[2*i + 1] = p[n[axis] < 0 ? (axis + 1)%3 : (axis + 2)%3];
+        const demi_d3 p = demi_d3_sub(demi_d3_of(demi_at(vertices + 3*o->corner[i])), first);
+        far = DEMI_MAX(far, fabs(demi_d3_dot(n, demi_d3_sub(p, mean))));
+        demi_d3_put(x, p);
+        o->xy[2*i] = x[back ? (axis + 2)%3 : (axis + 1)%3];
+        o->xy[2*i + 1] = x[back ? (axis + 1)%3 : (axis + 2)%3];
         o->next[i] = (i + 1)%o->count;
         o->prev[i] = (i + o->count - 1)%o->count;
     }
@@ -26647,43 +26751,31 @@ typedef struct demi_mould {
     int32_t *most;                 /* picks x scales: no gain can be above that, plus `slack` */
     int picks, slack;              /* slack: points that were left by spheres taken out */
 } demi_mould;
-/* The point of a triangle nearest to x ([ERI05] 5.1.5), as its distance squared. */
-static double demi_corner_distance(const double *a, const double *b, const double *c,
-                                   const double *x) {
-    double ab[3], ac[3], ap[3], n[3], t, best = 1e300;
-    const double *from[3], *to[3];
-    int k, e, in = 1;
-    from[0] = a; from[1] = b; from[2] = c;
-    to[0] = b; to[1] = c; to[2] = a;
-    demi_sub3(b, a, ab);
-    demi_sub3(c, a, ac);
-    demi_cross3(ab, ac, n);
+/* How far x is from a triangle, squared ([ERI05] 5.1.5). */
+static double demi_corner_distance(const demi_d3 *corner, demi_d3 x) {
+    const demi_d3 n = demi_d3_normal(corner[0], corner[1], corner[2]);
+    double best = 1e300, over;
+    int k, in = 1;
     for (k = 0; k < 3; k++) {
-        double out[3], d[3], l2;
-        demi_sub3(to[k], from[k], ab);
-        demi_sub3(x, from[k], ap);
-        demi_cross3(ab, n, out);
-        in &= demi_dot3(out, ap) <= 0;
-        l2 = demi_dot3(ab, ab);
-        t = l2 > 0 ? demi_dot3(ap, ab)/l2 : 0;
-        t = t < 0 ? 0 : t > 1 ? 1 : t;
-        for (e = 0; e < 3; e++) d[e] = ap[e] - t*ab[e];
-        best = DEMI_MIN(best, demi_dot3(d, d));
+        const demi_d3 side = demi_d3_sub(corner[(k + 1)%3], corner[k]);
+        const demi_d3 to = demi_d3_sub(x, corner[k]);
+        const double l2 = demi_d3_square(side), t = l2 > 0 ? demi_d3_dot(to, side)/l2 : 0;
+        const double d2 = demi_d3_square(demi_d3_plus(to, t < 0 ? 0 : t > 1 ? -1 : -t, side));
+        in &= demi_d3_dot(demi_d3_cross(side, n), to) <= 0;
+        best = DEMI_MIN(best, d2);
     }
-    if (!in || !(demi_dot3(n, n) > 0)) return best;
-    demi_sub3(x, a, ap);
-    t = demi_dot3(ap, n);
-    return t*t/demi_dot3(n, n);
+    if (!in || !(demi_d3_square(n) > 0)) return best;
+    over = demi_d3_dot(demi_d3_sub(x, corner[0]), n);
+    return over*over/demi_d3_square(n);
 }
-static double demi_mesh_distance(const dem_mesh *mesh, const double *x) {
-    double best = 1e300, a[3], b[3], c[3];
+static double demi_mesh_distance(const dem_mesh *mesh, demi_d3 x) {
+    demi_d3 corner[3];
+    double best = 1e300;
     int i;
     for (i = 0; i < mesh->triangle_count; i++) {
         double d;
-        demi_mesh_corner(mesh, i, 0, a);
-        demi_mesh_corner(mesh, i, 1, b);
-        demi_mesh_corner(mesh, i, 2, c);
-        d = demi_corner_distance(a, b, c, x);
+        demi_mesh_triangle(mesh, i, corner);
+        d = demi_corner_distance(corner, x);
         best = DEMI_MIN(best, d);
     }
     return sqrt(best);
@@ -26695,26 +26787,25 @@ static void demi_mould_at(const demi_mould *m, int i, double *x) {
 }
 /* Turns inside to outside, and back, for all points above a triangle. */
 static void demi_mould_cross(demi_mould *m, int triangle) {
-    double a[3], b[3], c[3], lo[2], hi[2];
+    demi_d3 t[3], a, b, c;
     int from[2], to[2], i, j, k, e;
-    demi_mesh_corner(m->mesh, triangle, 0, a);
-    demi_mesh_corner(m->mesh, triangle, 1, b);
-    demi_mesh_corner(m->mesh, triangle, 2, c);
+    demi_mesh_triangle(m->mesh, triangle, t);
+    a = t[0]; b = t[1]; c = t[2];
     for (e = 0; e < 2; e++) {
-        lo[e] = DEMI_MIN(a[e], DEMI_MIN(b[e], c[e]));
-        hi[e] = DEMI_MAX(a[e], DEMI_MAX(b[e], c[e]));
-        from[e] = (int)DEMI_MAX(floor((lo[e] - m->lo[e])/m->step - 1), 0);
-        to[e] = (int)DEMI_MIN(ceil((hi[e] - m->lo[e])/m->step + 1), m->n[e] - 1);
+        const double p = e ? a.y : a.x, q = e ? b.y : b.x, r = e ? c.y : c.x;
+        const double lo = DEMI_MIN(p, DEMI_MIN(q, r)), hi = DEMI_MAX(p, DEMI_MAX(q, r));
+        from[e] = (int)DEMI_MAX(floor((lo - m->lo[e])/m->step - 1), 0);
+        to[e] = (int)DEMI_MIN(ceil((hi - m->lo[e])/m->step + 1), m->n[e] - 1);
     }
     for (j = from[1]; j <= to[1]; j++)
         for (i = from[0]; i <= to[0]; i++) {
             const double x = m->lo[0] + (i + 0.5)*m->step, y = m->lo[1] + (j + 0.5)*m->step;
-            const double u = (b[0] - a[0])*(y - a[1]) - (b[1] - a[1])*(x - a[0]);
-            const double v = (c[0] - b[0])*(y - b[1]) - (c[1] - b[1])*(x - b[0]);
-            const double w = (a[0] - c[0])*(y - c[1]) - (a[1] - c[1])*(x - c[0]);
+            const double u = (b.x - a.x)*(y - a.y) - (b.y - a.y)*(x - a.x);
+            const double v = (c.x - b.x)*(y - b.y) - (c.y - b.y)*(x - b.x);
+            const double w = (a.x - c.x)*(y - c.y) - (a.y - c.y)*(x - c.x);
             double z;
             if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
-            z = (u*c[2] + v*a[2] + w*b[2])/(u + v + w);
+            z = (u*c.z + v*a.z + w*b.z)/(u + v + w);
             for (k = 0; k < m->n[2]; k++)
                 if (m->lo[2] + (k + 0.5)*m->step > z)
                     m->inside[i + m->n[0]*(j + m->n[1]*k)] ^= 1;
@@ -26749,12 +26840,12 @@ static int demi_mould_gain(demi_mould *m, const double *c, double r, int by, int
 /* The best of all candidates, beside the spheres that are there. */
 static int demi_mould_best(demi_mould *m, double *sphere) {
     static const double scale[DEMI_GRAIN_SCALES] = {1, 0.9, 1.08, 1.18, 1.3};
-    int most = INT_MIN, i, k, e;
+    int most = INT_MIN, i, k;
     for (i = 0; i < m->picks; i++)
         for (k = 0; k < DEMI_GRAIN_SCALES; k++) {
             const double r = m->far[i]*scale[k];
             int32_t *bound = m->most + DEMI_GRAIN_SCALES*i + k;
-            double c[3];
+            double c[4];
             int gain, right;
             if (*bound + m->slack <= most) continue;
             demi_mould_at(m, m->pick[i], c);
@@ -26762,15 +26853,17 @@ static int demi_mould_best(demi_mould *m, double *sphere) {
             *bound = right - m->slack;
             if (gain <= most) continue;
             most = gain;
-            for (e = 0; e < 3; e++) sphere[e] = c[e];
-            sphere[3] = r;
+            c[3] = r;
+            memcpy(sphere, c, sizeof c);
         }
     return most;
 }
 /* The grid and its candidates; 0: no memory. */
-static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const double *hi) {
-    double most = 0, x[3];
+static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 highest) {
+    double most = 0, x[3], lo[3], hi[3];
     int i, e, inside = 0, seen = 0;
+    demi_d3_put(lo, lowest);
+    demi_d3_put(hi, highest);
     for (e = 0; e < 3; e++) most = DEMI_MAX(most, hi[e] - lo[e]);
     m->step = most/(int)DEMI_GRAIN_CELLS;
     for (e = 0, m->count = 1; e < 3; e++) {
@@ -26794,7 +26887,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const 
         if (inside > DEMI_GRAIN_PICKS && now/inside == (now - DEMI_GRAIN_PICKS)/inside) continue;
         if (m->picks == DEMI_GRAIN_PICKS) break;
         demi_mould_at(m, i, x);
-        m->far[m->picks] = demi_mesh_distance(m->mesh, x);
+        m->far[m->picks] = demi_mesh_distance(m->mesh, demi_d3_at(x));
         m->pick[m->picks++] = i;
     }
     return 1;
@@ -26809,29 +26902,26 @@ static void demi_mould_free(dem_world *w, demi_mould *m) {
 /* What a mesh is, and how well spheres (count x 4) fit it. Moments are exact. */
 static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, const double *sphere,
                                int count, dem_spheres_fit *fit) {
-    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
     double c[3], I[6], all = 0, square = 0;
     int i, k, e;
     for (k = 0; k < 3; k++) c[k] = m->x[k]/m->one;
-    for (k = 0; k < 6; k++) I[k] = m->xx[k] - m->one*c[one[k]]*c[two[k]];
+    for (k = 0; k < 6; k++) I[k] = m->xx[k] - m->one*c[demi_sym_row[k]]*c[demi_sym_column[k]];
     fit->volume = (dem_real)m->one;
-    fit->centre = demi_v((dem_real)c[0], (dem_real)c[1], (dem_real)c[2]);
+    fit->centre = demi_d3_real(demi_d3_at(c));
     for (k = 0; k < 3; k++) fit->inertia[k] = (dem_real)(I[(k + 1)%3] + I[(k + 2)%3]);
     for (k = 3; k < 6; k++) fit->inertia[k] = (dem_real)-I[k];
     for (i = 0; i < mesh->triangle_count; i++) {        /* at three points of each triangle */
-        double x[3][3], u[3], v[3], n[3];
-        for (k = 0; k < 3; k++) demi_mesh_corner(mesh, i, k, x[k]);
-        demi_sub3(x[1], x[0], u);
-        demi_sub3(x[2], x[0], v);
-        demi_cross3(u, v, n);
+        demi_d3 x[3];
+        double area;
+        demi_mesh_triangle(mesh, i, x);
+        area = demi_d3_length(demi_d3_normal(x[0], x[1], x[2]))/6;
         for (k = 0; k < 3; k++) {
-            double at[3], off = 1e300;
-            const double area = sqrt(demi_dot3(n, n))/6;
-            for (e = 0; e < 3; e++) at[e] = (4*x[k][e] + x[(k + 1)%3][e] + x[(k + 2)%3][e])/6;
+            const demi_d3 sum = demi_d3_add(demi_d3_add(demi_d3_scale(x[k], 4), x[(k + 1)%3]),
+                                            x[(k + 2)%3]);
+            double off = 1e300;
             for (e = 0; e < count; e++) {
-                double d[3], gap;
-                demi_sub3(at, sphere + 4*e, d);
-                gap = sqrt(demi_dot3(d, d)) - sphere[4*e + 3];
+                const demi_d3 d = demi_d3_sub(demi_d3_over(sum, 6), demi_d3_at(sphere + 4*e));
+                const double gap = demi_d3_length(d) - sphere[4*e + 3];
                 off = DEMI_MIN(off, gap);
             }
             all += area;
@@ -26843,17 +26933,15 @@ static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, cons
 /* Volume and second moments of what the spheres cover, by the grid, against those of the inside. */
 static void demi_mould_judge(const demi_mould *m, dem_spheres_fit *fit) {
     demi_moments own, theirs;
-    double x[3], at[3], worst = 0, spread[2][3];
+    double x[3], worst = 0, spread[2][3];
     int i, k, wrong = 0, inside = 0;
     memset(&own, 0, sizeof own);
     memset(&theirs, 0, sizeof theirs);
     for (i = 0; i < m->count; i++) {
         demi_mould_at(m, i, x);
-        at[0] = x[0] - (double)fit->centre.x;
-        at[1] = x[1] - (double)fit->centre.y;
-        at[2] = x[2] - (double)fit->centre.z;
-        if (m->inside[i]) demi_moments_add(&own, 1, at, 0);
-        if (m->covered[i]) demi_moments_add(&theirs, 1, at, 0);
+        demi_d3_put(x, demi_d3_sub(demi_d3_at(x), demi_d3_of(fit->centre)));
+        if (m->inside[i]) demi_moments_add(&own, 1, x, 0);
+        if (m->covered[i]) demi_moments_add(&theirs, 1, x, 0);
         wrong += (m->inside[i] != 0) != (m->covered[i] != 0);
         inside += m->inside[i];
     }
@@ -26873,22 +26961,20 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     dem_spheres_fit told;
     demi_moments moments;
     demi_mould m;
-    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, a[3], b[3], c[3];
+    demi_d3 lo = demi_d(1e300, 1e300, 1e300), hi = demi_d(-1e300, -1e300, -1e300), x[3];
     double *sphere;
     int i, k, sweep, changed = 1, made;
     memset(&moments, 0, sizeof moments);
     for (i = 0; i < mesh->triangle_count; i++) {
-        demi_mesh_corner(mesh, i, 0, a);
-        demi_mesh_corner(mesh, i, 1, b);
-        demi_mesh_corner(mesh, i, 2, c);
-        if (sign[i] > 0) demi_moments_tetrahedron(&moments, a, b, c);
-        if (sign[i] < 0) demi_moments_tetrahedron(&moments, a, c, b);
+        demi_mesh_triangle(mesh, i, x);
+        if (sign[i] > 0) demi_moments_tetrahedron(&moments, x[0], x[1], x[2]);
+        if (sign[i] < 0) demi_moments_tetrahedron(&moments, x[0], x[2], x[1]);
         for (k = 0; k < 3; k++) {
-            lo[k] = DEMI_MIN(lo[k], DEMI_MIN(a[k], DEMI_MIN(b[k], c[k])));
-            hi[k] = DEMI_MAX(hi[k], DEMI_MAX(a[k], DEMI_MAX(b[k], c[k])));
+            lo = demi_d3_lowest(lo, x[k]);
+            hi = demi_d3_highest(hi, x[k]);
         }
     }
-    if (!(moments.one > 1e-6*(hi[0] - lo[0])*(hi[1] - lo[1])*(hi[2] - lo[2])))
+    if (!(moments.one > 1e-6*(hi.x - lo.x)*(hi.y - lo.y)*(hi.z - lo.z)))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
                          "must be more than 1e-6 of its box: it is too thin for spheres; is it a "
                          "sheet?", call, mesh->triangle_count, moments.one);
@@ -28373,7 +28459,8 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
         for (k = 0; k < l.stride; k++) {
             const char *name = demi_name(world->desc.law_memory_names, k, &length);
             const demi_column own = {"CellData", names[k], 'r', 1, l.room, l.stride, k, l.memory};
-            if (k == world->laws.at_sliding && !demi_impulsive(world)) sprintf(names[k], "sliding");
+            if (demi_response_is(world, DEMI_LAWS) && k == world->laws.at_sliding)
+                sprintf(names[k], "sliding");
             else if (name) sprintf(names[k], "%.*s", length, name);
             else sprintf(names[k], "memory%d", k);
             column[4 + k] = own;
@@ -28864,75 +28951,7 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
        allow_large_dt, what functions are handed). The file holds their values, so that a refusal
        can name the field and both. --- */
 
-/* type: 'i' int or enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double, 'u' uint64_t, 'p' is it
-   null?, 't' a text, of at most `size` bytes, 'h' the digest of what it points to. */
-typedef struct demi_scene_row {
-    const char *name, *words;       /* as a sentence has them: the field, and values from 0 on */
-    size_t offset, size;            /* of the field in its struct; bytes in the file */
-    char type;
-    uint64_t (*digest)(const void *item);
-} demi_scene_row;
 enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes in the file, of one row */
-#define DEMI_ROW_AS(of, name, field, type) \
-    {name, 0, offsetof(of, field), sizeof ((of *)0)->field, type, 0}
-#define DEMI_ROW(of, field, type) DEMI_ROW_AS(of, #field, field, type)
-#define DEMI_ROW_ENUM(of, field, words) \
-    {#field, words, offsetof(of, field), sizeof ((of *)0)->field, 'i', 0}
-#define DEMI_ROW_NULL(of, field) {#field, "none one", offsetof(of, field), sizeof(int32_t), 'p', 0}
-#define DEMI_ROW_TEXT(of, field, most) {#field, 0, offsetof(of, field), (most)*24, 't', 0}
-#define DEMI_ROW_DIGEST(name, digest) {name, 0, 0, sizeof(uint64_t), 'h', digest}
-
-static const demi_scene_row demi_desc_rows[] = {
-    DEMI_ROW(dem_world_desc, gravity, 'v'), DEMI_ROW(dem_world_desc, domain, 'v'),
-    DEMI_ROW_ENUM(dem_world_desc, boundary, "open periodic outflow"),
-    DEMI_ROW(dem_world_desc, planar, 'i'), DEMI_ROW(dem_world_desc, thickness, 'r'),
-    DEMI_ROW_ENUM(dem_world_desc, response, "springs impulses"),
-    DEMI_ROW_ENUM(dem_world_desc, normal_law, "hertz linear hysteretic"),
-    DEMI_ROW_ENUM(dem_world_desc, tangent_law,
-                  "auto none viscous step spring mindlin mindlin_rescaled"),
-    DEMI_ROW_ENUM(dem_world_desc, rolling_law, "auto none step constant epsd"),
-    DEMI_ROW_ENUM(dem_world_desc, tension, "allowed clipped compensated"),
-    DEMI_ROW_ENUM(dem_world_desc, friction_load, "repulsive elastic magnitude"),
-    DEMI_ROW_ENUM(dem_world_desc, slider, "parallel spring remainder"),
-    DEMI_ROW_ENUM(dem_world_desc, convention, "standard mill"),
-    DEMI_ROW_NULL(dem_world_desc, law), DEMI_ROW(dem_world_desc, law_memory, 'i'),
-    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEM_LAW_MEMORY),
-    DEMI_ROW(dem_world_desc, law_vectors, 'i'), DEMI_ROW(dem_world_desc, law_stiffness, 'r'),
-    DEMI_ROW(dem_world_desc, law_range, 'r'), DEMI_ROW(dem_world_desc, law_range_radii, 'r'),
-    DEMI_ROW(dem_world_desc, law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
-    DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
-    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
-    DEMI_ROW_NULL(dem_world_desc, body_force),
-    DEMI_ROW_ENUM(dem_world_desc, integrator, "velocity_verlet forward_euler symplectic_euler "
-                  "position_verlet leapfrog"),
-    DEMI_ROW(dem_world_desc, dt, 'r'), DEMI_ROW(dem_world_desc, impact_speed, 'r'),
-    DEMI_ROW_ENUM(dem_world_desc, cone, "coulomb convex"),
-    DEMI_ROW_ENUM(dem_world_desc, solver, "gauss_seidel jacobi apgd spectral"),
-    DEMI_ROW(dem_world_desc, sweeps, 'i'), DEMI_ROW(dem_world_desc, tolerance, 'r'),
-    DEMI_ROW(dem_world_desc, cold_start, 'i'),
-    DEMI_ROW_ENUM(dem_world_desc, search, "auto all_pairs grid linked_list hierarchical bins"),
-    DEMI_ROW(dem_world_desc, skin, 'r'),
-    DEMI_ROW_ENUM(dem_world_desc, rotation, "spiral fincham no_squish"),
-    DEMI_ROW_ENUM(dem_world_desc, ellipsoid_overlap, "conservative chord normal"),
-    DEMI_ROW_ENUM(dem_world_desc, cluster_contacts, "merged separate"),
-    DEMI_ROW(dem_world_desc, orientations, 'i'), DEMI_ROW(dem_world_desc, ledger, 'i')};
-static const demi_scene_row demi_material_rows[] = {
-    DEMI_ROW(dem_material_desc, density, 'r'), DEMI_ROW(dem_material_desc, young, 'r'),
-    DEMI_ROW(dem_material_desc, poisson, 'r'), DEMI_ROW(dem_material_desc, restitution, 'r'),
-    DEMI_ROW(dem_material_desc, friction, 'r'), DEMI_ROW(dem_material_desc, friction_static, 'r'),
-    DEMI_ROW(dem_material_desc, rolling_friction, 'r'), DEMI_ROW(dem_material_desc, stiffness, 'r'),
-    DEMI_ROW(dem_material_desc, stiffness_ratio, 'r'),
-    DEMI_ROW(dem_material_desc, stiffness_unloading, 'r'),
-    DEMI_ROW(dem_material_desc, stiffness_adhesion, 'r')};
-static const demi_scene_row demi_pair_rows[] = {
-    DEMI_ROW(dem_pair, young_eff, 'r'), DEMI_ROW(dem_pair, shear_eff, 'r'),
-    DEMI_ROW(dem_pair, restitution, 'r'), DEMI_ROW(dem_pair, friction, 'r'),
-    DEMI_ROW(dem_pair, friction_static, 'r'), DEMI_ROW(dem_pair, rolling_friction, 'r'),
-    DEMI_ROW(dem_pair, stiffness, 'r'), DEMI_ROW(dem_pair, stiffness_ratio, 'r'),
-    DEMI_ROW(dem_pair, tangent_damping, 'r'), DEMI_ROW(dem_pair, stiffness_adhesion, 'r'),
-    DEMI_ROW(dem_pair, normal_damping, 'r'), DEMI_ROW(dem_pair, spinning_friction, 'r'),
-    DEMI_ROW(dem_pair, cohesion, 'r'), DEMI_ROW(dem_pair, compliance, 'r')};
-
 /* What a shape is, not what was worked out from it; pieces field by field: no padding. */
 static uint64_t demi_digest_spheres(const void *item) {
     const demi_shape *s = (const demi_shape *)item;
@@ -28955,107 +28974,29 @@ static uint64_t demi_digest_pieces(const void *item) {
     }
     return h;
 }
-static const demi_scene_row demi_shape_fields[] = {
+static const demi_field_row demi_shape_fields[] = {
     DEMI_ROW(demi_shape, kind, 'i'), DEMI_ROW_AS(demi_shape, "spheres", count, 'i'),
     DEMI_ROW(demi_shape, axes, 'v'), DEMI_ROW(demi_shape, inertia, 'v'),
     DEMI_ROW(demi_shape, volume, 'd'), DEMI_ROW(demi_shape, corners, 'i'),
     DEMI_ROW(demi_shape, faces, 'i'), DEMI_ROW(demi_shape, pieces, 'i'),
     DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
-    DEMI_ROW_DIGEST("pieces", demi_digest_pieces)};
-
-static uint64_t demi_digest_vertices(const void *item) {
-    const demi_wall *w = (const demi_wall *)item;
-    return demi_hash(DEMI_HASH_START, w->vertices, w->vertices
-                     ? (size_t)w->vertex_count*3*sizeof(dem_real) : 0);
-}
-static uint64_t demi_digest_elements(const void *item) {
-    const demi_wall *w = (const demi_wall *)item;
-    return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
-                     sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
-}
-static uint64_t demi_digest_table(const void *item) {
-    const dem_motion *m = &((const demi_wall *)item)->motion;
-    uint64_t h = DEMI_HASH_START;
-    int k;
-    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
-        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
-        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
-        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
-    }
-    return h;
-}
-/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
-static const demi_scene_row demi_wall_rows[] = {
-    DEMI_ROW_ENUM(demi_wall, kind, "none plane cylinder profile segments mesh grains sieve "
-                  "revolved"),
-    DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
-    DEMI_ROW(demi_wall, inside, 'i'),
-    DEMI_ROW_ENUM(demi_wall, rule, "resolved fraction"), DEMI_ROW(demi_wall, radius, 'r'),
-    DEMI_ROW(demi_wall, share, 'r'), DEMI_ROW(demi_wall, vertex_count, 'i'),
-    DEMI_ROW(demi_wall, element_count, 'i'),
-    DEMI_ROW_AS(demi_wall, "position", first.position, 'v'),
-    DEMI_ROW_AS(demi_wall, "rotation", first.rotation, 'r'),
-    DEMI_ROW_ENUM(demi_wall, sieve.kind, "none wires bars square round slots reduced"),
-    DEMI_ROW(demi_wall, sieve.aperture, 'r'), DEMI_ROW(demi_wall, sieve.bar, 'r'),
-    DEMI_ROW(demi_wall, sieve.length, 'r'), DEMI_ROW(demi_wall, sieve.thickness, 'r'),
-    DEMI_ROW(demi_wall, sieve.lift, 'r'), DEMI_ROW(demi_wall, sieve.staggered, 'i'),
-    DEMI_ROW(demi_wall, sieve.radius, 'r'), DEMI_ROW(demi_wall, sieve.model, 'i'),
-    DEMI_ROW(demi_wall, sieve.clearance, 'r'),
-    DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
-    DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
-    DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'),
-    DEMI_ROW_ENUM(demi_wall, motion.kind,
-                  "fixed translating rotating oscillating user table"),
-    DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
-    DEMI_ROW_DIGEST("vertices", demi_digest_vertices),
-    DEMI_ROW_DIGEST("elements", demi_digest_elements),
-    DEMI_ROW_DIGEST("motion.table", demi_digest_table)};
-static const demi_scene_row demi_field_rows[] = {
-    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
-    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
-    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
-    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
-    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r')};
-
-/* Of the sizes that were copied: what is drawn from. */
-static uint64_t demi_digest_sizes(const void *item) {
-    const demi_feed *f = (const demi_feed *)item;
-    const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
-    return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
-}
-#define DEMI_FEED_ROW(field, type) DEMI_ROW_AS(demi_feed, #field, desc.field, type)
-static const demi_scene_row demi_feed_rows[] = {
-    DEMI_FEED_ROW(material, 'i'), DEMI_FEED_ROW(class_count, 'i'), DEMI_FEED_ROW(radius, 'r'),
-    DEMI_FEED_ROW(amount, 'd'), DEMI_FEED_ROW(limited, 'i'), DEMI_FEED_ROW(by_mass, 'i'),
-    DEMI_FEED_ROW(rate, 'd'), DEMI_FEED_ROW(start, 'd'), DEMI_FEED_ROW(end, 'd'),
-    DEMI_FEED_ROW(box, 'v'), DEMI_FEED_ROW(round, 'i'), DEMI_FEED_ROW(velocity, 'v'),
-    DEMI_FEED_ROW(spread, 'r'), DEMI_FEED_ROW(seed, 'u'), DEMI_FEED_ROW(materials, 'i'),
-    DEMI_FEED_ROW(shapes, 'i'), DEMI_ROW_NULL(demi_feed, desc.inside),
-    DEMI_ROW_DIGEST("sizes", demi_digest_sizes)};
-static const demi_scene_row demi_outlet_rows[] = {
-    DEMI_ROW(dem_outlet_desc, frame, 'i'), DEMI_ROW(dem_outlet_desc, box, 'v'),
-    DEMI_ROW(dem_outlet_desc, beyond, 'r'), DEMI_ROW(dem_outlet_desc, wanted_min, 'r'),
-    DEMI_ROW(dem_outlet_desc, wanted_max, 'r'), DEMI_ROW(dem_outlet_desc, class_count, 'i'),
-    DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
-    DEMI_ROW(dem_outlet_desc, keep, 'i')};
+    DEMI_ROW_DIGEST("pieces", demi_digest_pieces), DEMI_ROW_END};
 
 /* The parts of a scene. */
 typedef struct demi_scene_part {
     const char *name, *many;
-    const demi_scene_row *rows;
-    size_t row_count;
+    const demi_field_row *rows;
 } demi_scene_part;
-#define DEMI_SCENE_PART(name, many, rows) {name, many, rows, sizeof rows/sizeof *rows}
 enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
 static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
-    DEMI_SCENE_PART("", "descs", demi_desc_rows),
-    DEMI_SCENE_PART(" of material", "materials", demi_material_rows),
-    DEMI_SCENE_PART(" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows),
-    DEMI_SCENE_PART(" of shape", "shapes", demi_shape_fields),
-    DEMI_SCENE_PART(" of wall", "walls", demi_wall_rows),
-    DEMI_SCENE_PART(" of field", "fields", demi_field_rows),
-    DEMI_SCENE_PART(" of feed", "feeds", demi_feed_rows),
-    DEMI_SCENE_PART(" of outlet", "outlets", demi_outlet_rows)};
+    {"", "descs", demi_world_desc_rows},
+    {" of material", "materials", demi_material_rows},
+    {" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows},
+    {" of shape", "shapes", demi_shape_fields},
+    {" of wall", "walls", demi_wall_rows},
+    {" of field", "fields", demi_field_rows},
+    {" of feed", "feeds", demi_feed_rows},
+    {" of outlet", "outlets", demi_outlet_rows}};
 /* How many there are of each part, in the order of the rows. */
 static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[0] = 1;
@@ -29082,7 +29023,7 @@ static const void *demi_scene_item(const dem_world *w, int part, int i) {
     }
 }
 /* What a field is, as the file has it: r->size bytes. */
-static void demi_scene_row_value(const demi_scene_row *r, const void *item, void *out) {
+static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
     const char *at = (const char *)item + r->offset, *text;
     memset(out, 0, r->size);
     if (r->type == 'h') {
@@ -29102,13 +29043,13 @@ static void demi_visit_scene(const dem_world *w, demi_stream *s) {
     int32_t counts[DEMI_PARTS];
     char value[DEMI_ROW_MOST];
     int part, i;
-    size_t k;
+    const demi_field_row *r;
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = 0; i < counts[part]; i++)
-            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
-                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
-                demi_scene_row_value(r, demi_scene_item(w, part, i), value);
+            for (r = demi_scene_parts[part].rows; r->name; r++) {
+                if (r->how & DEMI_FREE) continue;
+                demi_row_value(r, demi_scene_item(w, part, i), value);
                 demi_visit(s, value, r->size);
             }
 }
@@ -29298,13 +29239,12 @@ static uint32_t demi_checkpoint_layout(void) {
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
                             sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
-    size_t e;
+    const demi_field_row *r;
     int k;
     for (k = 0; k < DEMI_PARTS; k++)
-        for (e = 0; e < demi_scene_parts[k].row_count; e++) {
-            const demi_scene_row *r = &demi_scene_parts[k].rows[e];
-            h = demi_hash(demi_hash(h, r->name, strlen(r->name)), &r->size, sizeof r->size);
-        }
+        for (r = demi_scene_parts[k].rows; r->name; r++)
+            if (!(r->how & DEMI_FREE))
+                h = demi_hash(demi_hash(h, r->name, strlen(r->name)), &r->size, sizeof r->size);
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const size_t row[] = {demi_body_arrays[k].item, (size_t)demi_body_arrays[k].who,
                               (size_t)demi_body_arrays[k].what};
@@ -29407,7 +29347,7 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     return DEM_OK;
 }
 /* Element k of a value, as a sentence has it; digits: of reals. */
-static void demi_scene_row_print(const demi_scene_row *r, const char *value, size_t k, int digits,
+static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
                                  char *out, size_t size) {
     const char *word = r->words;
     int32_t i = 0;
@@ -29415,9 +29355,10 @@ static void demi_scene_row_print(const demi_scene_row *r, const char *value, siz
     dem_real x;
     double d;
     switch (r->type) {
-    case 'i': case 'p':
+    case 'i': case 'e': case 'p':
         memcpy(&i, value + 4*k, sizeof i);
-        for (; word && i > 0; i--) word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
+            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
         if (word) { snprintf(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
         memcpy(&i, value + 4*k, sizeof i);
         snprintf(out, size, "%ld", (long)i);
@@ -29437,13 +29378,11 @@ static void demi_scene_row_print(const demi_scene_row *r, const char *value, siz
     }
 }
 /* A field that is not the same in a file and in the world. */
-static dem_result demi_scene_row_differs(dem_world *w, const char *path, const demi_scene_row *r,
+static dem_result demi_row_differs(dem_world *w, const char *path, const demi_field_row *r,
                                    const char *there, const char *here, const char *of) {
     static const char *const axes[] = {".x", ".y", ".z", ".lo.x", ".lo.y", ".lo.z", ".hi.x",
                                        ".hi.y", ".hi.z"};
-    const size_t item = r->type == 't' ? r->size : r->type == 'd' || r->type == 'u' ||
-        r->type == 'h' ? 8 : r->type == 'i' || r->type == 'p' ? 4 : sizeof(dem_real);
-    const size_t count = r->size/item;
+    const size_t item = demi_row_item(r), count = r->size/item;
     size_t k = 0;
     char a[48], b[48], which[24] = "";
     const char *advice = "create the world with the same desc, materials, pairs, shapes, walls, "
@@ -29455,11 +29394,11 @@ static dem_result demi_scene_row_differs(dem_world *w, const char *path, const d
                          r->name, of, advice);
     if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
     else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
-    demi_scene_row_print(r, there, k, 6, a, sizeof a);
-    demi_scene_row_print(r, here, k, 6, b, sizeof b);
+    demi_row_print(r, there, k, 6, a, sizeof a);
+    demi_row_print(r, here, k, 6, b, sizeof b);
     if (!strcmp(a, b)) {
-        demi_scene_row_print(r, there, k, 17, a, sizeof a);
-        demi_scene_row_print(r, here, k, 17, b, sizeof b);
+        demi_row_print(r, there, k, 17, a, sizeof a);
+        demi_row_print(r, here, k, 17, b, sizeof b);
     }
     return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another scene: "
                      "written with %s%s %s%s, this world has %s; %s", path, r->name, which, a, of,
@@ -29472,7 +29411,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
     int32_t counts[DEMI_PARTS];
     char here[DEMI_ROW_MOST], there[DEMI_ROW_MOST], of[80];
     int part, i, gone;
-    size_t k;
+    const demi_field_row *r;
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
@@ -29483,12 +29422,12 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                              (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = gone = 0; i < counts[part]; i++)
-            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
-                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
+            for (r = demi_scene_parts[part].rows; r->name; r++) {
                 const int n = w->material_count;
-                demi_scene_row_value(r, demi_scene_item(w, part, i), here);
+                if (r->how & DEMI_FREE) continue;
+                demi_row_value(r, demi_scene_item(w, part, i), here);
                 demi_visit(s, there, r->size);
-                if (part == DEMI_PART_WALLS && !k) {
+                if (part == DEMI_PART_WALLS && r == demi_wall_rows) {
                     int32_t kind;
                     memcpy(&kind, there, sizeof kind);
                     gone = kind == DEMI_WALL_NONE;
@@ -29499,7 +29438,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                                          "exists there; read before you remove it", path,
                                          (int)w->walls[i].id);
                 }
-                if (part == DEMI_PART_WALLS && k == 1 && gone) {
+                if (gone && r == demi_wall_rows + 1) {
                     dem_wall last;                      /* ids go on from the later of the two */
                     memcpy(&last.id, there, sizeof last.id);
                     if (last.id < 1 || demi_wall_place(last) != i)
@@ -29515,7 +29454,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                              i%n + 1);
                 else snprintf(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
                               i + 1);
-                return demi_scene_row_differs(w, path, r, there, here, of);
+                return demi_row_differs(w, path, r, there, here, of);
             }
     return DEM_OK;
 }
@@ -29632,13 +29571,7 @@ static int demi_sane(double x, double least) { return demi_finite_double(x) && x
 static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
-    const double positive[] =
-        {t->margin.skin, t->margin.gone, t->margin.walls_gone, t->margin.skin_auto,
-         t->margin.span, t->margin.age, t->margin.slack, t->margin.change, t->margin.last_change,
-         t->margin.creep, t->margin.reach, t->booked.speed_max, t->clock.assumed_speed,
-         t->clock.half_kick, (double)t->effects.radius_min, (double)t->effects.radius_max,
-        (double)t->clock.dt};
-    size_t i;
+    const demi_field_row *bad;
     int k;
     if (!demi_left(r, t->bodies.count, demi_body_size(t)) ||
         !demi_left(r, t->bodies.slot_count, 8) ||
@@ -29679,17 +29612,12 @@ static int demi_numbers_check(const demi_reader *r) {
         if (t->effects.species[k].material < 1 ||
             t->effects.species[k].material > t->material_count)
             return demi_lie(r, "table of species", -1);
-    for (i = 0; i < sizeof positive/sizeof *positive; i++)
-        if (!demi_sane(positive[i], 0))
-            return demi_lie(r, "time, time step, skin or other length of the neighbour list", -1);
-    if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_FARTHEST ||
-        !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_FARTHEST ||
-        t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
-        !demi_finite_double(t->clock.run_end) ||
-        !demi_sane((double)t->desc.dt, 0) ||
-            (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
-        (t->stage.dt_valid && t->bodies.count && t->desc.dt > 0 &&
-         (t->clock.dt < t->desc.dt || t->clock.dt > t->desc.dt)))
+    bad = demi_rows_bad(w, demi_number_rows, t, &k);
+    if (!bad) bad = demi_rows_bad(w, demi_booked_rows, &t->booked, &k);
+    if (bad) return demi_lie(r, bad->name, -1);
+    if (t->clock.since.steps > t->clock.steps || (t->stage.dt_valid && t->bodies.count &&
+         (!(t->clock.dt > 0) || (t->desc.dt > 0 && (t->clock.dt < t->desc.dt ||
+                                                    t->clock.dt > t->desc.dt)))))
         return demi_lie(r, "time or time step", -1);
     if (t->bodies.balance.present != (uint64_t)t->bodies.count ||
         t->bodies.balance.inserted != t->bodies.balance.present + t->bodies.balance.removed +
@@ -30245,6 +30173,11 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
+/* What writes a file of each kind, in the order of dem_output_kind; 0: see below. */
+static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
+    0, dem_vtp_write, dem_xyz_write, dem_contacts_vtp_write, dem_checkpoint_write, 0,
+    dem_surfaces_vtp_write};
+enum { DEMI_OUTPUTS = (int)(sizeof demi_output_writers/sizeof *demi_output_writers) };
 /* Output `number` of the world as it is. o: a copy, since a call may add outputs. */
 static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t number) {
     const dem_output_desc *d = &o->desc;
@@ -30264,15 +30197,8 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     at = demi_output_marks(d->path, &marks);
     sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
     sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
-    switch (d->kind) {
-    case DEM_OUTPUT_VTP: result = dem_vtp_write(w, path); break;
-    case DEM_OUTPUT_XYZ: result = dem_xyz_write(w, path); break;
-    case DEM_OUTPUT_CONTACTS: result = dem_contacts_vtp_write(w, path); break;
-    case DEM_OUTPUT_CHECKPOINT: result = dem_checkpoint_write(w, path); break;
-    case DEM_OUTPUT_CSV: result = demi_output_line(w, o, path); break;
-    case DEM_OUTPUT_SURFACES: result = dem_surfaces_vtp_write(w, path); break;
-    case DEM_OUTPUT_CALL: break;
-    }
+    result = d->kind == DEM_OUTPUT_CSV ? demi_output_line(w, o, path)
+                                       : demi_output_writers[d->kind](w, path);
     demi_free(w, path);
     return result;
 }
@@ -30361,7 +30287,7 @@ static void demi_outputs_again(dem_world *w) {
 }
 /* One sentence on what is wrong with a desc; null: nothing. */
 static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
-    if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_SURFACES)
+    if ((int)d->kind < 0 || (int)d->kind >= DEMI_OUTPUTS)
         return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
     if (!demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end) || d->interval < DEMI_OUTPUT_LEAST || d->end < 0 ||
@@ -31007,24 +30933,24 @@ static void demi_check_enclosed(dem_world *w, demi_findings *f) {
 
 /* The time step that was asked for, beside what the scene bears. */
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const int lasting = demi_response_is(w, DEMI_LASTING);
     const double dt = (double)w->desc.dt;
     double limit, fastest = demi_fastest(w);
     int i, worst = 0;
-    if (!(dt > 0) || (!(a->contact_time > 0) && !demi_impulsive(w))) return;
+    if (!(dt > 0) || (lasting && !(a->contact_time > 0))) return;
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
-    if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
-    else if (dt > (double)a->dt_max)
+    if (lasting && dt > (double)a->dt_max)
         demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
                   "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
                   (double)a->dt_max, a->binds);
-    else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
+    else if (lasting && (limit = demi_press_limit(w, dt, &worst)) > 0)
         demi_find(f, DEM_SEVERITY_ERROR,
                   "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
                   "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
                   w->press[worst].contacts);
-    else if (dt < (double)a->dt/20)
+    else if (lasting && dt < (double)a->dt/20)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
                   "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
                   (double)a->dt);
@@ -31043,7 +30969,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
                          (double)w->desc.gravity.z};
     demi_grades grades;
     int i, k;
-    if (w->desc.law || demi_impulsive(w)) return;       /* nothing is known of it; no overlaps */
+    if (!demi_laws_keep(w)) return;             /* nothing is known of it; no overlaps */
     for (i = 0; i < w->bodies.count; i++) {
         if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
         for (k = 0; k < 3; k++) {
@@ -31359,7 +31285,7 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
 static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
-    if (demi_impulsive(w)) {
+    if (!demi_response_is(w, DEMI_LASTING)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts of this world are impulses, "
                   "but trials vary the steps, stiffnesses and laws of springs; compare runs with "
                   "other dt, sweeps and tolerance instead");
@@ -31600,10 +31526,16 @@ static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
 static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
 static dem_real demi_coheres(const dem_pair *p) { return p->cohesion; }
 
-static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
-    const char *name = demi_normal_laws[w->desc.normal_law].name;
+/* An effect of contacts: `name` is the built-in law that has it; null: `none` says why none has it.
+   A response without laws has it in any case. */
+static dem_effect_state demi_look_response(const dem_world *w, dem_real (*of)(const dem_pair *),
+                                           const char *name, const char *none, dem_effect *e) {
     if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    return demi_look_pairs(w, demi_any, demi_impulsive(w) ? "impulses" : name, e);
+    if (!demi_laws_keep(w)) name = demi_response_kinds[w->desc.response].name;
+    return name ? demi_look_pairs(w, of, name, e) : demi_look_off(e, none);
+}
+static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
+    return demi_look_response(w, demi_any, demi_normal_laws[w->desc.normal_law].name, "", e);
 }
 static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
     if (!w->desc.law) return demi_look_off(e, "desc.law is null");
@@ -31611,24 +31543,19 @@ static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
     const int law = demi_tangent_meant(w);
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rubs, "impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    if (law == DEM_TANGENT_NONE) return demi_look_off(e, "tangent_law is DEM_TANGENT_NONE");
-    return demi_look_pairs(w, demi_rubs, demi_tangent_laws[law].name, e);
+    return demi_look_response(w, demi_rubs, law == DEM_TANGENT_NONE ? 0
+                              : demi_tangent_laws[law].name, "tangent_law is DEM_TANGENT_NONE", e);
 }
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rolls, "impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    if (law == DEM_ROLLING_NONE) return demi_look_off(e, "rolling_law is DEM_ROLLING_NONE");
-    return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
+    return demi_look_response(w, demi_rolls, law == DEM_ROLLING_NONE ? 0
+                              : demi_rolling_laws[law].name, "rolling_law is DEM_ROLLING_NONE", e);
 }
 static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_coheres, "cohesion under impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
-    if (!demi_normal_is(w, DEMI_BRANCHED))
-        return demi_look_off(e, "only the hysteretic normal law has it");
-    return demi_look_pairs(w, demi_sticks, "hysteretic law", e);
+    if (!demi_response_is(w, DEMI_LAWS))
+        return demi_look_pairs(w, demi_coheres, "cohesion under impulses", e);
+    return demi_look_response(w, demi_sticks, demi_normal_is(w, DEMI_BRANCHED) ? "hysteretic law"
+                              : 0, "only the hysteretic normal law has it", e);
 }
 /* Is there a force now? The field is asked for every body that moves. */
 static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
@@ -32048,12 +31975,34 @@ DEM_API const char *dem_result_name_get(dem_result r) {
     return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
 }
 
-/* Why a desc's choices for how contacts answer, and from which gap on, are refused, or "". */
-static const char *demi_answer_error(const dem_world_desc *d) {
-    if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
-        !demi_finite(d->law_range_radii))
-        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; set "
-            "both to 0 to call the law only in contact";
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
+    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
+        "began as DEM_WORLD_DESC";
+    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
+    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
+    int k;
+    const demi_field_row *bad = demi_rows_bad(0, demi_world_desc_rows, d, &k);
+    if (bad) return bad->refusal;
+    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
+        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
+        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
+        return "dem_world_create: a contact law is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
+    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
+        (int)d->search >= DEMI_SEARCHES || (int)d->cone < 0 || d->cone > DEM_CONE_CONVEX ||
+        (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
+        return "dem_world_create: integrator, search, cone or solver is not one of the enum "
+            "values; start from DEM_WORLD_DESC";
+    for (k = 0; k < 3; k++)
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN &&
+            (!(hi[k] > lo[k]) || !demi_bounded((double)lo[k]) || !demi_bounded((double)hi[k])))
+            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
+                "below domain.hi there, or one is beyond 1e15 m; set domain";
+    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
+        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
+            "= 0: leave it open";
+    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
+        "library choose";
     if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
                     d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
@@ -32062,55 +32011,15 @@ static const char *demi_answer_error(const dem_world_desc *d) {
         return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
             "the rate at which your law changes the numbers of bodies: set all four, or leave it "
             "null";
-    if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
-        d->cone > DEM_CONE_CONVEX || (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
-        return "dem_world_create: response, cone or solver is not one of the enum values; start "
-            "from DEM_WORLD_DESC";
-    if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
-        return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
-            "library choose";
     if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
             "no contact time to choose it from: set a dt in which grains move by less than a "
             "tenth of their radius, such as 1e-3 s";
-    if (d->response == DEM_RESPONSE_IMPULSES && (d->law ||
-                                                 (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
-                                                 d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
+    if (d->response == DEM_RESPONSE_IMPULSES &&
+        (d->law || (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
+                    d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but law or integrator is "
             "set; impulses use neither: leave both 0";
-    return "";
-}
-DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
-    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
-        "began as DEM_WORLD_DESC";
-    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
-    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
-    int k;
-    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or above 1e15 "
-        "m/s2; check how it was computed";
-    for (k = 0; k < 3; k++) {
-        if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
-            return "dem_world_create: a boundary is not a DEM_BOUNDARY_ value; start from "
-                "DEM_WORLD_DESC";
-        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) ||
-                                                    !demi_bounded((double)lo[k]) ||
-                                                    !demi_bounded((double)hi[k])))
-            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
-                "below domain.hi there, or one is beyond 1e15 m; set domain";
-    }
-    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
-        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
-            "= 0: leave it open";
-    if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
-        "must be >= 0 m; 0 means 1 m";
-    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
-        "library choose";
-    if (!(d->impact_speed >= 0) || !((double)d->impact_speed <= DEMI_FARTHEST))
-        return "dem_world_create: impact_speed must be 0 to 1e15 m/s";
-    if (!(d->law_stiffness >= 0) || !((double)d->law_stiffness <= DEMI_MOST))
-        return "dem_world_create: law_stiffness must be 0 to 1e30 N/m; 0 means the stiffness of "
-            "the built-in law";
-    if (*demi_answer_error(d)) return demi_answer_error(d);
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
             "digits and _, separated by one space, such as \"temperature charge\"; null means none";
@@ -32124,37 +32033,9 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 computes some float expressions "
         "wrongly; compile with gcc or clang, or leave DEM_REAL at double";
 #endif
-    if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
-        "choose, below 0 means no skin";
-    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64, "
-        "where 0 means as many as OpenMP offers";
-    if (d->law_memory < 0 || d->law_memory > DEM_LAW_MEMORY) return "dem_world_create: law_memory "
-        "must be 0 to 16 reals";
     if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
         return "dem_world_create: law_vectors must be 0 to law_memory/3; increase law_memory, "
             "which counts reals";
-    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
-        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
-        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
-        return "dem_world_create: a contact law is not one of the enum values; start from "
-            "DEM_WORLD_DESC";
-    if ((int)d->tension < 0 || d->tension > DEM_TENSION_COMPENSATED || (int)d->convention < 0 ||
-        d->convention > DEM_CONVENTION_MILL)
-        return "dem_world_create: tension or convention is not one of the enum values; start from "
-               "DEM_WORLD_DESC";
-    if ((int)d->friction_load < 0 || d->friction_load > DEM_LOAD_MAGNITUDE || (int)d->slider < 0 ||
-        d->slider > DEM_SLIDER_REMAINDER)
-        return "dem_world_create: friction_load or slider is not one of the enum values; start "
-               "from DEM_WORLD_DESC";
-    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
-        (int)d->search >= DEMI_SEARCHES)
-        return "dem_world_create: integrator or search is not one of the enum values; start from "
-            "DEM_WORLD_DESC";
-    if ((int)d->rotation < 0 || d->rotation > DEM_ROTATION_NO_SQUISH ||
-        (int)d->ellipsoid_overlap < 0 || d->ellipsoid_overlap > DEM_OVERLAP_NORMAL ||
-        (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_CLUSTER_CONTACTS_SEPARATE)
-        return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is not one of "
-            "the enum values; start from DEM_WORLD_DESC";
     if (!d->allocator.alloc_fn != !d->allocator.free_fn)
         return "dem_world_create: the allocator has only one of alloc_fn and free_fn; give both "
             "or neither";
@@ -32314,12 +32195,11 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
 }
 /* A line about bodies that turn, where there are any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
-    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     if (w->bodies.shaped)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
-                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
+                demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
                     : "are separate",
                 w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
@@ -33886,25 +33766,16 @@ static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_worl
     }
     return 1;
 }
-/* What an outlet has let out, of which nothing is known yet. */
-static void demi_outlet_clear(demi_outlet *o) {
-    const double since = o->state.since, last = o->state.last;
-    memset(&o->state, 0, sizeof o->state);
-    o->state.since = since;
-    o->state.last = last;
-}
-/* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
-static void demi_slab_sums_clear(dem_world *w) {
+/* Sums over time begin in slab 0 with the world's, elsewhere at 0; collecting begins at 0, too.
+   booked: uses of the fields of demi_booked that are cleared. */
+static void demi_slab_sums_clear(dem_world *w, int booked) {
     int i;
-    memset(w->booked.energy, 0, sizeof w->booked.energy);
-    w->booked.removed = w->booked.throughput = w->booked.inserted = 0;
+    demi_rows_clear(demi_booked_rows, &w->booked, booked);
     w->bodies.balance.left = 0;
-    for (i = 0; i < w->wall_count; i++) {
-        const double time = w->walls[i].loads.time;
-        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
-        w->walls[i].loads.time = time;
-    }
-    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
+    for (i = 0; i < w->wall_count; i++)
+        demi_rows_clear(demi_loads_rows, &w->walls[i].loads, DEMI_SUM | DEMI_EITHER);
+    for (i = 0; i < w->outlet_count; i++)
+        demi_rows_clear(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, DEMI_SUM);
 }
 /* Every slab has all outlets: they stand where they stand, and take what is in that slab. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
@@ -33948,8 +33819,6 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     }
     w = dem_world_create(&desc);
     if (!w) return 0;
-    w->desc.gravity = from->desc.gravity;       /* of now: dem_world_gravity_set, */
-    w->desc.dt = from->desc.dt;                 /* and dem_world_dt_set */
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -33971,28 +33840,11 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
                       slots*sizeof(uint32_t));
-    w->clock.time = from->clock.time;           w->clock.steps =
-        from->clock.steps;       w->clock.rebuilds = from->clock.rebuilds;
-    w->clock.since = from->clock.since;
-    w->clock.last_rebuild = from->clock.steps;  w->margin.skin_auto = from->margin.skin_auto;
-    w->margin.skin = from->margin.skin;           w->clock.dt =
-        from->clock.dt;             w->stage.dt_valid = from->stage.dt_valid;
-    w->wall_fastest = from->wall_fastest;                         w->margin.span =
-        from->margin.span;
-    w->margin.slack = from->margin.slack;
-    w->clock.assumed_speed = from->clock.assumed_speed;                       w->stage.primed =
-        from->stage.primed;
-    w->booked.overlap_max =
-        from->booked.overlap_max;                           w->booked.speed_max =
-            from->booked.speed_max;
-    w->bodies.balance = from->bodies.balance;     w->booked.removed = from->booked.removed;
-    w->booked.inserted = from->booked.inserted;
-    w->booked.throughput =
-        from->booked.throughput;                             w->clock.half_kick =
-            from->clock.half_kick;
+    demi_rows_copy(demi_number_rows, w, from, DEMI_TO_SLAB);
+    demi_rows_copy(demi_booked_rows, &w->booked, &from->booked, DEMI_TO_SLAB);
+    w->clock.last_rebuild = from->clock.steps;
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
-    memcpy(w->booked.energy, from->booked.energy, sizeof w->booked.energy);
-    if (index > 0) demi_slab_sums_clear(w);
+    if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     return w;
 }
 /* Has it got all it was to get? */
@@ -34095,14 +33947,8 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->material_count = w->material_count;
     h->wall_count = w->wall_count;
     memcpy(h->materials, w->materials, sizeof h->materials);
-    h->clock.time = w->clock.time;           h->clock.steps =
-        w->clock.steps;         h->clock.rebuilds = w->clock.rebuilds;
-    h->clock.since = w->clock.since;         h->bodies.balance = w->bodies.balance;
-    h->clock.last_rebuild = w->clock.steps;  h->margin.skin_auto =
-        w->margin.skin_auto; h->margin.skin = w->margin.skin;
-    h->clock.dt = w->clock.dt;               h->stage.dt_valid =
-        w->stage.dt_valid;   h->stage.primed = w->stage.primed;
-    h->clock.assumed_speed = w->clock.assumed_speed;
+    demi_rows_copy(demi_number_rows, h, w, DEMI_TO_HEAD);
+    h->clock.last_rebuild = w->clock.steps;
     h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
@@ -34204,8 +34050,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 typedef struct demi_slab_sums {
     int32_t index, walls;
     uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
-    double energy[DEMI_ENERGIES], removed, inserted, throughput, overlap_max;
-    uint64_t met[DEMI_MATERIALS];
+    demi_booked booked;
 } demi_slab_sums;
 
 /* All that one slab holds, as one message. */
@@ -34219,13 +34064,8 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.index = b->index;
     sums.walls = w->wall_count;
     sums.left = w->bodies.balance.left;
-    memcpy(sums.energy, w->booked.energy, sizeof sums.energy);
-    sums.removed = w->booked.removed;
-    sums.inserted = w->booked.inserted;
-    sums.throughput = w->booked.throughput;
-    sums.overlap_max = w->booked.overlap_max;
-    memcpy(sums.met, w->booked.met, sizeof sums.met);
-    if (w->stage.list_valid) demi_met_look(w, sums.met);
+    sums.booked = w->booked;
+    if (w->stage.list_valid) demi_met_look(w, sums.booked.met);
     ok = demi_message_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
         ok = demi_message_put(h, out, &w->walls[i].loads, sizeof(dem_wall_loads));
@@ -34282,54 +34122,17 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
     }
     return 0;
 }
-/* What one slab's outlet has let out, on top of the others'. */
-static const char *demi_outlet_add(demi_outlet *o, const char *from) {
-    dem_outlet_state *to = &o->state, part;
-    int k;
-    demi_unpack(&from, &part, sizeof part);
-    for (k = 0; k < DEM_CLASSES; k++) {
-        to->count[k] += part.count[k];
-        to->mass[k] += part.mass[k];
-        to->back[k] += part.back[k];
-        to->back_mass[k] += part.back_mass[k];
-    }
-    to->back_total += part.back_total;
-    to->back_total_mass += part.back_total_mass;
-    to->total += part.total;
-    to->total_mass += part.total_mass;
-    to->sorted += part.sorted;
-    to->sorted_mass += part.sorted_mass;
-    to->gangue += part.gangue;
-    to->gangue_mass += part.gangue_mass;
-    to->last = DEMI_MAX(to->last, part.last);
-    return from;
-}
 /* Adds a slab's sums to the world's, which were cleared before. Answers where its message
    begins. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
-    int i, k;
-    for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
-    w->booked.removed += sums->removed;
-    w->booked.inserted += sums->inserted;
-    w->booked.throughput += sums->throughput;
+    int i;
+    demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
     w->bodies.balance.left += sums->left;
-    w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
-    for (i = 0; i < DEMI_MATERIALS; i++) w->booked.met[i] |= sums->met[i];
     for (i = 0; i < sums->walls; i++) {
-        dem_wall_loads *c = &w->walls[i].loads, part;
+        dem_wall_loads part;
         demi_unpack(&from, &part, sizeof part);
-        c->force = demi_add(c->force, part.force);
-        c->torque = demi_add(c->torque, part.torque);
-        c->torque_axial += part.torque_axial;
-        c->power += part.power;
-        c->contacts += part.contacts;
-        c->touched |= part.touched;
-        for (k = 0; k < 3; k++) c->impulse[k] += part.impulse[k];
-        c->torque_impulse += part.torque_impulse;
-        c->work += part.work;
-        for (k = 0; k < DEM_BODY_REALS; k++) c->rate[k] += part.rate[k];
-        for (k = 0; k < DEM_BODY_REALS; k++) c->gained[k] += part.gained[k];
-        c->time = part.time;
+        demi_rows_add(demi_loads_rows, &w->walls[i].loads, &part);
+        w->walls[i].loads.time = part.time;
     }
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
@@ -34340,7 +34143,11 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
             f->sums[n] += part;
         }
     }
-    for (i = 0; i < w->outlet_count; i++) from = demi_outlet_add(demi_outlet_at(w, i), from);
+    for (i = 0; i < w->outlet_count; i++) {
+        dem_outlet_state part;
+        demi_unpack(&from, &part, sizeof part);
+        demi_rows_add(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, &part);
+    }
     return from;
 }
 /* From a slab's sums to its grains. */
@@ -34355,31 +34162,15 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
-    w->desc.gravity = h->desc.gravity;       w->desc.dt = h->desc.dt;
-    w->clock.time = h->clock.time;           w->clock.steps =
-        h->clock.steps;         w->clock.rebuilds = h->clock.rebuilds;
-    w->clock.since = h->clock.since;
-    w->clock.last_rebuild = h->clock.last_rebuild;                        w->margin.skin_auto =
-        h->margin.skin_auto;
+    demi_rows_copy(demi_number_rows, w, h, DEMI_HEADS);
+    demi_rows_copy(demi_number_rows, w, from, DEMI_FIRSTS);
+    demi_rows_copy(demi_booked_rows, &w->booked, &h->booked, DEMI_HEADS);
     if (s->count == 1) w->margin.skin_auto = from->margin.skin_auto;
-    w->margin.skin = h->margin.skin;           w->clock.dt =
-        h->clock.dt;               w->stage.dt_valid = h->stage.dt_valid;
-    w->clock.assumed_speed = h->clock.assumed_speed;                      w->stage.primed =
-        h->stage.primed;
-    w->booked.speed_max = h->booked.speed_max; w->stage.moved =
-        h->stage.moved;         w->stage.synced = from->stage.synced;
-    w->clock.half_kick = from->clock.half_kick;
-    w->margin.gone = h->margin.gone;         w->margin.walls_gone = h->margin.walls_gone;
-    w->stage.forces_valid = h->stage.forces_valid;
-    w->bodies.balance.left = 0;
-    w->booked.removed = w->booked.inserted = w->booked.throughput = w->booked.overlap_max = 0;
-    memset(w->booked.energy, 0, sizeof w->booked.energy);
+    demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
     for (i = 0; i < w->wall_count; i++) {
-        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].mid = from->walls[i].mid;
     }
-    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_desc desc = w->feeds[i].desc;           /* pointers are the world's own */
         w->feeds[i] = h->feeds[i];
@@ -34546,12 +34337,7 @@ DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
         w->booked.overlap_max = 0;
-        for (i = 0; i < w->wall_count; i++) {
-            dem_wall_loads *c = &w->walls[i].loads;
-            memset(c->impulse, 0, sizeof c->impulse);
-            memset(c->gained, 0, sizeof c->gained);
-            c->torque_impulse = c->work = c->time = 0;
-        }
+        for (i = 0; i < w->wall_count; i++) demi_loads_reset(&w->walls[i].loads);
     }
 }
 
