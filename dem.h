@@ -3735,14 +3735,16 @@ enum {
     DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
     DEMI_PRESSING = 4,             /* polyhedra: by pressure, on four points; else by gaps */
     DEMI_MIDWAY = 8,               /* contacts are found half a step ahead: the midpoint rule */
-    DEMI_FORESEEN = 16             /* contacts are found before they touch, as speeds require */
+    DEMI_FORESEEN = 16,            /* contacts are found before they touch, as speeds require */
+    DEMI_JOINTED = 32              /* joints and motors act */
 };
 enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
-    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN, demi_impulses_settle, \
-      demi_impulses_room, 0, demi_impulses, demi_impulses_due, demi_impulses_info) \
+    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN | DEMI_JOINTED, \
+      demi_impulses_settle, demi_impulses_room, 0, demi_impulses, demi_impulses_due, \
+      demi_impulses_info) \
     /* the last */
 typedef struct demi_response_kind {
     const char *name;
@@ -4228,10 +4230,6 @@ DEM_INLINE dem_real demi_cover(const dem_world *w) {
 /* Has the response in force this trait? */
 DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
     return (demi_response_kinds[w->desc.response].traits & trait) != 0;
-}
-/* Is it DEM_RESPONSE_IMPULSES? Ask for a trait instead where one says what matters. */
-DEM_INLINE int demi_impulsive(const dem_world *w) {
-    return w->desc.response == DEM_RESPONSE_IMPULSES;
 }
 /* Does the reach follow the speeds, so that no scene may be refused because of it? */
 DEM_INLINE int demi_reach_free(const dem_world *w) {
@@ -5058,8 +5056,8 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
    impulses alone. */
 static int demi_zero_law(const dem_world *w, const void *item, const demi_field_row *r) {
     const int acts = r->kinds > 0 ? demi_normal_is(w, r->kinds) : !demi_normal_is(w, DEMI_HERTZIAN);
-    if (r->kinds < 0) return demi_impulsive(w) ? DEMI_0_TOO : DEMI_0_ALONE;
-    return demi_impulsive(w) ||
+    if (r->kinds < 0) return demi_response_is(w, DEMI_LAWS) ? DEMI_0_ALONE : DEMI_0_TOO;
+    return !demi_response_is(w, DEMI_LASTING) ||
         (acts && r->other && demi_row_read(r - r->other, item, 0) > 0) ? DEMI_0_TOO : DEMI_0_NOT;
 }
 static int demi_zero_unloading(const dem_world *w, const void *item, const demi_field_row *r) {
@@ -5174,8 +5172,8 @@ static double demi_damping_for(double e, dem_tension tension) {
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
     pair->given = *p;
-    pair->damping = demi_impulsive(w) ? 0 : demi_damping_for((double)p->restitution,
-                                                             w->desc.tension);
+    pair->damping = demi_response_is(w, DEMI_LASTING)
+        ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
 /* Unset, or below the sliding one, it follows that. */
@@ -5194,7 +5192,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         return id;
     }
     w->materials[n] = *desc;
-    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
+    if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     w->material_count = n + 1;
     for (i = 0; i <= n; i++) {
@@ -5239,7 +5237,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
                          "add another material", m + 1, (double)desc->density,
                          (double)before.density);
     w->materials[m] = *desc;
-    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
+    if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     for (i = 0; i < w->material_count; i++) {
         const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
@@ -5406,9 +5404,10 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
 
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
+    const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn%s\n", demi_impulsive(w) ? "  mu_spin cohesion [N] compliance [m/N]" : "");
+            "kt/kn%s\n", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
@@ -5419,7 +5418,7 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
                     (double)DEMI_MAX(p->friction, p->friction_static),
                     (double)p->rolling_friction, (double)p->stiffness,
                     (double)p->stiffness_ratio);
-            if (demi_impulsive(w))
+            if (!laws)
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
             fprintf(out, "\n");
@@ -19964,7 +19963,7 @@ static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, 
 static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
     const dem_real size = demi_length(d->axis);
     int a, b = -1;
-    if (!demi_impulsive(w)) {
+    if (!demi_response_is(w, DEMI_JOINTED)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
                   "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
         return 0;
@@ -29585,7 +29584,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
         return demi_lie(r, "list capacity", -1);
-    if (!demi_left(r, t->joint_count, sizeof(demi_joint)) || (t->joint_count && !demi_impulsive(w)))
+    if (!demi_left(r, t->joint_count, sizeof(demi_joint)) ||
+        (t->joint_count && !demi_response_is(w, DEMI_JOINTED)))
         return demi_lie(r, "number of joints", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
@@ -32055,7 +32055,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_impulsive(w)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
+    if (demi_response_is(w, DEMI_MIDWAY)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
@@ -32151,7 +32151,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
-    if (demi_impulsive(w)) {
+    if (!demi_response_is(w, DEMI_LAWS)) {
         fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
                 "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
                 "tolerance",
@@ -32288,7 +32288,7 @@ static void demi_report(const dem_world *world, FILE *out) {
             (unsigned long long)w->clock.steps, (double)w->clock.dt,
             demi_integrator_of(w)->name,
             demi_integrator_of(w)->order);
-    if (!demi_impulsive(w))
+    if (demi_response_is(w, DEMI_LASTING))
         fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
                 "bound by %s\n", (double)a.contact_time,
                 w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
@@ -33879,7 +33879,7 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
-    if (demi_impulsive(w))
+    if (!demi_response_is(w, DEMI_LAWS))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
                          "cannot be split into slabs; use threads", call);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))

@@ -278,14 +278,16 @@ enum {
     DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
     DEMI_PRESSING = 4,             /* polyhedra: by pressure, on four points; else by gaps */
     DEMI_MIDWAY = 8,               /* contacts are found half a step ahead: the midpoint rule */
-    DEMI_FORESEEN = 16             /* contacts are found before they touch, as speeds require */
+    DEMI_FORESEEN = 16,            /* contacts are found before they touch, as speeds require */
+    DEMI_JOINTED = 32              /* joints and motors act */
 };
 enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
-    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN, demi_impulses_settle, \
-      demi_impulses_room, 0, demi_impulses, demi_impulses_due, demi_impulses_info) \
+    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN | DEMI_JOINTED, \
+      demi_impulses_settle, demi_impulses_room, 0, demi_impulses, demi_impulses_due, \
+      demi_impulses_info) \
     /* the last */
 typedef struct demi_response_kind {
     const char *name;

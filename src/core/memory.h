@@ -11,10 +11,6 @@ DEM_INLINE dem_real demi_cover(const dem_world *w) {
 DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
     return (demi_response_kinds[w->desc.response].traits & trait) != 0;
 }
-/* Is it DEM_RESPONSE_IMPULSES? Ask for a trait instead where one says what matters. */
-DEM_INLINE int demi_impulsive(const dem_world *w) {
-    return w->desc.response == DEM_RESPONSE_IMPULSES;
-}
 /* Does the reach follow the speeds, so that no scene may be refused because of it? */
 DEM_INLINE int demi_reach_free(const dem_world *w) {
     return demi_response_is(w, DEMI_FORESEEN) && !(w->desc.law_range > 0);

@@ -124,7 +124,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
         return demi_lie(r, "list capacity", -1);
-    if (!demi_left(r, t->joint_count, sizeof(demi_joint)) || (t->joint_count && !demi_impulsive(w)))
+    if (!demi_left(r, t->joint_count, sizeof(demi_joint)) ||
+        (t->joint_count && !demi_response_is(w, DEMI_JOINTED)))
         return demi_lie(r, "number of joints", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);

@@ -75,7 +75,7 @@ static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, 
 static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
     const dem_real size = demi_length(d->axis);
     int a, b = -1;
-    if (!demi_impulsive(w)) {
+    if (!demi_response_is(w, DEMI_JOINTED)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
                   "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
         return 0;

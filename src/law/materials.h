@@ -9,8 +9,8 @@
    impulses alone. */
 static int demi_zero_law(const dem_world *w, const void *item, const demi_field_row *r) {
     const int acts = r->kinds > 0 ? demi_normal_is(w, r->kinds) : !demi_normal_is(w, DEMI_HERTZIAN);
-    if (r->kinds < 0) return demi_impulsive(w) ? DEMI_0_TOO : DEMI_0_ALONE;
-    return demi_impulsive(w) ||
+    if (r->kinds < 0) return demi_response_is(w, DEMI_LAWS) ? DEMI_0_ALONE : DEMI_0_TOO;
+    return !demi_response_is(w, DEMI_LASTING) ||
         (acts && r->other && demi_row_read(r - r->other, item, 0) > 0) ? DEMI_0_TOO : DEMI_0_NOT;
 }
 static int demi_zero_unloading(const dem_world *w, const void *item, const demi_field_row *r) {
@@ -125,8 +125,8 @@ static double demi_damping_for(double e, dem_tension tension) {
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
     pair->given = *p;
-    pair->damping = demi_impulsive(w) ? 0 : demi_damping_for((double)p->restitution,
-                                                             w->desc.tension);
+    pair->damping = demi_response_is(w, DEMI_LASTING)
+        ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
 /* Unset, or below the sliding one, it follows that. */
@@ -145,7 +145,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         return id;
     }
     w->materials[n] = *desc;
-    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
+    if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     w->material_count = n + 1;
     for (i = 0; i <= n; i++) {
@@ -190,7 +190,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
                          "add another material", m + 1, (double)desc->density,
                          (double)before.density);
     w->materials[m] = *desc;
-    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
+    if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     for (i = 0; i < w->material_count; i++) {
         const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
@@ -357,9 +357,10 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
 
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
+    const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn%s\n", demi_impulsive(w) ? "  mu_spin cohesion [N] compliance [m/N]" : "");
+            "kt/kn%s\n", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
@@ -370,7 +371,7 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
                     (double)DEMI_MAX(p->friction, p->friction_static),
                     (double)p->rolling_friction, (double)p->stiffness,
                     (double)p->stiffness_ratio);
-            if (demi_impulsive(w))
+            if (!laws)
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
             fprintf(out, "\n");

@@ -92,7 +92,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_impulsive(w)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
+    if (demi_response_is(w, DEMI_MIDWAY)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
@@ -188,7 +188,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
-    if (demi_impulsive(w)) {
+    if (!demi_response_is(w, DEMI_LAWS)) {
         fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
                 "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
                 "tolerance",
@@ -325,7 +325,7 @@ static void demi_report(const dem_world *world, FILE *out) {
             (unsigned long long)w->clock.steps, (double)w->clock.dt,
             demi_integrator_of(w)->name,
             demi_integrator_of(w)->order);
-    if (!demi_impulsive(w))
+    if (demi_response_is(w, DEMI_LASTING))
         fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
                 "bound by %s\n", (double)a.contact_time,
                 w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
