@@ -4,6 +4,7 @@
 # The last line is "N passed, N failed"; the exit code is 1 when anything failed.
 if [ "$1" = -one ]; then                       # DIR FILTER NUMBER PROGRAM: output to DIR/NUMBER
     dir=$2; filter=$3; number=$4; program=$5; name=$(basename "$program")
+    began=$(date +%s)
     $EMULATOR "$program" "$filter" >"$dir/$number" 2>&1
     code=$?
     totals=$(sed -n "s/^$name: \([0-9]*\) passed, \([0-9]*\) failed\$/\1 \2/p" "$dir/$number" | tail -n 1)
@@ -13,7 +14,7 @@ if [ "$1" = -one ]; then                       # DIR FILTER NUMBER PROGRAM: outp
     elif [ $code -ne 0 ] && [ "$f" -eq 0 ]; then
         f=1; echo "FAILED $name: ended with code $code after its totals" >>"$dir/$number"
     fi
-    echo "$p $f" >"$dir/$number.totals"
+    echo "$p $f $(($(date +%s) - began)) $name" >"$dir/$number.totals"
     cat "$dir/$number"
     exit 0
 fi
@@ -24,5 +25,6 @@ trap 'rm -rf "$dir"' EXIT
 count=0
 for program in "$@"; do count=$((count + 1)); printf '%s\n%s\n' $count "$program"; done |
     xargs -P "${JOBS:-1}" -n 2 sh "$0" -one "$dir" "$filter"
+cat "$dir"/*.totals 2>/dev/null | sort -k 3 -n -r | awk '$3 > 9 && NR < 9 { printf "%s%s %d s", NR > 1 ? ", " : "slowest: ", $4, $3 } END { if (NR) print "" }'
 cat "$dir"/*.totals 2>/dev/null | awk -v programs=$# '{ passed += $1; failed += $2 }
     END { failed += programs - NR; print passed + 0 " passed, " failed + 0 " failed"; exit failed > 0 }'
