@@ -25,6 +25,6 @@ trap 'rm -rf "$dir"' EXIT
 count=0
 for program in "$@"; do count=$((count + 1)); printf '%s\n%s\n' $count "$program"; done |
     xargs -P "${JOBS:-1}" -n 2 sh "$0" -one "$dir" "$filter"
-cat "$dir"/*.totals 2>/dev/null | sort -k 3 -n -r | awk '$3 > 9 && NR < 9 { printf "%s%s %d s", NR > 1 ? ", " : "slowest: ", $4, $3 } END { if (NR) print "" }'
+cat "$dir"/*.totals 2>/dev/null | sort -k 3 -n -r | awk '$3 > 9 && NR < 9 { printf("%s%s %d s", (NR > 1 ? ", " : "slowest: "), $4, $3) } END { if (NR) print "" }'
 cat "$dir"/*.totals 2>/dev/null | awk -v programs=$# '{ passed += $1; failed += $2 }
     END { failed += programs - NR; print passed + 0 " passed, " failed + 0 " failed"; exit failed > 0 }'
