@@ -4609,7 +4609,7 @@ typedef struct demi_field_row {
     int other, kinds;
     int (*zero)(const dem_world *w, const void *item, const struct demi_field_row *r);
     const char *refusal;            /* of a dem_world_desc: the error message; else the remedy, 0:
-                                       the usual one */
+                                       that of the call */
 } demi_field_row;
 #define DEMI_WHERE(of, field) offsetof(of, field), sizeof ((of *)0)->field
 #define DEMI_ROW_AS(of, name, field, type) \
@@ -4677,24 +4677,28 @@ static const demi_field_row *demi_rows_bad(const dem_world *w, const demi_field_
             if (!demi_row_good(w, r, item, demi_row_read(r, item, *k))) return r;
     return 0;
 }
-/* Fails with the first field of a desc that is beyond its limits. `of`: " of" which desc, or "". */
+/* Fails with the first field of a desc that is beyond its limits. `of`: " of" which desc, or "".
+   remedy: of the call; a row may have its own. */
 static dem_result demi_rows_check(dem_world *w, const char *call, const demi_field_row *rows,
-                                  const void *item, const char *of) {
+                                  const void *item, const char *of, const char *remedy) {
     int k;
     const demi_field_row *r = demi_rows_bad(w, rows, item, &k);
-    char least[60], words[80] = "", most[24] = "finite";
+    char least[80], words[80] = "", most[24] = "finite";
+    const char *gap;
     if (!r) return DEM_OK;
-    if (r->other > 0) snprintf(least, sizeof least, "%s", r[-r->other].name);
-    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0,
-                  *r->unit ? " " : "", r->unit);
+    gap = *r->unit ? " " : "";
+    if (r->other > 0)
+        snprintf(least, sizeof least, "%s (%g%s%s)", r[-r->other].name,
+                 demi_row_read(r - r->other, item, 0), gap, r->unit);
+    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0, gap, r->unit);
     if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
     if (demi_row_most(r) < DBL_MAX)
         snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g, must be %s%s %s%s and %s%s; %s", call,
-                     r->name, of, demi_row_read(r, item, k), r->other > 0 ? "0 or " : "",
-                     r->how & DEMI_OVER ? ">" : ">=", least, words, most,
-                     r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "", r->refusal
-                     ? r->refusal : "start from the defaults of the desc, change what differs");
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g%s%s, must be %s%s %s%s and %s%s; %s",
+                     call, r->name, of, demi_row_read(r, item, k), gap, r->unit,
+                     r->other > 0 ? "0 or " : "", r->how & DEMI_OVER ? ">" : ">=", least, words,
+                     most, r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
+                     r->refusal ? r->refusal : remedy);
 }
 /* Copies, or sets to 0, the fields of these uses. */
 static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
@@ -5094,7 +5098,8 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
     DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    if (demi_rows_check(w, call, demi_material_rows, d, "")) return DEM_ERROR_ARGUMENT;
+    if (demi_rows_check(w, call, demi_material_rows, d, "", "set it in the desc before the call"))
+        return DEM_ERROR_ARGUMENT;
     if (demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0 && d->restitution > 0 &&
         fabs((double)d->restitution*(double)d->restitution*
              (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
@@ -5272,7 +5277,9 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
         demi_material_index(w, "dem_pair_set", b, &j))
         return DEM_ERROR_ARGUMENT;
     snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
-    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of)) return DEM_ERROR_ARGUMENT;
+    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
+                        "start from dem_pair_get and change only what differs"))
+        return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
     w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");
@@ -10693,7 +10700,8 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     none.id = 0;
     if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
     wall.sieve = *d;
-    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "")) return none;
+    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "",
+                        "start from DEM_SIEVE_DESC and set only what differs")) return none;
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
                   "finite, or point is farther than %g m from the origin; check how it was "
@@ -22645,7 +22653,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     int k, m = 0, shaped = 0;
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
-    if (demi_rows_check(w, call, demi_feed_rows, d, "")) return id;
+    if (demi_rows_check(w, call, demi_feed_rows, d, "",
+                        "start from DEM_FEED_DESC and set only what differs")) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
@@ -22906,7 +22915,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     dem_outlet id;
     int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
-    if (demi_rows_check(w, call, demi_outlet_rows, d, "")) return id;
+    if (demi_rows_check(w, call, demi_outlet_rows, d, "",
+                        "start from DEM_OUTLET_DESC and set only what differs")) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {

@@ -35,7 +35,7 @@ typedef struct demi_field_row {
     int other, kinds;
     int (*zero)(const dem_world *w, const void *item, const struct demi_field_row *r);
     const char *refusal;            /* of a dem_world_desc: the error message; else the remedy, 0:
-                                       the usual one */
+                                       that of the call */
 } demi_field_row;
 #define DEMI_WHERE(of, field) offsetof(of, field), sizeof ((of *)0)->field
 #define DEMI_ROW_AS(of, name, field, type) \
@@ -103,24 +103,28 @@ static const demi_field_row *demi_rows_bad(const dem_world *w, const demi_field_
             if (!demi_row_good(w, r, item, demi_row_read(r, item, *k))) return r;
     return 0;
 }
-/* Fails with the first field of a desc that is beyond its limits. `of`: " of" which desc, or "". */
+/* Fails with the first field of a desc that is beyond its limits. `of`: " of" which desc, or "".
+   remedy: of the call; a row may have its own. */
 static dem_result demi_rows_check(dem_world *w, const char *call, const demi_field_row *rows,
-                                  const void *item, const char *of) {
+                                  const void *item, const char *of, const char *remedy) {
     int k;
     const demi_field_row *r = demi_rows_bad(w, rows, item, &k);
-    char least[60], words[80] = "", most[24] = "finite";
+    char least[80], words[80] = "", most[24] = "finite";
+    const char *gap;
     if (!r) return DEM_OK;
-    if (r->other > 0) snprintf(least, sizeof least, "%s", r[-r->other].name);
-    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0,
-                  *r->unit ? " " : "", r->unit);
+    gap = *r->unit ? " " : "";
+    if (r->other > 0)
+        snprintf(least, sizeof least, "%s (%g%s%s)", r[-r->other].name,
+                 demi_row_read(r - r->other, item, 0), gap, r->unit);
+    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0, gap, r->unit);
     if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
     if (demi_row_most(r) < DBL_MAX)
         snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g, must be %s%s %s%s and %s%s; %s", call,
-                     r->name, of, demi_row_read(r, item, k), r->other > 0 ? "0 or " : "",
-                     r->how & DEMI_OVER ? ">" : ">=", least, words, most,
-                     r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "", r->refusal
-                     ? r->refusal : "start from the defaults of the desc, change what differs");
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g%s%s, must be %s%s %s%s and %s%s; %s",
+                     call, r->name, of, demi_row_read(r, item, k), gap, r->unit,
+                     r->other > 0 ? "0 or " : "", r->how & DEMI_OVER ? ">" : ">=", least, words,
+                     most, r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
+                     r->refusal ? r->refusal : remedy);
 }
 /* Copies, or sets to 0, the fields of these uses. */
 static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {

@@ -47,7 +47,8 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
     DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    if (demi_rows_check(w, call, demi_material_rows, d, "")) return DEM_ERROR_ARGUMENT;
+    if (demi_rows_check(w, call, demi_material_rows, d, "", "set it in the desc before the call"))
+        return DEM_ERROR_ARGUMENT;
     if (demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0 && d->restitution > 0 &&
         fabs((double)d->restitution*(double)d->restitution*
              (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
@@ -225,7 +226,9 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
         demi_material_index(w, "dem_pair_set", b, &j))
         return DEM_ERROR_ARGUMENT;
     snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
-    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of)) return DEM_ERROR_ARGUMENT;
+    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
+                        "start from dem_pair_get and change only what differs"))
+        return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
     w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");

@@ -128,7 +128,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     int k, m = 0, shaped = 0;
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
-    if (demi_rows_check(w, call, demi_feed_rows, d, "")) return id;
+    if (demi_rows_check(w, call, demi_feed_rows, d, "",
+                        "start from DEM_FEED_DESC and set only what differs")) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
@@ -389,7 +390,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     dem_outlet id;
     int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
-    if (demi_rows_check(w, call, demi_outlet_rows, d, "")) return id;
+    if (demi_rows_check(w, call, demi_outlet_rows, d, "",
+                        "start from DEM_OUTLET_DESC and set only what differs")) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {

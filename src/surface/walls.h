@@ -544,7 +544,8 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     none.id = 0;
     if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
     wall.sieve = *d;
-    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "")) return none;
+    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "",
+                        "start from DEM_SIEVE_DESC and set only what differs")) return none;
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
                   "finite, or point is farther than %g m from the origin; check how it was "
