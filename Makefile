@@ -81,11 +81,10 @@ install: ## copy dem.h, a library of dem.c, and files for pkg-config and CMake i
 
 dem.h: $(ROOMS) src/join.awk ## join the files in src/ to dem.h, in the order of src/dem.h, if they compile
 	@mkdir -p build
-	@if test -f build/joined.h && test -f $@ && ! cmp -s build/joined.h $@; then awk -f src/join.awk src/dem.h | cmp -s - $@ || { \
-	    echo "dem.h was edited: make rooms copies the change into src/; rm build/joined.h discards it"; exit 1; }; fi
 	@! command -v $(CC) >/dev/null || $(CC) $(CPPFLAGS) -DDEM_IMPLEMENTATION -fsyntax-only -c -o build/joined.o -x c src/dem.h
-	@awk -f src/join.awk src/dem.h > build/joined.new && mv build/joined.new build/joined.h
-	@cmp -s build/joined.h $@ || cp build/joined.h $@; touch $@
+	@awk -f src/join.awk src/dem.h > build/joined.h
+	@cmp -s build/joined.h $@ || { test ! -f $@ || cp $@ build/dem_before.h; cp build/joined.h $@; \
+	    echo "dem.h: joined from src/ (what it was is in build/dem_before.h)"; }; touch $@
 
 rooms: ## copy a change that was made in dem.h itself into the files in src/
 	@awk -v to=src -f src/split.awk src/dem.h dem.h

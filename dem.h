@@ -34734,7 +34734,7 @@ static const char *const demi_viewer[] = {
     "2d'), w = c.clientWidth, h = c.clientHeight;\nif (c.width !== Math.round(w*ratio)) { c.width ",
     "= Math.round(w*ratio);\nc.height = Math.round(h*ratio); }\nd.setTransform(ratio, 0, 0, ratio,",
     " 0, 0);\nd.clearRect(0, 0, w, h);\nconst top = 15*p.curves.length + 8, foot = h - 18, left = ",
-    "48;\nconst X = t => left + (w - left - 8)*(t - from)/(to - from);\nconst Y = v => foot - (foo",
+    "58;\nconst X = t => left + (w - left - 8)*(t - from)/(to - from);\nconst Y = v => foot - (foo",
     "t - top)*(p.most > p.least ? (v - p.least)/(p.most - p.least) : 0.5);\nconst line = (x0, y0, ",
     "x1, y1) => { d.beginPath(); d.moveTo(x0, y0); d.lineTo(x1, y1); d.stroke(); };\nd.font = '11p",
     "x system-ui'; d.fillStyle = ink; d.strokeStyle = soft;\nline(left, foot, w - 8, foot); line(l",
