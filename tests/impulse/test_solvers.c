@@ -235,7 +235,7 @@ int main(int argc, char **argv) {
         dem_pair_get(world, m, m, &pair);
         pair.cohesion = 1;
         CHECK_EQ(dem_pair_set(world, m, m, &pair), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "cohesion of materials 1 and 1 is 1, must be >= 0 N, and 0 where springs answer");
+        CHECK_STR(dem_world_error_get(world), "cohesion of materials 1 and 1 is 1 N, must be >= 0 N, and 0 where springs answer");
         dem_world_destroy(world);
         desc = solver_desc(DEM_SOLVER_APGD, DEM_CONE_COULOMB);
         world = dem_world_create(&desc);
