@@ -1,9 +1,10 @@
 /* ---------------------------------------------------------------------------------------------
    >>platform
-   What differs between compilers lives here and nowhere else. Kernels must be inlined into their
-   variants to be specialised, hence DEM_INLINE; compilers vectorise a root only when told that it
-   does not set errno. There is one parallel loop, demi_parallel: it deals whole domains to threads,
-   and what it calls never knows how many threads there are.
+   Portability layer: compiler attributes, floating-point rules, OpenMP and the clock. No other part
+   tests for a compiler. The only parallel loop is demi_parallel. It hands whole work groups
+   ("domains" in the code) to threads, and the functions that it calls do not depend on the number
+   of threads. DEM_INLINE forces inlining, because a kernel is specialised only where it is inlined
+   into its variants.
    --------------------------------------------------------------------------------------------- */
 #include <float.h>
 #include <limits.h>
@@ -19,10 +20,11 @@
 #endif
 
 #if defined(__GNUC__) && !defined(__TINYC__)
-#define DEMI_ALIGNED __attribute__((aligned(64)))           /* to a cache line */
+#define DEMI_ALIGNED __attribute__((aligned(64)))           /* start on a cache line */
 #define DEMI_RESTRICT __restrict__
-#define DEMI_FETCH(p) __builtin_prefetch(p)                 /* will be read soon */
-#define DEMI_APART __attribute__((noinline))                /* keeps its registers to itself */
+#define DEMI_FETCH(p) __builtin_prefetch(p)                 /* prefetch */
+#define DEMI_APART __attribute__((noinline))                /* never inline: its register
+                                                               pressure stays out of the caller */
 #define DEMI_FORMAT(f, a) __attribute__((format(printf, f, a)))
 #else
 #define DEMI_ALIGNED
@@ -32,16 +34,17 @@
 #define DEMI_FORMAT(f, a)
 #endif
 #if defined(__clang__)
-#define DEMI_VECTOR                      /* clang checks for aliases itself, and warns when asked */
+#define DEMI_VECTOR              /* clang checks for aliases at run time and warns about ivdep */
 #elif defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_VECTOR _Pragma("GCC ivdep")
 #else
 #define DEMI_VECTOR
 #endif
 
-/* Products and sums are rounded one by one, whatever the compiler was told. Fused, as GNU C does it
-   by default where processors can, one expression gives two answers at two places, and a run that
-   is interrupted another one than a run that is not. To the end of the implementation. */
+/* From here to the end of the implementation, every product and every sum is rounded separately,
+   whatever the compiler options are. GNU C fuses them by default where the processor can. One
+   expression could then have two values in two places, and an interrupted run would differ from an
+   uninterrupted one. */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__) && !defined(__TINYC__)
@@ -49,19 +52,19 @@
 #pragma GCC optimize("fp-contract=off")
 #endif
 
-/* In a loop that copies: keeps compilers from making gathers of it, which are slower. */
+/* Keeps the compiler from turning a loop that copies into gather instructions, which are slower. */
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_ONE_BY_ONE(i) __asm__ __volatile__("" : "+r"(i))
 #else
 #define DEMI_ONE_BY_ONE(i) ((void)0)
 #endif
 
-/* Statements for 0 to 7, written out: compilers leave loops as loops at -O2. */
+/* Expands DO(0) to DO(7). Compilers do not unroll such a loop at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
 
-/* Kernels are compiled twice where that costs the user nothing: for any processor of the target,
-   and for those with wider vectors, which the loader finds out. "avx2" does not bring fused
-   multiplying and adding along, so both give the same bits. */
+/* Marks a kernel that is compiled twice, for the baseline processor and for AVX2. The loader
+   chooses between them. Only where this needs no action from the user. "avx2" does not enable fused
+   multiply-add, so both versions give the same bits. */
 #if defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && defined(__x86_64__) && \
     !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
     !defined(DEM_NO_CLONES)
@@ -78,14 +81,14 @@
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define DEMI_PI 3.14159265358979323846
 
-/* Calls task(world, i) for i = 0 .. count-1. Tasks must not depend on each other. */
+/* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. */
 typedef void (*demi_task)(dem_world *w, int index);
 static void demi_parallel(dem_world *w, int threads, int count, demi_task task) {
     int i;
 #if DEMI_OPENMP
     if (threads > 1 && count > 1) {
-        /* a few runs of neighbours to each thread, dealt in turns: where a scene is dense, it is so
-           in several domains side by side */
+        /* Each thread gets about four blocks of consecutive tasks, dealt round-robin. Dense regions
+           span several consecutive domains, so this balances the load. */
         const int run = DEMI_MAX(1, count/(4*threads));
         #pragma omp parallel for num_threads(threads) schedule(static, run)
         for (i = 0; i < count; i++) task(w, i);
@@ -95,7 +98,7 @@ static void demi_parallel(dem_world *w, int threads, int count, demi_task task) 
     (void)threads;
     for (i = 0; i < count; i++) task(w, i);
 }
-/* Threads that a world may have when its desc leaves the number open. */
+/* Number of threads to use if desc.threads is 0. */
 static int demi_threads_available(void) {
 #if DEMI_OPENMP
     return omp_get_max_threads();
@@ -103,7 +106,7 @@ static int demi_threads_available(void) {
     return 1;
 #endif
 }
-static double demi_clock(void) {                          /* s of wall time, for progress only */
+static double demi_clock(void) {                          /* wall time, s; for progress only */
 #if DEMI_OPENMP
     return omp_get_wtime();
 #elif defined(TIME_UTC)
