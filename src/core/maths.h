@@ -1,23 +1,23 @@
 /* ---------------------------------------------------------------------------------------------
    >>maths
-   Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
-   -ffast-math cannot fold away.
+   Vectors by value, rotations, elementary functions with the same bits on every machine, and random
+   numbers. Also the limits that numbers must keep when they enter the library. demi_finite tests
+   the exponent bits, because -ffast-math removes comparisons with NaN and infinity.
    --------------------------------------------------------------------------------------------- */
-#define DEMI_FARTHEST 1e15          /* m, m/s, rad/s, s: what is beyond is a mistake, and refused
-                                       where it enters; squares could overflow */
-#define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
-/* What enters stays between these, so that squares and quotients of it are numbers. */
-#define DEMI_MOST 1e30              /* in SI units: moduli, densities, stiffnesses */
-#define DEMI_MOST_RATIO 1e9         /* coefficients without a unit */
-#define DEMI_FINEST 1e-15           /* m: radii that a distribution of sizes draws */
-#define DEMI_DT_LEAST 1e-20         /* s: time steps below get nowhere */
-static double demi_size(dem_vec3 a) {                     /* largest component */
+/* Limits of numbers that enter the library. Within them, squares and quotients stay finite. */
+#define DEMI_FARTHEST 1e15          /* largest m, m/s, rad/s and s */
+#define DEMI_LEAST 1e-12            /* m, smallest extent of a surface */
+#define DEMI_MOST 1e30              /* largest modulus, density and stiffness, SI units */
+#define DEMI_MOST_RATIO 1e9         /* largest dimensionless coefficient */
+#define DEMI_FINEST 1e-15           /* m, smallest radius that a size distribution may draw */
+#define DEMI_DT_LEAST 1e-20         /* s, smallest time step */
+static double demi_size(dem_vec3 a) {                     /* largest |component| */
     return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
 }
-static dem_vec3 demi_unit(dem_vec3 a) {                   /* of any length but 0 */
+static dem_vec3 demi_unit(dem_vec3 a) {                   /* unit vector along a; a must not be 0 */
     double x = (double)a.x, y = (double)a.y, z = (double)a.z, l;
     int e;
-    (void)frexp(demi_size(a), &e);                        /* a power of two: exact */
+    (void)frexp(demi_size(a), &e);                        /* scales by a power of two: exact */
     x = ldexp(x, -e); y = ldexp(y, -e); z = ldexp(z, -e);
     l = sqrt(x*x + y*y + z*z);
     return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
@@ -31,20 +31,21 @@ static int demi_finite(dem_real x) { return demi_finite_double((double)x); }
 static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
                                      demi_finite(v.z); }
 static int demi_bounded(double x) { return demi_finite_double(x) && fabs(x) <= DEMI_FARTHEST; }
-/* A place, a velocity or a spin that can be: on entering, in a step, in a file. */
+/* True if a position, velocity or spin is finite and within DEMI_FARTHEST. */
 static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_FARTHEST; }
-/* Neither 0, "chosen for you", nor a time step that gets anywhere. */
+/* True unless dt is a usable time step, s, or 0, which lets the library choose. */
 static int demi_dt_bad(dem_real dt) {
     return !((double)dt >= DEMI_DT_LEAST || DEMI_ABS(dt) <= 0) || (double)dt > DEMI_FARTHEST;
 }
 
-/* Functions that every C library rounds in its own way. Here are ours, so that a run has the same
-   bits with all of them: of <math.h> dem.h uses only what IEEE 754 fixes to the last bit (sqrt,
-   fabs, floor, ceil, fmod, frexp, ldexp). Each is a series on a short range, to 4 units in the last
-   place; what is no number is answered so, what is out of range by 0 or infinity.
+/* Elementary functions. C libraries round them differently, so dem.h has its own and a run has the
+   same bits with every library. From <math.h> it uses only functions that are exact or that IEEE
+   754 rounds correctly (sqrt, fabs, floor, ceil, fmod, frexp, ldexp). Each function below is a
+   series on a short range and accurate to 4 units in the last place. NaN gives NaN; arguments out
+   of range give 0 or infinity.
 
-   sin, cos: x = n pi/2 + r, |r| <= pi/4, pi/2 in four parts, of which the first three have 24 bits,
-   so that n times each is exact to n = 2^29. */
+   sin, cos: x = n pi/2 + r, |r| <= pi/4. pi/2 is split into four parts. The first three have 24
+   bits, so that n times each of them is exact up to n = 2^29. Infinity gives NaN. */
 static void demi_sin_cos(double x, double *sine, double *cosine) {
     const double n = floor(x/1.5707963267948966 + 0.5);
     const double r = (((x - n*1.570796251296997) - n*7.549789415861596e-08) -
@@ -61,7 +62,8 @@ static void demi_sin_cos(double x, double *sine, double *cosine) {
 }
 static double demi_sin(double x) { double s, c; demi_sin_cos(x, &s, &c); return s; }
 static double demi_cos(double x) { double s, c; demi_sin_cos(x, &s, &c); return c; }
-/* log m 2^e = e log 2 + 2 artanh((m - 1)/(m + 1)), m from 0.7 to 1.4 */
+/* log(m 2^e) = e log 2 + 2 artanh((m - 1)/(m + 1)), m from 0.7 to 1.4. 0 gives -infinity, x < 0
+   NaN. */
 static double demi_log(double x) {
     int e;
     double m, s, u;
@@ -75,7 +77,7 @@ static double demi_log(double x) {
         u*(1.0/17 + u*(1.0/19 + u*(1.0/21 + u/23))))))))));
     return e*0.6931471803691238 + (2*s + (u + e*1.9082149292705877e-10));
 }
-/* exp x = 2^n exp r, |r| <= log(2)/2 */
+/* exp(x) = 2^n exp(r), |r| <= log(2)/2 */
 static double demi_exp(double x) {
     const double n = floor(x/0.6931471805599453 + 0.5);
     const double r = (x - n*0.6931471803691238) - n*1.9082149292705877e-10;
@@ -85,11 +87,11 @@ static double demi_exp(double x) {
     for (k = 14; k > 0; k--) sum = 1 + r*sum/k;
     return ldexp(sum, (int)n);
 }
-/* x^y of x >= 0 */
+/* x^y for x >= 0 */
 static double demi_pow(double x, double y) {
     return x > 0 ? demi_exp(y*demi_log(x)) : y > 0 ? x : y < 0 ? HUGE_VAL : 1;
 }
-static double demi_atan(double x) { /* the angle halved twice, then the series */
+static double demi_atan(double x) { /* halves the angle twice, then sums the series */
     double u;
     int k;
     if (x > 1 || x < -1) return (x > 0 ? 1.5707963267948966 : -1.5707963267948966) - demi_atan(1/x);
@@ -105,7 +107,7 @@ static double demi_atan2(double y, double x) {
 }
 static double demi_acos(double x) { return 2*demi_atan2(sqrt(1 - x), sqrt(1 + x)); }
 
-/* local -> world and back, for points and for directions */
+/* Rotates a vector from the local frame to the world, and back. R: row-major 3 x 3. */
 DEM_INLINE dem_vec3 demi_rotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x +
                   R[7]*a.y + R[8]*a.z);
@@ -114,8 +116,8 @@ DEM_INLINE dem_vec3 demi_unrotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x +
                   R[5]*a.y + R[8]*a.z);
 }
-/* A vector in double precision, for geometry that would lose its digits where dem_real is float.
-   Sums run from left to right: x, y, z. */
+/* A vector in double precision, for geometry that float cannot resolve. Sums are evaluated from
+   left to right: x, y, z. */
 typedef struct demi_d3 { double x, y, z; } demi_d3;
 DEM_INLINE demi_d3 demi_d(double x, double y, double z) {
     demi_d3 a;
@@ -142,41 +144,43 @@ DEM_INLINE demi_d3 demi_d3_cross(demi_d3 a, demi_d3 b) {
 }
 DEM_INLINE double demi_d3_square(demi_d3 a) { return demi_d3_dot(a, a); }
 DEM_INLINE double demi_d3_length(demi_d3 a) { return sqrt(demi_d3_dot(a, a)); }
-DEM_INLINE demi_d3 demi_d3_unit(demi_d3 a) {              /* 0 stays 0 */
+DEM_INLINE demi_d3 demi_d3_unit(demi_d3 a) {              /* 0 gives 0 */
     const double l = demi_d3_length(a);
     return l > 0 ? demi_d3_over(a, l) : demi_d(0, 0, 0);
 }
-/* a + t b, and the point at t of the way from a to b. */
+/* a + t b, and the linear interpolation from a (t = 0) to b (t = 1). */
 DEM_INLINE demi_d3 demi_d3_plus(demi_d3 a, double t, demi_d3 b) {
     return demi_d3_add(a, demi_d3_scale(b, t));
 }
 DEM_INLINE demi_d3 demi_d3_between(demi_d3 a, demi_d3 b, double t) {
     return demi_d3_plus(a, t, demi_d3_sub(b, a));
 }
-/* Across a triangle that turns left seen from its tip, as long as twice the triangle's area. */
+/* (b - a) x (c - a): normal of a triangle, on the side from which a, b, c run anticlockwise. Its
+   length is twice the triangle's area. */
 DEM_INLINE demi_d3 demi_d3_normal(demi_d3 a, demi_d3 b, demi_d3 c) {
     return demi_d3_cross(demi_d3_sub(b, a), demi_d3_sub(c, a));
 }
-/* The lowest and the highest coordinates of two points. */
+/* Minimum and maximum by component. */
 DEM_INLINE demi_d3 demi_d3_lowest(demi_d3 a, demi_d3 b) {
     return demi_d(DEMI_MIN(a.x, b.x), DEMI_MIN(a.y, b.y), DEMI_MIN(a.z, b.z));
 }
 DEM_INLINE demi_d3 demi_d3_highest(demi_d3 a, demi_d3 b) {
     return demi_d(DEMI_MAX(a.x, b.x), DEMI_MAX(a.y, b.y), DEMI_MAX(a.z, b.z));
 }
-/* local -> world, of directions in double precision; R: row-major */
+/* demi_rotate in double precision. */
 DEM_INLINE demi_d3 demi_d3_rotate(const double *R, demi_d3 a) {
     return demi_d(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z,
                   R[6]*a.x + R[7]*a.y + R[8]*a.z);
 }
-/* Rotation by angle about a unit axis (Rodrigues), row-major. */
+/* Rotation matrix, row-major, by `angle` (rad) about the unit axis (x, y, z): Rodrigues' formula.
+   */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
     double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;
     R[0] = c + x*x*v;   R[1] = x*y*v - z*s; R[2] = x*z*v + y*s;
     R[3] = y*x*v + z*s; R[4] = c + y*y*v;   R[5] = y*z*v - x*s;
     R[6] = z*x*v - y*s; R[7] = z*y*v + x*s; R[8] = c + z*z*v;
 }
-/* A rotation whose third column is the unit vector n, so that local z is n (Duff et al. 2017). */
+/* A rotation whose third column is the unit vector n, so that it maps local z to n [DUF17]. */
 static void demi_frame_of(dem_real *R, dem_vec3 n) {
     dem_real s = n.z >= 0 ? DEM_R(1) : DEM_R(-1), a = -1/(s + n.z), b = n.x*n.y*a;
     R[0] = 1 + s*n.x*n.x*a; R[3] = s*b;           R[6] = -s*n.x;
@@ -184,7 +188,7 @@ static void demi_frame_of(dem_real *R, dem_vec3 n) {
     R[2] = n.x;             R[5] = n.y;           R[8] = n.z;
 }
 
-/* splitmix64: one 64-bit state, good enough to place grains. */
+/* The next 64 random bits: splitmix64, with one 64-bit state; good enough for placing grains. */
 static uint64_t demi_random(uint64_t *state) {
     uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
     z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
