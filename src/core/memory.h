@@ -1,30 +1,33 @@
 /* ---------------------------------------------------------------------------------------------
    >>memory
-   What each body has, told once; names; sentences of what went wrong; allocation, and arrays that
-   grow.
+   Memory and errors: the table of the arrays that hold a value for each body, the user's names, the
+   checks at the start of every public function, error messages, allocation and growing arrays. All
+   memory of a world is allocated and freed here.
    --------------------------------------------------------------------------------------------- */
-/* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
+/* Returns the largest gap, m, of a candidate: the skin and the range of the law. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
-/* Has the response in force this trait? */
+/* True if the response in force (springs or impulses) has this trait. */
 DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
     return (demi_response_kinds[w->desc.response].traits & trait) != 0;
 }
-/* Does the reach follow the speeds, so that no scene may be refused because of it? */
+/* True if margin.reach follows from the speeds, as with impulses and no law_range. Then no check
+   may reject a scene because of it. */
 DEM_INLINE int demi_reach_free(const dem_world *w) {
     return demi_response_is(w, DEMI_FORESEEN) && !(w->desc.law_range > 0);
 }
-/* m: from the first body of entry `at` of the near list to the second, or to its image there. */
+/* Vector, m, from body a to the image of body b in entry `at` of the pruned neighbour list. */
 DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
     const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
     return demi_add(demi_sub(demi_at(y), demi_at(x)), demi_at(w->image_shift + w->near.image[at]));
 }
-/* Does a law answer rates of the user's numbers? */
+/* True if the law may write rates of the user-defined numbers of bodies. */
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
-/* Word k of body_reals or law_memory_names, its length; a null pointer: there are not so many. */
+/* Returns word k of body_reals or law_memory_names and its length; null if there are fewer words.
+   */
 static const char *demi_name(const char *names, int k, int *length) {
     const char *at = names ? names : "";
     for (;; k--) {
@@ -35,7 +38,7 @@ static const char *demi_name(const char *names, int k, int *length) {
         at += *length;
     }
 }
-/* How many these are; -1: more than there may be, or a word that is none. */
+/* Returns the number of names; -1 if there are more than `most` or one is not a valid name. */
 static int demi_names(const char *names, int most) {
     int count = 0, length, i;
     const char *at;
@@ -47,7 +50,7 @@ static int demi_names(const char *names, int most) {
     }
     return count;
 }
-/* These names, a space between two. Answers how many there are. */
+/* Copies the names, separated by single spaces. Returns their number. */
 static int demi_names_copy(const char *names, char *out) {
     const char *name;
     int k, n;
@@ -56,7 +59,8 @@ static int demi_names_copy(const char *names, char *out) {
         sprintf(out + strlen(out), "%s%.*s", k ? " " : "", n, name);
     return k;
 }
-/* The names that a world's descs point to are its own: also after it was copied. */
+/* Points the descs at the names that the world itself stores; needed again after a world is copied.
+   */
 static void demi_names_point(dem_world *w) {
     w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
     w->desc.law_memory_names = w->asked.law_memory_names = w->memory_names[0] ? w->memory_names : 0;
@@ -66,36 +70,44 @@ static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
     demi_names_copy(desc->law_memory_names, w->memory_names);
     demi_names_point(w);
 }
-/* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
-   0 where it is asked at touch alone. */
+/* Returns the gap, m, below which the law is called. `radii`: sum of both radii; with a wall, the
+   radius of the body. 0: the law is called only in contact. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
     if (demi_reach_free(w)) return (dem_real)w->margin.reach;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
 }
 
-/* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
-       sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
-       demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
-       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_BACK_TURNED: those of
-       a world where both hold; DEMI_COUNTED: those of a
-       world with numbers of the user's, as many times as there are numbers; DEMI_ZONED: those of a
-       world with outlets that only count; DEMI_BOOKED: those of a world with a ledger whose scheme
-       predicts velocities; DEMI_SLOTS: every slot.
-       What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
-       kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
-       room to work in. --- */
+/* --- arrays with a value for each body. Loops over these rows (>>bodies) allocate, add, remove,
+       sort, check, save and send them to other slabs.
+
+       >>add-array: a field in demi_bodies above and a row here.
+
+       who: when the array exists
+         DEMI_EVERY        always
+         DEMI_BACK         if the positions of the previous step are needed (bodies.backward)
+         DEMI_TURNED       if bodies have orientations
+         DEMI_BACK_TURNED  if both of these hold
+         DEMI_COUNTED      if bodies have user-defined numbers; one item for each number
+         DEMI_ZONED        if there are outlets that only count
+         DEMI_BOOKED       with a ledger and an integrator that predicts velocities
+         DEMI_SLOTS        always, with one item for each slot instead of each body
+       what: how it is used
+         DEMI_KEPT         part of the state; 0 in a new body unless set
+         DEMI_REALS        the same, and reals that must be finite
+         DEMI_PLACES       the same; x, y, z are a position, which periodic wrapping shifts
+         0                 scratch memory --- */
 enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
        DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
-    /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
-    size_t field, item;
+    size_t field, item;            /* offset of its pointer in demi_bodies; bytes per body (for
+                                      DEMI_COUNTED: per number, see demi_item) */
     int who, what;
 } demi_body_array;
 #define DEMI_ARRAY(field, count, who, what) \
     {offsetof(demi_bodies, field), (count)*sizeof *((demi_bodies *)0)->field, who, what}
 static const demi_body_array demi_body_arrays[] = {
-    DEMI_ARRAY(slot,            1, DEMI_EVERY,  DEMI_KEPT),     /* the first: see demi_body_take */
+    DEMI_ARRAY(slot,            1, DEMI_EVERY,  DEMI_KEPT),     /* must be first: demi_body_take */
     DEMI_ARRAY(material,        1, DEMI_EVERY,  DEMI_KEPT),
     DEMI_ARRAY(pos,             4, DEMI_EVERY,  DEMI_PLACES),
     DEMI_ARRAY(vel,             4, DEMI_EVERY,  DEMI_REALS),
@@ -125,8 +137,8 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(slot_generation, 1, DEMI_SLOTS,  DEMI_KEPT)};
 enum { DEMI_BODY_ARRAYS = (int)(sizeof demi_body_arrays/sizeof *demi_body_arrays) };
 
-/* Does a call, its name n characters long, build a scene? Without what it would have added or
-   chosen a run is another one. Those that take away, look, read or write do not. */
+/* True if the call, whose name has n characters, changes the setup of a scene: a run without it
+   would be a different simulation. Calls that remove, read or write do not count. */
 static int demi_builds(const char *call, size_t n) {
     static const char *const ends[] = {"_add", "_fill", "_pack", "dem_pair_set", "dem_material_set",
                                        "dem_wall_motion_set"};
@@ -137,7 +149,7 @@ static int demi_builds(const char *call, size_t n) {
     }
     return 0;
 }
-/* Which of the refused calls it is, -1: none. */
+/* Returns the index of the call among the failed ones, or -1. */
 static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
     int k;
     for (k = 0; k < w->refused; k++)
@@ -145,7 +157,8 @@ static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
     return -1;
 }
 
-/* The sentence of a call that failed. One that builds the scene is remembered. */
+/* Stores the error message of a failed call. If the call builds the scene (demi_builds), the world
+   also remembers its name until the message is read or the call succeeds. */
 static void demi_tell(dem_world *w, const char *format, va_list args) DEMI_FORMAT(2, 0);
 static void demi_tell(dem_world *w, const char *format, va_list args) {
     const size_t calls = sizeof w->refused_calls/sizeof *w->refused_calls;
@@ -159,19 +172,21 @@ static void demi_tell(dem_world *w, const char *format, va_list args) {
         w->refused_calls[w->refused++][n] = 0;
     }
 }
+/* Stores an error message and returns `result`. */
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
                             ...) DEMI_FORMAT(3, 4);
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
     va_list args;
     va_start(args, format);
 #if DEMI_OPENMP
-    #pragma omp critical(demi_fail)             /* laws on several threads may be refused at once */
+    #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
 #endif
     demi_tell(w, format, args);
     va_end(args);
     return result;
 }
-/* A call that builds the scene went well: an earlier refusal of the same call is made good. */
+/* Call this when a call that builds the scene has succeeded: an earlier failure of the same call no
+   longer prevents a run. */
 static void demi_built(dem_world *w, const char *call) {
     const size_t n = strlen(call);
     const int k = demi_refused_find(w, call, n);
@@ -181,8 +196,8 @@ static void demi_built(dem_world *w, const char *call) {
     if (!w->refused || strncmp(w->refusal, call, n) || w->refusal[n] != ':') return;
     snprintf(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
 }
-/* Before a run: says so when a call that builds the scene was refused and nobody read why. A scene
-   that lacks something would run, and answer DEM_OK. */
+/* Fails before a run if a call that builds the scene failed and its message has not been read.
+   Otherwise an incomplete scene would run and return DEM_OK. */
 static dem_result demi_unbuilt(dem_world *w, const char *call) {
     char why[sizeof w->refusal];
     if (!w->refused) return DEM_OK;
@@ -191,16 +206,18 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
                      "and its message has not been read: \"%.320s\"; correct that call, or read "
                      "dem_world_error_get and continue without it", call, why);
 }
-/* Before a function of the user's is called: until `w->look.calling` is what this returns again,
-   calls that change the world are refused. */
+/* Call this before a user-defined function. Calls that change the world fail until the caller
+   restores w->look.calling to the value returned here. `who` names the function in messages;
+   `within`: 1 inside a step. */
 static demi_calling demi_calls(dem_world *w, const char *who, int within) {
     const demi_calling was = w->look.calling;
     w->look.calling.who = who;
     w->look.calling.within = within;
     return was;
 }
-/* The same where a world is only looked at, maybe by several threads: one that finds nothing under
-   way says so and takes it back, others do neither, so that it does not stay said. */
+/* The same for a function that only reads the world, possibly on several threads. Only a thread
+   that finds no call in progress sets the mark, and only that thread removes it, so the mark cannot
+   be left behind. */
 static demi_calling demi_look_calls(const dem_world *w, const char *who) {
     const demi_calling was = w->look.calling;
     if (!was.who) demi_calls((dem_world *)w, who, 1);
@@ -209,10 +226,9 @@ static demi_calling demi_look_calls(const dem_world *w, const char *who) {
 static void demi_look_called(const dem_world *w, demi_calling was) {
     if (!was.who) ((dem_world *)w)->look.calling = was;
 }
-/* The first line of every public function is one of the next three. They return 1, with a sentence
-   where there is a world to hold it, when the world or a pointer that has to lead somewhere is
-   null. The first is for functions that only look: any thread and any function of the user's may
-   call them. */
+/* The first line of every public function is one of the next three. They return 1 if the world or
+   `pointer` is null, and store an error message if there is a world to hold it. The first is for
+   functions that only read: any thread and any user-defined function may call them. */
 static int demi_null_look(const dem_world *w, const char *call, const void *pointer,
                           const char *name) {
     if (w && pointer) return 0;
@@ -220,6 +236,7 @@ static int demi_null_look(const dem_world *w, const char *call, const void *poin
                      name);
     return 1;
 }
+/* Fails because a user-defined function made a call that it may not make. Returns 1. */
 static int demi_barred(dem_world *w, const char *call) {
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls (law, field, "
               "motion, region, progress or the like), which may only read the world; make this "
@@ -227,13 +244,13 @@ static int demi_barred(dem_world *w, const char *call) {
               "DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
     return 1;
 }
-/* For functions that need memory of the world but leave its state alone, such as those that read
-   and write files: refused within a step. */
+/* For functions that allocate memory of the world but do not change its state, for example those
+   that read or write files. They fail within a step. */
 static int demi_null_write(dem_world *w, const char *call, const void *pointer, const char *name) {
     return demi_null_look(w, call, pointer, name) ||
         (w->look.calling.who && w->look.calling.within && demi_barred(w, call));
 }
-/* For all others: refused in every function of the user's but those of outputs. */
+/* For all others. They fail in every user-defined function except those of outputs. */
 static int demi_null(dem_world *w, const char *call, const void *pointer, const char *name) {
     return demi_null_look(w, call, pointer, name) ||
         (w->look.calling.who && demi_barred(w, call));
@@ -259,20 +276,22 @@ static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
     if (!p) return;
     if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
 }
-/* What stands before everything handed out. Begins on a cache line, so that no row of four reals
-   lies across two; knows its size, so that it frees and grows without being told. */
+/* Header in front of every allocation. The data after it begin on a cache line, so that no row of
+   four reals crosses one. The header stores the size, so that freeing and growing need no size
+   argument. */
 typedef struct demi_block {
-    struct demi_block *before, *after;         /* in its chain */
-    size_t bytes;                              /* of what is handed out */
-    int in, chain;                             /* bytes from where the allocator's begin */
+    struct demi_block *before, *after;         /* neighbours in its list */
+    size_t bytes;                              /* size of the data */
+    int in, chain;                             /* offset of the data in the allocator's block,
+                                                  bytes; its list: DEMI_SCENE, ... */
 } demi_block;
 enum { DEMI_LINE = 64 };
 static demi_block *demi_block_of(void *data) { return (demi_block *)data - 1; }
-/* Items of `item` bytes there is room for; 0 of null. */
+/* Capacity of an allocation in items of `item` bytes; 0 for null. */
 static size_t demi_room(const void *data, size_t item) {
     return data ? ((const demi_block *)data - 1)->bytes/item : 0;
 }
-/* From the user's allocator and back, which may not change the world that asks. */
+/* Allocate and free by the user's allocator, which may not change the world. */
 static void *demi_block_alloc(dem_world *w, size_t bytes) {
     const demi_calling was = w->look.calling;
     void *p;
@@ -287,8 +306,9 @@ static void demi_block_free(dem_world *w, void *p, size_t bytes) {
     demi_raw_free(&w->desc.allocator, p, bytes);
     if (w->desc.allocator.free_fn) w->look.calling = was;
 }
-/* count items of size bytes, cleared, that hang on a chain of the world or, DEMI_LOOSE, on none:
-   then its maker frees it. Null when there is no room, the product overflows, or count is 0. */
+/* Allocates `count` items of `size` bytes, set to 0, and links them into a list of the world. With
+   DEMI_LOOSE they are in no list and the caller must free them. Returns null if memory runs out,
+   the product overflows or is 0. */
 static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
     const size_t bytes = count*size;
     unsigned char *p;
@@ -323,27 +343,28 @@ static void demi_free(dem_world *w, void *data) {
     w->bytes -= block->bytes + 2*DEMI_LINE;
     demi_block_free(w, (unsigned char *)data - block->in, block->bytes + 2*DEMI_LINE);
 }
-/* Does it hang on this chain? A copy of a world looks at what hangs on another's. */
+/* True if the allocation is in this list of the world. A copy of a world refers to allocations of
+   the original, which it must not free. */
 static int demi_owns(const dem_world *w, int chain, const void *data) {
     const demi_block *block = w->chains[chain];
     while (block && (const void *)(block + 1) != data) block = block->after;
     return block != 0;
 }
-/* All that hangs on a chain: nothing can be forgotten. */
+/* Frees every allocation of a list. */
 static void demi_free_chain(dem_world *w, int chain) {
     while (w->chains[chain]) demi_free(w, w->chains[chain] + 1);
 }
-/* Makes room for count items in an array of the world, keeping those there; never shrinks. An array
-   grown for none is not null either, for null + 0 is undefined in C. 0 when memory ran out; then
-   nothing has changed. */
+/* Grows an array of the world to hold at least `count` items and keeps its contents; it never
+   shrinks. An array grown to 0 items is not null, because null + 0 is undefined in C. Returns 0 if
+   memory runs out; the array is then unchanged. */
 #define DEMI_GROW(w, array, count) demi_grow(w, DEMI_RUN, &(array), sizeof *(array), count)
 static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t count) {
     void *old, *fresh;
     size_t room;
-    memcpy(&old, array, sizeof old);            /* a pointer to whatever */
+    memcpy(&old, array, sizeof old);            /* any type of pointer */
     room = demi_room(old, item);
     if (old && count <= room) return 1;
-    /* bulk: what it takes; bit by bit: in steps */
+    /* exactly `count` for a large request, else by a quarter */
     fresh = demi_hold(w, chain, DEMI_MAX(count, room + room/4 + 16), item);
     if (!fresh) return 0;
     if (old) memcpy(fresh, old, room*item);
