@@ -7,8 +7,9 @@
    tests/core/test_rows.c.
    --------------------------------------------------------------------------------------------- */
 
-/* Range of a number: unchecked (0), finite, >= 0, > 0; DEMI_UNDER: `most` is excluded. DEMI_FREE:
-   the field is not part of the scene, such as threads and pointers that functions are handed. */
+/* Range of a number: 0 means unchecked, DEMI_ANY finite, DEMI_FROM >= 0, DEMI_OVER > 0; DEMI_UNDER
+   excludes the value `most`. DEMI_FREE: the field is not part of the scene; examples are `threads`
+   and the pointers passed to user-defined functions. */
 enum { DEMI_ANY = 1, DEMI_FROM = 2, DEMI_OVER = 4, DEMI_LIMITS = 7, DEMI_UNDER = 8,
        DEMI_FREE = 16 };
 /* How slabs exchange a field. DEMI_TO_SLAB, DEMI_TO_HEAD: each slab, or the head that they share,
@@ -18,24 +19,26 @@ enum { DEMI_ANY = 1, DEMI_FROM = 2, DEMI_OVER = 4, DEMI_LIMITS = 7, DEMI_UNDER =
 enum { DEMI_TO_SLAB = 32, DEMI_TO_HEAD = 64, DEMI_HEADS = 128, DEMI_FIRSTS = 256,
        DEMI_SUM = 512, DEMI_LARGEST = 1024, DEMI_EITHER = 2048,
        DEMI_DEALT = DEMI_TO_SLAB | DEMI_TO_HEAD | DEMI_HEADS };
-/* Returned by `zero`: the field may not be 0 if its limits exclude it, may be 0, must be 0. */
+/* Returned by `zero`: the limits decide whether the field may be 0; it may be 0; it must be 0. */
 enum { DEMI_0_NOT, DEMI_0_TOO, DEMI_0_ALONE };
-/* type: 'i' int, 'e' enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double, 'u' uint64_t, 'p' is
-   it null?, 't' a text, of at most `size` bytes, 'h' the digest of what it points to. */
+/* One field. type: 'i' int, 'e' enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double,
+   'u' uint64_t, 'p' whether a pointer is null, 't' a text of at most `size` bytes, 'h' a digest
+   computed by `digest`. */
 typedef struct demi_field_row {
-    const char *name, *words;       /* words: values of an enum from 0 on; else more on limits */
-    size_t offset, size;            /* of the field in its struct; bytes in the file */
+    const char *name, *words;       /* words: names of an enum's values, from 0; of a number: a
+                                       further limit, for the error message */
+    size_t offset, size;            /* offset in its struct; size of the whole field, bytes */
     char type;
     uint64_t (*digest)(const void *item);
     int how;
     double most;                    /* largest magnitude */
     const char *unit;
-    /* other > 0: the value must be 0 or not below that of the field so many rows before this one;
-       other < 0 (rows after this one) and kinds are for `zero`. */
+    /* other > 0: the value must be 0 or above the field `other` rows before this one (DEMI_FROM:
+       not below it). other < 0 names a field after this one; it and `kinds` are read by `zero`. */
     int other, kinds;
     int (*zero)(const dem_world *w, const void *item, const struct demi_field_row *r);
-    const char *refusal;            /* of a dem_world_desc: the error message; else the remedy, 0:
-                                       that of the call */
+    const char *refusal;            /* of a dem_world_desc: the whole error message; else the
+                                       remedy in it, null: that of the call */
 } demi_field_row;
 #define DEMI_WHERE(of, field) offsetof(of, field), sizeof ((of *)0)->field
 #define DEMI_ROW_AS(of, name, field, type) \
@@ -51,13 +54,13 @@ typedef struct demi_field_row {
 #define DEMI_ROW_DIGEST(name, digest) \
     {name, 0, 0, sizeof(uint64_t), 'h', digest, 0, 0, "", 0, 0, 0, 0}
 #define DEMI_ROW_END {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
-/* A number with limits, and with all that a limit may depend on. */
+/* A number with limits; DEMI_LIMITED_IF: limits that depend on another field or on `zero`. */
 #define DEMI_LIMITED(of, field, type, how, most, unit) \
     DEMI_LIMITED_IF(of, field, type, how, most, unit, 0, 0, 0, 0)
 #define DEMI_LIMITED_IF(of, field, type, how, most, unit, words, other, kinds, zero) \
     {#field, words, DEMI_WHERE(of, field), type, 0, how, most, unit, other, kinds, zero, 0}
 
-/* Bytes of one element of a field, in the file. */
+/* Size of one element of a field, bytes. A vector has several elements. */
 static size_t demi_row_item(const demi_field_row *r) {
     switch (r->type) {
     case 't': return r->size;
@@ -66,7 +69,7 @@ static size_t demi_row_item(const demi_field_row *r) {
     default: return sizeof(dem_real);
     }
 }
-/* Element k of a number. */
+/* Returns element k of a number as a double. */
 static double demi_row_read(const demi_field_row *r, const void *item, int k) {
     const char *at = (const char *)item + r->offset + (size_t)k*demi_row_item(r);
     int32_t i;
@@ -78,14 +81,14 @@ static double demi_row_read(const demi_field_row *r, const void *item, int k) {
     default: memcpy(&x, at, sizeof x); return (double)x;
     }
 }
-/* The largest magnitude; of an enum its last value. */
+/* Returns the largest magnitude allowed; for an enum its last value. */
 static double demi_row_most(const demi_field_row *r) {
     const char *word = r->words;
     double most = r->most;
     if (r->type == 'e') for (most = 0; *word; word++) most += *word == ' ';
     return most;
 }
-/* Is x within the limits of this field of an item? */
+/* True if x is within the limits of this field. `item` is the struct that contains it. */
 static int demi_row_good(const dem_world *w, const demi_field_row *r, const void *item, double x) {
     const int zero = r->zero ? r->zero(w, item, r) : r->other > 0;
     const double least = r->other > 0 ? demi_row_read(r - r->other, item, 0) : 0;
@@ -95,7 +98,7 @@ static int demi_row_good(const dem_world *w, const demi_field_row *r, const void
     return zero != DEMI_0_ALONE &&
         (r->how & DEMI_OVER ? x > least : r->how & DEMI_FROM ? x >= least : 1);
 }
-/* The first field that is beyond its limits, element *k of it; null: none. */
+/* Returns the first field out of its limits and sets *k to the element; null if all are good. */
 static const demi_field_row *demi_rows_bad(const dem_world *w, const demi_field_row *r,
                                            const void *item, int *k) {
     for (; r->name; r++)
@@ -103,8 +106,8 @@ static const demi_field_row *demi_rows_bad(const dem_world *w, const demi_field_
             if (!demi_row_good(w, r, item, demi_row_read(r, item, *k))) return r;
     return 0;
 }
-/* Fails with the first field of a desc that is beyond its limits. `of`: " of" which desc, or "".
-   remedy: of the call; a row may have its own. */
+/* Fails with a message about the first field out of its limits. `of` is "" or says which desc, such
+   as " of materials 1 and 2". `remedy` ends the message unless the row has its own. */
 static dem_result demi_rows_check(dem_world *w, const char *call, const demi_field_row *rows,
                                   const void *item, const char *of, const char *remedy) {
     int k;
@@ -126,7 +129,7 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
                      most, r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
                      r->refusal ? r->refusal : remedy);
 }
-/* Copies, or sets to 0, the fields of these uses. */
+/* Copy, or set to 0, the fields that have any of the bits `uses` in `how`. */
 static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
     for (; r->name; r++)
         if (r->how & uses) memcpy((char *)to + r->offset, (const char *)from + r->offset, r->size);
@@ -134,7 +137,7 @@ static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, 
 static void demi_rows_clear(const demi_field_row *r, void *item, int uses) {
     for (; r->name; r++) if (r->how & uses) memset((char *)item + r->offset, 0, r->size);
 }
-/* Adds what one slab has to what the world has of all. */
+/* Adds the fields of one slab to those of the whole world: sums, maxima and bits. */
 static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) {
     size_t k;
     for (; r->name; r++) {
@@ -153,7 +156,8 @@ static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) 
     }
 }
 
-/* --- numbers of a world that a run changes. A checkpoint holds them within these limits. --- */
+/* --- numbers of a world that a run changes. Reading a checkpoint checks them against these
+       limits. --- */
 #define DEMI_N(field, type, how) DEMI_LIMITED(DEMI_OF, field, type, how, DBL_MAX, "")
 #define DEMI_OF dem_world
 static const demi_field_row demi_number_rows[] = {
