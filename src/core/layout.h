@@ -4,17 +4,20 @@
    flat arrays with four reals per body, so that a gather reads one cache line and a drift is one
    long loop. Every array that grows is a field here. DEMI_GROW enlarges it and keeps its contents,
    or leaves it unchanged and reports that memory ran out.
+
    Words of the code, beside those of the glossary:
+       word in names       meaning
        domain              a work group of some 2000 neighbouring bodies
-       persistent contact  any contact other than sphere on sphere, for example with a wall. It is
-                           stored in a list of its own and followed from step to step
-       pruned neighbour list   the candidates that may touch within some steps (>>near, `near` in
-                           names). Forces are computed for these only. The contact history of two
-                           spheres is stored in its columns
-       share, weight, count    the weight of a contact point (glossary)
-       place               a contact point found on a surface or in a polyhedron (demi_touching)
+       kept                a persistent contact: any contact other than sphere on sphere, for
+                           example with a wall. It is stored in a list of its own and followed from
+                           step to step
+       near                the pruned neighbour list: the candidates that may touch within some
+                           steps (>>near). Forces are computed for these only. The contact history
+                           of two spheres is stored in its columns
+       share, weight       the weight of a contact point (glossary)
+       place               a contact point on a surface (demi_touching), or an index
        part                a member sphere, a piece of a union, or the whole body (glossary)
-       box ends, bins, levels  data of the broad phases (>>search)
+       memory              the contact history
        species             spheres with the same material, radius and mass, all fixed or all free
        tile                some 32 or 64 pairs whose forces are computed together
    --------------------------------------------------------------------------------------------- */

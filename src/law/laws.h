@@ -1,28 +1,29 @@
 /* ---------------------------------------------------------------------------------------------
    >>laws
-   The built-in laws, a line each: the laws themselves stand in >>api, where those who write their
-   own may call them. A contact force is made of a normal law, one of friction and one of rolling,
-   of which the last two may be absent. What is kept per contact is what these keep, one after the
-   other: friction, rolling, normal; each says which of it are vectors.
-   >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
-   line at the end of its list here, which says what it asks for besides (DEMI_SIZED, DEMI_MIDDLE),
-   for a normal law with its coefficients above; (3) a sentence in tests/. docs/extending.md
-   performs it, and `make recipes` performs docs/extending.md.
+   Tables of the built-in contact laws, one row each. The law functions are in >>api, where
+   user-defined laws may call them. A contact force is the sum of a normal law, a friction law and a
+   rolling law; the last two may be absent. The contact history consists of the reals of these
+   three, in the order friction, rolling, normal. Each row says how many of its reals are vectors.
+   >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a row
+   at the end of its list here with its traits (DEMI_SIZED, DEMI_MIDDLE: optional inputs that it
+   needs), and for a normal law its coefficients above; (3) a test in tests/. docs/extending.md
+   walks through these steps, and `make recipes` tests that page.
    --------------------------------------------------------------------------------------------- */
-/* What the rest of dem.h must know of a law. */
+/* Traits of a law. */
 enum {
-    DEMI_LINEAR = 0,               /* force ~ overlap; a stiffness that is given may be its own */
+    DEMI_LINEAR = 0,               /* force ~ overlap; the stiffness may be given */
     DEMI_HERTZIAN = 1,             /* force ~ overlap^(3/2), stiffness ~ sqrt(R) */
-    DEMI_BRANCHED = 2,             /* unloads along another line, and may adhere: kun, kad */
-    DEMI_MIDDLE = 4,               /* asks for slopes or kt_step, which others find to be NaN */
-    DEMI_SPRUNG = 8,               /* rolling that the time step must resolve */
-    DEMI_SIZED = 16                /* asks for r_eff or m_eff, which others find to be NaN */
+    DEMI_BRANCHED = 2,             /* unloads along a second line and may adhere: kun, kad */
+    DEMI_MIDDLE = 4,               /* reads slopes or kt_step, which are NaN for other laws */
+    DEMI_SPRUNG = 8,               /* rolling spring, which the time step must resolve */
+    DEMI_SIZED = 16                /* reads r_eff or m_eff, which are NaN for other laws */
 };
-/* What a normal law's coefficients are made of: moduli (Pa), radius (m), damping ratio of one
-   contact, and the speed (m/s) of a likely impact. M: kg, the mass that a stiffness may follow: it
-   stays as it is while two bodies touch, where the mass m that a contact feels turns with a body
-   that is no sphere; a stiffness that did so would make energy (up to 0.1 of an impact's). Dashpots
-   follow m, all as its root: cn + cn_root sqrt(m), and ct likewise. */
+/* Input of the coefficients of a normal law: effective moduli (Pa), radius (m) and damping ratio of
+   one contact, and the speed (m/s) of a likely impact. M: kg, the mass that a stiffness may depend
+   on. M is constant while two bodies touch. The effective mass m at a contact of nonspherical
+   bodies changes as they rotate, and a stiffness that followed it would create energy (up to 0.1 of
+   an impact's). Dashpots follow sqrt(m): their coefficient is cn + cn_root sqrt(m), and ct
+   likewise. */
 typedef struct demi_scales {
     double E, G, R, M, beta, speed;
     const dem_pair *pair;
@@ -58,8 +59,8 @@ static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
     k->kun = k->kn/(e*e);
     k->kad = (double)s->pair->stiffness_adhesion;
 }
-/* constant, function, reals of memory, how many vectors they begin with, what is to be known, name
-   in reports; the coefficients of a normal law are demi_coefs_... */
+/* Fields of a row: constant, function, reals of contact history, number of vectors among them
+   (first), traits, name in reports. The coefficients of a normal law are demi_coefs_... */
 #define DEMI_NORMAL_LAWS(X) \
     X(DEM_NORMAL_HERTZ,             hertz,            0, 0, DEMI_HERTZIAN, "Hertz") \
     X(DEM_NORMAL_LINEAR,            linear,           0, 0, DEMI_LINEAR, "linear") \
@@ -80,11 +81,12 @@ static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
     /* the last */
 
 typedef struct demi_law_row {
-    int kind;                      /* the constant: its place in the table */
-    dem_law_fn law;                /* null: none, or "chosen for you" */
-    int memory, vectors, traits;
+    int kind;                      /* the enum constant; -1 ends a table */
+    dem_law_fn law;                /* null for "none" and "auto" */
+    int memory, vectors, traits;   /* reals of history; vectors that they begin with; bits */
     const char *name;
-    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; k: zeros before */
+    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; the caller zeroes k
+                                      */
 } demi_law_row;
 #define DEMI_NORMAL_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
     {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, demi_coefs_##LAW},
@@ -98,42 +100,45 @@ static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, 0, 
 static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, 0, "auto", 0},
     {DEM_ROLLING_NONE, 0, 0, 0, 0, "none", 0}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW)
     {-1, 0, 0, 0, 0, 0, 0}};
-/* Which law is meant where the choice is left to us. */
+/* Returns the law of the desc, with AUTO replaced by the law that it means if any pair needs one.
+   */
 static int demi_tangent_meant(const dem_world *w) {
     return w->desc.tangent_law == DEM_TANGENT_AUTO ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
 }
 static int demi_rolling_meant(const dem_world *w) {
     return w->desc.rolling_law == DEM_ROLLING_AUTO ? DEM_ROLLING_EPSD : (int)w->desc.rolling_law;
 }
-/* Has the normal law that the desc asks for such a trait? */
+/* True if the normal law of the desc has this trait. */
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
     return (demi_normal_laws[w->desc.normal_law].traits & trait) != 0;
 }
-/* Do built-in laws keep the history of contacts, where `laws` says? */
+/* True if built-in laws own the contact history, laid out as in w->laws. */
 static int demi_laws_keep(const dem_world *w) {
     return !w->desc.law && demi_response_is(w, DEMI_LAWS);
 }
-/* Does a law in force ask for r_eff or m_eff of pairs? */
+/* True if a law in force reads r_eff or m_eff. */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
                             w->laws.rolling->traits) & DEMI_SIZED);
 }
-/* Does one ask for slopes of the normal force, or for the stiffness amid the step? */
+/* True if a law in force reads slopes of the normal force or the stiffness of mid-step. */
 static int demi_laws_precise(const dem_world *w) {
     return ((w->laws.tangent->traits | w->laws.rolling->traits) & DEMI_MIDDLE) != 0;
 }
-/* Is there such a law in a table? */
+/* True if the table has a law of this kind. */
 static int demi_law_known(const demi_law_row *rows, int kind) {
     int k;
     for (k = 0; rows[k].kind >= 0; k++) if (k == kind) return 1;
     return 0;
 }
 
-/* Room for the state of sliding behind a law's own `memory` reals, where it is kept. */
+/* Returns the index of the real that stores whether a contact slides, and adds it to `memory`;
+   DEMI_MEMORY without static friction. */
 static int demi_laws_sliding(int *memory, int sticks) {
     return sticks ? (*memory)++ : (int)DEMI_MEMORY;
 }
-/* The laws in force, and where the memory of each begins. sticks: has a pair static friction? */
+/* Sets the laws in force and lays out the contact history. sticks: 1 if a pair has static friction.
+   */
 static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling, int sticks) {
     laws->normal = &demi_normal_laws[normal];
     laws->tangent = &demi_tangent_laws[tangent];
@@ -146,8 +151,8 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
     laws->at_sliding = demi_laws_sliding(&laws->memory, sticks && laws->tangent->law);
 }
-/* An answer before its law is called. Number by number: a memset would keep the struct in memory,
-   and loops from becoming vector code. */
+/* Clears a result before the law is called. Member by member, because a memset would keep the
+   struct in memory and prevent vectorisation. */
 DEM_INLINE void demi_force_clear(dem_contact_force *f) {
     f->tangent = f->moment = demi_v(0, 0, 0);
     f->normal = f->elastic = f->load = f->slope = f->slope_step = 0;
@@ -155,7 +160,7 @@ DEM_INLINE void demi_force_clear(dem_contact_force *f) {
     f->energy.dashpot = f->energy.sag = f->energy.elastic = f->energy.shear_work = 0;
     f->energy.slide = f->energy.shear_stored = f->energy.roll = 0;
 }
-/* Nobody is told of: number by number, likewise. */
+/* Clears the description of a contact, member by member for the same reason. */
 DEM_INLINE void demi_who_clear(dem_contact_who *who) {
     who->a.slot = who->a.generation = who->b.slot = who->b.generation = 0;
     who->radius_a = who->radius_b = who->mass_a = who->mass_b = 0;
@@ -164,8 +169,8 @@ DEM_INLINE void demi_who_clear(dem_contact_who *who) {
     who->reals_a = who->reals_b = 0;
     who->rate_a = who->rate_b = 0;
 }
-/* The numbers of body a and of body b, or wall, and where their rates go: two rows of
-   DEM_BODY_REALS, from here on 0. */
+/* Gives the law the user-defined numbers of body a and of body b or the wall, and a place for their
+   rates: two rows of DEM_BODY_REALS, set to 0 here. b < 0: a wall. */
 static void demi_who_reals(const dem_world *w, int a, int b, int wall, dem_real *rates,
                            dem_contact_who *who) {
     const int n = w->bodies.real_count;
@@ -177,8 +182,8 @@ static void demi_who_reals(const dem_world *w, int a, int b, int wall, dem_real 
     who->rate_a = rates;
     who->rate_b = rates + DEM_BODY_REALS;
 }
-/* What the desc says about how dashpots meet the end of a contact and friction's limit; what it
-   says where nothing is asked for. */
+/* Sets tension, friction load, slider and static friction to the defaults of a desc.
+   demi_laws_usual: true if the world uses these defaults. */
 DEM_INLINE void demi_contact_usual(dem_contact *c) {
     c->tension = DEM_TENSION_ALLOWED;
     c->friction_load = DEM_LOAD_REPULSIVE;
@@ -189,8 +194,8 @@ static int demi_laws_usual(const dem_world *w) {
     return w->desc.tension == DEM_TENSION_ALLOWED && w->desc.friction_load == DEM_LOAD_REPULSIVE &&
            w->desc.slider == DEM_SLIDER_PARALLEL && w->laws.at_sliding == DEMI_MEMORY;
 }
-/* The force of one contact by the laws in force, or by the user's. memory: all that the contact
-   keeps, c->sliding included. */
+/* Computes the force of one contact by the laws in force or by the user-defined law. memory: the
+   whole contact history, with the sliding state. */
 static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const demi_laws *laws = &w->laws;
     const int slides = laws->at_sliding < DEMI_MEMORY;

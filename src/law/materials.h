@@ -1,18 +1,20 @@
 /* ---------------------------------------------------------------------------------------------
    >>materials
-   Users say what a material is (density, Young's modulus, Poisson's ratio, restitution, friction);
-   the pair table says what holds between two; demi_coefficients turns a pair and two radii into the
-   numbers a law multiplies with. Restitution comes first, damping is derived from it.
+   Materials, the pair table and the coefficients of contacts. A material has density, Young's
+   modulus, Poisson's ratio, restitution and friction. The pair table holds the properties of every
+   two materials. demi_coefficients computes the coefficients of a law from a pair and two radii.
+   Restitution is the input; damping is derived from it.
    --------------------------------------------------------------------------------------------- */
-/* Young's modulus and restitution may be 0 with impulses, and under the laws of these traits (kinds
-   0: all but Hertz's) if the other field, a stiffness, is set. Other fields (kinds < 0) act with
-   impulses alone. */
+/* `zero` of Young's modulus and restitution (>>rows): they may be 0 with impulses, or if the
+   stiffness in field `other` is set and the normal law has a trait in `kinds` (kinds 0: any law
+   except Hertz's). kinds < 0: the field acts with impulses only and must be 0 with springs. */
 static int demi_zero_law(const dem_world *w, const void *item, const demi_field_row *r) {
     const int acts = r->kinds > 0 ? demi_normal_is(w, r->kinds) : !demi_normal_is(w, DEMI_HERTZIAN);
     if (r->kinds < 0) return demi_response_is(w, DEMI_LAWS) ? DEMI_0_ALONE : DEMI_0_TOO;
     return !demi_response_is(w, DEMI_LASTING) ||
         (acts && r->other && demi_row_read(r - r->other, item, 0) > 0) ? DEMI_0_TOO : DEMI_0_NOT;
 }
+/* `zero` of stiffness_unloading: it must be 0 unless the stiffness is set. */
 static int demi_zero_unloading(const dem_world *w, const void *item, const demi_field_row *r) {
     (void)w; (void)r;
     return ((const dem_material_desc *)item)->stiffness > 0 ? DEMI_0_TOO : DEMI_0_ALONE;
@@ -46,6 +48,7 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
     DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
     DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
+/* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
     if (demi_rows_check(w, call, demi_material_rows, d, "", "set it in the desc before the call"))
         return DEM_ERROR_ARGUMENT;
@@ -59,8 +62,8 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     return DEM_OK;
 }
 
-/* One pair from two materials: Hertz's series of compliances for the moduli, geometric means for
-   the rest. */
+/* Returns the properties of a pair of materials: moduli from compliances in series, as in Hertz's
+   theory, springs in series for stiffnesses, geometric means for the rest. */
 static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
     dem_pair p;
     const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson;
@@ -75,45 +78,45 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     }
     p.restitution = (dem_real)sqrt((double)a->restitution*(double)b->restitution);
     p.friction = (dem_real)sqrt((double)a->friction*(double)b->friction);
-    p.friction_static = sticks ? (dem_real)sqrt(sa*sb) : 0;   /* 0: follows the sliding one */
+    p.friction_static = sticks ? (dem_real)sqrt(sa*sb) : 0;   /* 0: as sliding friction */
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
     p.stiffness_adhesion =
         (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
-    /* springs in series; equal materials: their own value */
+    /* twice the springs in series, so that equal materials give their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
         p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
-    /* one has a modulus only, the other a stiffness only */
+    /* one material has only a modulus, the other only a stiffness */
     else if (p.young_eff <= 0)
         p.stiffness = DEMI_MAX(a->stiffness, b->stiffness);
     if (a->stiffness_ratio > 0 && b->stiffness_ratio > 0)
         p.stiffness_ratio = DEMI_SQRT(a->stiffness_ratio*b->stiffness_ratio);
-    else                                        /* Mindlin's ratio 2(1-nu)/(2-nu), of the mean nu */
+    else                                        /* Mindlin's 2(1-nu)/(2-nu), for the mean nu */
         p.stiffness_ratio = (dem_real)(2*(1 - (na + nb)/2)/(2 - (na + nb)/2));
     return p;
 }
 
-/* beta = -ln e / sqrt(pi^2 + ln^2 e), the share of critical damping that gives restitution e */
+/* Damping ratio that gives restitution e: beta = -ln e / sqrt(pi^2 + ln^2 e). */
 static double demi_damping_ratio(double e) {
     const double l = demi_log(e);
     return -l/sqrt(DEMI_PI*DEMI_PI + l*l);
 }
-/* Restitution of a dashpot of `beta` times the critical when the contact ends at zero force [SP07]:
-   exp(-beta/w acos(2 beta^2 - 1)), w = sqrt(1 - beta^2); beyond the critical by hyperbolic
-   functions. Holds for the linear law and, with [TSU92]'s dashpot, for Hertz. */
+/* Restitution at damping ratio beta if the contact ends at zero force [SP07]:
+   exp(-beta/w acos(2 beta^2 - 1)), w = sqrt(1 - beta^2); above critical damping with hyperbolic
+   functions. Valid for the linear law and, with the dashpot of [TSU92], for Hertz. */
 static double demi_restitution_clipped(double beta) {
     const double w = sqrt(fabs(1 - beta*beta));
     if (beta < 1 - 1e-9) return demi_exp(-beta/w*demi_acos(2*beta*beta - 1));
     if (beta > 1 + 1e-9) return demi_exp(-beta/w*demi_log((beta + w)/(beta - w)));
     return demi_exp(-2.0);
 }
-/* The share of critical damping that gives restitution e, as tension is treated. */
+/* Damping ratio that gives restitution e with this choice of desc.tension. */
 static double demi_damping_for(double e, dem_tension tension) {
     double lo = 0, hi = 1;
     int i;
     if (tension != DEM_TENSION_COMPENSATED || e >= 1) return demi_damping_ratio(e);
     while (demi_restitution_clipped(hi) > e && hi < 1e6) hi *= 2;
-    for (i = 0; i < 100; i++) {                 /* falls with beta */
+    for (i = 0; i < 100; i++) {                 /* bisection: it falls with beta */
         const double mid = (lo + hi)/2;
         if (demi_restitution_clipped(mid) > e) lo = mid;
         else hi = mid;
@@ -121,8 +124,8 @@ static double demi_damping_for(double e, dem_tension tension) {
     return (lo + hi)/2;
 }
 
-/* What holds between two materials, in both orders; the damping that gives their restitution is
-   worked out here, once, since it takes a search (algorithm at demi_damping_for). */
+/* Stores the properties of materials i and j in both orders. Also computes their damping ratio,
+   once, because it may need a bisection (demi_damping_for). */
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
     pair->given = *p;
@@ -130,7 +133,7 @@ static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
         ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
-/* Unset, or below the sliding one, it follows that. */
+/* Static friction of a pair: the sliding friction if it is unset or lower. */
 static dem_real demi_static_friction(const dem_world *w, int a, int b) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     return DEMI_MAX(p->friction, p->friction_static);
@@ -158,7 +161,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     return id;
 }
 
-/* From the id that a user holds to an index, or a sentence in the name of `call`. */
+/* Sets *index to the index of a material, or fails in the name of `call`. */
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; "
@@ -196,11 +199,11 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
     for (i = 0; i < w->material_count; i++) {
         const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
         const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
-        /* what dem_pair_set has put there stays */
+        /* values that dem_pair_set has set stay */
         if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
             demi_pair_put(w, i, m, &now);
     }
-    w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
+    w->stage.pairs_changed = 1;                       /* the next step rebuilds the lists */
     w->stage.dt_valid = 0;
     demi_built(w, "dem_material_set");
     return DEM_OK;
@@ -209,7 +212,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair) {
     if (demi_null_look(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
-    dem_world *w = (dem_world *)world;          /* only the error sentence is written */
+    dem_world *w = (dem_world *)world;          /* only the error message is written */
     int i = 0, j = 0;
     if (demi_material_index(w, "dem_pair_get", a, &i) ||
         demi_material_index(w, "dem_pair_get", b, &j))
@@ -230,17 +233,18 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
-    w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
+    w->stage.pairs_changed = 1;                       /* the next step rebuilds the lists */
     demi_built(w, "dem_pair_set");
     w->stage.dt_valid = 0;
     return DEM_OK;
 }
 
-/* The coefficients of one contact: its law's (>>laws), and what holds for all; cn and ct without
-   what goes by the root of the mass m*: `root`, for normal and tangent, per sqrt(kg).
-   DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
-   between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff: the
-   standard one; stiff: kg, what a stiffness follows. Checked by "the eight coefficients". */
+/* Computes the coefficients of a contact of materials a and b: those of the normal law (>>laws) and
+   those that all laws share. cn and ct lack the part that is proportional to sqrt(m*); root[0] (cn)
+   and root[1] (ct) receive its factors, per sqrt(kg). r_eff: m, the standard R*; stiff: kg, the
+   mass M of demi_scales; wall: 1 for a wall. DEM_CONVENTION_MILL follows the thesis [MIL]: E* = E
+   of one body, 8 G of one body, half overlaps between grains (folded into the coefficients here),
+   R/2 and m/2 against walls. Checked by "the eight coefficients". */
 static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_eff, double stiff,
                                      int wall, dem_real *out, dem_real *root) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
@@ -250,14 +254,14 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     double half = 1;
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
-    if (mill) {  /* material b's own moduli: the wall's, or the grain's */
+    if (mill) {  /* moduli of material b, of the wall or the grain */
         const dem_material_desc *d = &w->materials[b];
         s.E = (double)d->young;
         s.G = s.E/(2*(1 + (double)d->poisson));
         if (wall) { s.R /= 2; s.M /= 2; half = sqrt(0.5); }
     }
     demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
-    if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* of half the overlap */
+    if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* for half the overlap */
         const double fourth = demi_pow(0.5, 0.25);
         k.kn *= demi_pow(0.5, 1.5); k.kt *= sqrt(0.5);
         k.cn *= fourth; k.ct *= fourth; k.cn_root *= fourth; k.ct_root *= fourth;
@@ -274,7 +278,7 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     root[0] = (dem_real)(half*k.cn_root);
     root[1] = (dem_real)(half*k.ct_root);
 }
-/* All of them; m_eff: the standard mass. */
+/* The same with complete cn and ct. m_eff: kg, the standard m*. */
 static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
                               double stiff, int wall, dem_real *out) {
     const dem_real m = (dem_real)sqrt(m_eff);
@@ -284,11 +288,11 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     out[DEMI_CT] += root[1]*m;
 }
 
-/* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
-   sqrt(m/k) (with damping pi/sqrt(k/m - (c/2m)^2) [ALK07] eq 2.21; near the critical damping and
-   beyond, where that has no end, pi 2m/c: the dashpot's own time). Branched: that of its
-   steepest branch, kun, which is what a time step has to follow; the contact itself lasts longer,
-   eq 2.45. */
+/* Returns the duration of a contact, s, at an impact speed (m/s). Hertz, undamped:
+   2.94327518 delta_max/v. Linear: pi/sqrt(k/m - (c/2m)^2) [ALK07] eq 2.21, which is pi sqrt(m/k)
+   without damping; near critical damping and above, where that diverges, pi 2m/c, the time constant
+   of the dashpot. Hysteretic: the duration of the steepest branch, kun, which the time step must
+   resolve; the contact itself lasts longer, eq 2.45. */
 static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
                                 double speed) {
     const int branched = demi_normal_is(w, DEMI_BRANCHED);
@@ -300,6 +304,7 @@ static double demi_contact_time(const dem_world *w, const dem_real *coef, double
     return 2.94327518*demi_pow(5*m_eff*speed*speed/(4*k), 0.4)/speed;
 }
 
+/* Mass, kg, and moment of inertia, kg m2, of a sphere, in planar worlds of a disc. */
 static double demi_sphere_mass(const dem_world *w, int material, double r) {
     const double rho = (double)w->materials[material].density;
     if (w->desc.planar) return rho*DEMI_PI*r*r*(double)w->desc.thickness;
@@ -309,8 +314,8 @@ static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
     return w->desc.planar ? mass*r*r/2 : 0.4*mass*r*r;
 }
 
-/* 1 with a sentence when a sphere or disc of this radius would have a mass or moment of inertia
-   that dem_real cannot hold, or not the inverse of: what moves it would be 0 or infinite. */
+/* Fails and returns 1 if dem_real cannot hold the mass or moment of inertia of a sphere or disc of
+   this radius, or their inverses: accelerations would be 0 or infinite. */
 static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_real radius, int i) {
     const double r = (double)radius, m = demi_sphere_mass(w, material, r);
     const double inertia = demi_sphere_inertia(w, m, r);
