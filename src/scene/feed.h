@@ -1,21 +1,22 @@
 /* ---------------------------------------------------------------------------------------------
    >>feed
-   Grains come in between two steps, joining the list of candidates (demi_list_join), and go out in
-   the middle of one, when all have moved and a list is due. What a feed draws comes from its own
-   random state in a fixed order: class, then place and velocity until a place is free. How much is
-   due follows from the time alone. Who asks for room and puts grains in is told by a demi_feeder:
-   here a world, in >>slabs-run all slabs.
+   Feeds insert grains during a run, and outlets remove or count them. A feed inserts between two
+   steps and appends the new grains to the candidate list (demi_list_join). An outlet acts within a
+   step, after bodies have moved and when a list is rebuilt. A feed draws from its own random state
+   in a fixed order: first the class, then positions and velocities until a position is free. The
+   number of grains that are due depends only on the time. A demi_feeder finds room and inserts the
+   grains: here a world, in >>slabs-run all slabs.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
-enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
-/* Outlets look when a list is made anew, and every so many steps: see demi_step_once. */
-enum { DEMI_OUTLET_REST = 64, DEMI_ZONES = 16 };   /* at most so many that only count */
+enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* positions tried; steps until the next try */
+enum { DEMI_FEED_NEAR = 256 };                       /* neighbours that a new grain may have */
+/* Steps after which outlets act at the latest (see demi_step_once); limit of counting outlets. */
+enum { DEMI_OUTLET_REST = 64, DEMI_ZONES = 16 };
 
 static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i; }
 static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
     return w->outlets + i;
 }
-/* Says that nothing can be in a box, in the name of `call`; 0: something can. */
+/* Fails and returns 1 if a box is not finite or has no volume (in planar worlds: no area). */
 static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar) {
     if (demi_place(b.lo) && demi_place(b.hi) && b.hi.x > b.lo.x && b.hi.y > b.lo.y &&
         (b.hi.z > b.lo.z || (planar && b.hi.z >= b.lo.z))) return 0;
@@ -26,6 +27,7 @@ static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar)
               DEMI_FARTHEST);
     return 1;
 }
+/* True if a box is not finite or lo is above hi; it may be a rectangle, a line or a point. */
 static int demi_box_bad(dem_box b, int planar) {
     return !demi_finite3(b.lo) || !demi_finite3(b.hi) || !(b.hi.x >= b.lo.x) ||
            !(b.hi.y >= b.lo.y) || (!planar && !(b.hi.z >= b.lo.z));
@@ -34,7 +36,8 @@ static int demi_box_bad(dem_box b, int planar) {
 static int demi_feed_material(const dem_feed_desc *d, int k) {
     return (d->materials[k].id ? d->materials[k].id : d->material.id) - 1;
 }
-/* The scale at which a shape has the volume of a sphere of this radius; the sphere around it. */
+/* Scale at which the shape of class k has the volume of a sphere of this radius, and the radius, m,
+   of its bounding sphere. */
 static dem_real demi_feed_scale(const dem_world *w, const dem_feed_desc *d, int k,
                                 dem_real radius) {
     return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : 1;
@@ -44,7 +47,8 @@ static dem_real demi_feed_reach(const dem_world *w, const dem_feed_desc *d, int 
     if (!d->shapes[k].id) return radius;
     return w->shapes[d->shapes[k].id - 1].radius*demi_feed_scale(w, d, k, radius);
 }
-/* Sizes of class k, its mean mass; 0 with a sentence. */
+/* Computes the size distribution and the mean mass of class k. Returns 0 with an error message if
+   it fails. */
 static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) {
     const dem_sizes *d = f->desc.sizes[k];
     const int m = demi_feed_material(&f->desc, k);
@@ -57,7 +61,7 @@ static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) 
     if (demi_mass_refuse(w, call, m, (dem_real)f->lo[k], k) ||
         demi_mass_refuse(w, call, m, (dem_real)f->hi[k], k)) return 0;
     f->mass[k] = demi_sphere_mass(w, m, f->lo[k]);
-    f->desc.radius[k] = (dem_real)f->lo[k];     /* the smallest: for the time step */
+    f->desc.radius[k] = (dem_real)f->lo[k];     /* the smallest, for the time step */
     if (!d) return 1;
     f->desc.sizes[k] = 0;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
@@ -74,7 +78,7 @@ static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) 
     demi_free(w, t);
     return 1;
 }
-/* A share of the number of class k is finer than this, m. */
+/* Returns the radius, m, below which this fraction of the number of class k lies. */
 static double demi_feed_size(const demi_feed *f, int k, double share) {
     const double step = demi_log(f->hi[k]/f->lo[k])/(int)DEMI_FEED_SIZES, *finer = f->finer[k];
     int lo = 0, hi = DEMI_FEED_SIZES;
@@ -89,8 +93,8 @@ static double demi_feed_size(const demi_feed *f, int k, double share) {
     b = f->lo[k]*demi_exp(hi*step);
     return a + (b - a)*(share - finer[lo])/DEMI_MAX(finer[hi] - finer[lo], 1e-300);
 }
-/* 1 with a sentence when class k has a material or a shape that does not exist or that a wall does
-   not know. */
+/* Fails and returns 1 if class k has a material or a shape that does not exist, or a shape that a
+   wall does not support. */
 static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc *d, int k) {
     int m;
     if (d->materials[k].id &&
@@ -99,13 +103,13 @@ static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc
     m = demi_shape_index(w, call, d->shapes[k]);
     return m < 0 || demi_walls_strange(w, call, m);
 }
-/* Of the sizes that were copied: what is drawn from. */
+/* Digest of the size distributions that a feed has copied. */
 static uint64_t demi_digest_sizes(const void *item) {
     const demi_feed *f = (const demi_feed *)item;
     const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
     return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
 }
-/* Rows of the desc, with which a demi_feed begins; `inside` keeps its name in files. */
+/* Rows of the desc, which is the first member of a demi_feed. */
 #define DEMI_FED(field, type) DEMI_ROW(dem_feed_desc, field, type)
 static const demi_field_row demi_feed_rows[] = {DEMI_FED(material, 'i'),
     {"class_count", 0, DEMI_WHERE(dem_feed_desc, class_count), 'i', 0, DEMI_OVER, DEM_CLASSES, "",
@@ -172,18 +176,19 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     feed.random = d->seed;
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
-    w->stage.dt_valid = 0;                            /* for grains that are to come */
+    w->stage.dt_valid = 0;                            /* new grains may need a shorter one */
     demi_built(w, call);
     id.id = w->feed_count;
     return id;
 }
-static int demi_feed_left(const demi_feed *f) {              /* is there anything more to come? */
+static int demi_feed_left(const demi_feed *f) {              /* 1: more grains will come */
     int k, more = !f->desc.limited;
     for (k = 0; k < f->desc.class_count && !more; k++) more = f->limit[k] > f->state.fed[k];
     return more;
 }
-/* Draws the next grain. Its class: by what is left of each, where that is limited, else by the
-   share of each in numbers; then its size and orientation, where they are not given. */
+/* Draws the next grain. The probability of a class is proportional to the number of grains left, if
+   the feed is limited, else to the class's fraction by number. Then the size and orientation are
+   drawn. */
 static void demi_feed_draw(const dem_world *w, demi_feed *f) {
     double weight[DEM_CLASSES], sum = 0, at;
     const int n = f->desc.class_count;
@@ -204,14 +209,15 @@ static void demi_feed_draw(const dem_world *w, demi_feed *f) {
     f->drawn.orientation = f->desc.shapes[k].id ? demi_quat_random(w, &f->random)
                                                 : dem_quat_make(1, 0, 0, 0);
 }
-/* Who feeds: looks at who is near a feed's region, then puts in grains of the class drawn, as long
-   as it answers 1; 0: no room; less: minus the result, the sentence is told, nothing happened. */
+/* Inserts grains into a world or into slabs. look: collects the bodies near a feed's region. put:
+   inserts the grain that was drawn and returns 1; 0 if there is no room; minus a dem_result if it
+   failed with an error message and changed nothing. */
 typedef struct demi_feeder {
     dem_result (*look)(void *who, const demi_region *g, dem_real radius);
     int (*put)(void *who, demi_feed *f, const demi_region *g);
     void *who;
 } demi_feeder;
-/* Draws a place and a velocity. 0: the place is not of the region. */
+/* Draws a position and a velocity. Returns 0 if the position is outside the region. */
 static int demi_feed_try(const dem_world *w, demi_feed *f, const demi_region *g, dem_vec3 *x,
                          dem_vec3 *v) {
     const dem_feed_desc *d = &f->desc;
@@ -224,7 +230,7 @@ static int demi_feed_try(const dem_world *w, demi_feed *f, const demi_region *g,
     if (w->desc.planar) v->z = 0;
     return demi_region_at(g, u, f->drawn.reach, x);
 }
-/* The grain of the class drawn becomes a body; room has been seen to. Answers its index. */
+/* Appends the drawn grain as a body and returns its index. The caller has reserved memory. */
 static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_vec3 v) {
     const int k = (int)f->next, shape = f->desc.shapes[k].id;
     const uint32_t slot = demi_body_append(w, demi_feed_material(&f->desc, k), f->drawn.radius, x);
@@ -238,22 +244,23 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
     return i;
 }
-/* The grain drawn last is in. */
+/* Counts the drawn grain as inserted. */
 static void demi_feed_count(demi_feed *f) {
     f->state.fed[f->next]++;
     f->state.total++;
     f->state.mass += f->drawn.mass;
     f->next = -1;
 }
-/* A world that feeds, and who is near the region. */
+/* A feeder for one world: occupancy tree of the bodies near the region (>>placing). */
 typedef struct demi_world_feeder { dem_world *w; demi_crowd crowd; } demi_world_feeder;
 static dem_result demi_world_look(void *who, const demi_region *g, dem_real radius) {
     demi_world_feeder *to = (demi_world_feeder *)who;
     return demi_crowd_begin(to->w, &to->crowd, g, radius, demi_periods_of(to->w)) ? DEM_OK
         : demi_no_memory(to->w, "dem_world_step");
 }
-/* The first of some places that is free. The grain joins the list there is, if it can: then nothing
-   of the others' state is made anew. Else the list is, before the step. */
+/* Inserts the drawn grain at the first of up to DEMI_FEED_TRIES positions that is free. If
+   possible, the grain is appended to the present candidate list, which leaves the state of the
+   others untouched. Otherwise lists are rebuilt before the step. */
 static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     dem_world *w = ((demi_world_feeder *)who)->w;
     demi_crowd *c = &((demi_world_feeder *)who)->crowd;
@@ -268,7 +275,7 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     x = demi_place_of(&c->p, x);
     joins = !f->desc.shapes[f->next].id &&
         demi_join_possible(w, demi_feed_material(&f->desc, (int)f->next), r);
-    /* one that joins may stand at the half step, too */
+    /* if it is appended, velocities may stay at the half step */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
         count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found,
@@ -284,16 +291,16 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     if (joins) {
         qsort(found, (size_t)count, sizeof *found, demi_int_compare);
         joins = demi_list_join(w, i, found, count);
-        w->stage.pairs_changed |= !joins;             /* then the list is made anew */
+        w->stage.pairs_changed |= !joins;             /* then lists are rebuilt */
     }
     if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0)
-        demi_scene_changed(w);                  /* something may push it */
-    /* it touches nobody: no force on it is known yet */
+        demi_scene_changed(w);                  /* forces may act on it */
+    /* it touches nothing, so no force acts on it yet */
     else if (w->stage.primed) demi_prime_body(w, i);
     demi_feed_count(f);
     return 1;
 }
-/* Where a feed's grains may begin: centres of all sizes alike. */
+/* Region of the centres of new grains; the same for all sizes. */
 static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_region *g) {
     dem_region region = dem_region_make(d->box);
     region.cylinder = d->round ? 'z' : 0;
@@ -301,7 +308,7 @@ static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_reg
     region.user = d->inside_user;
     return demi_region_make(w, &region, 0, g);
 }
-/* All that is due now by the clock of w, whose feeds they are. */
+/* Inserts all grains that are due at the time of w, which owns the feeds. */
 static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
     dem_result result;
     int i, k;
@@ -310,17 +317,17 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
         const dem_feed_desc *d = &f->desc;
         const double until = d->end > 0 && w->clock.time > d->end ? d->end : w->clock.time;
         const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
-        int looked = 0;                         /* is the crowd there? */
+        int looked = 0;                         /* 1: look() was called */
         demi_region g;
         while (w->clock.time >= d->start && w->clock.steps >= f->again && demi_feed_left(f)) {
-            const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
+            const double rounded = 1e-9*(1 + due);           /* at 3/s, 3 are due at 1 s */
             int done;
             if (f->next < 0) {
                 const uint64_t random = f->random;
                 demi_feed_draw(w, f);
                 if (d->by_mass ? f->state.mass + f->drawn.mass > due + rounded
                     : (double)f->state.total + 1 > due + rounded) {
-                    f->random = random;         /* not yet: drawn again when it is */
+                    f->random = random;         /* not due yet: the same draw is repeated later */
                     f->next = -1;
                     break;
                 }
@@ -346,7 +353,7 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
             uint64_t most = 0;
             for (k = 0; k < d->class_count; k++) most += f->limit[k] - f->state.fed[k];
             if (!(d->rate > 0) || (d->limited && waits > (double)most)) waits = (double)most;
-            waits = DEMI_MIN(DEMI_MAX(waits, 0), 1e18);        /* fits a whole number */
+            waits = DEMI_MIN(DEMI_MAX(waits, 0), 1e18);        /* fits into uint64_t */
             f->state.waiting = (uint64_t)(waits + 1e-9*waits);
         }
         f->state.done = f->next < 0 &&
@@ -354,7 +361,7 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
     }
     return DEM_OK;
 }
-/* What is due in a world that is not dealt to slabs; before a step. */
+/* Inserts all grains that are due before a step, in a world without slabs. */
 static dem_result demi_world_feed(dem_world *w) {
     demi_world_feeder to;
     demi_feeder feeder;
@@ -424,7 +431,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     id.id = w->outlet_count;
     return id;
 }
-/* The class of a grain: that whose radius is nearest. */
+/* Class of a grain: the one with the nearest radius. */
 static int demi_outlet_class(const dem_outlet_desc *d, dem_real r) {
     int k = 0;
     while (k + 1 < d->class_count && 2*r > d->radius[k] + d->radius[k + 1]) k++;
@@ -445,13 +452,14 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     *(wanted ? &o->state.sorted_mass : &o->state.gangue_mass) += m;
     o->state.last = w->clock.time;
 }
+/* True if x, in the outlet's frame, is in the box and at least `beyond` from the z axis. */
 static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
     return x.x >= d->box.lo.x && x.x <= d->box.hi.x && x.y >= d->box.lo.y && x.y <= d->box.hi.y &&
            x.z >= d->box.lo.z && x.z <= d->box.hi.z &&
            x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
 }
-/* A place in the frame of an outlet's region; in a periodic world the image nearest to the region's
-   centre, or, of a region without end, the one in the box. */
+/* Transforms a position into the frame of an outlet's region. In a periodic world it uses the image
+   nearest to the region's centre, or, for an unbounded region, the image in the domain. */
 static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
                                   const dem_outlet_desc *d, dem_vec3 x) {
     const dem_pose *pose = d->frame.id ? &w->walls[demi_wall_place(d->frame)].pose : 0;
@@ -469,7 +477,7 @@ static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
     }
     return pose ? demi_unrotate(pose->rotation, demi_sub(x, pose->position)) : x;
 }
-/* Is grain i in the region, and one of those that it is for? */
+/* True if grain i is in the region and has the outlet's material (if one is set). */
 static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const demi_outlet *o,
                             int i) {
     const dem_outlet_desc *d = &o->desc;
@@ -477,7 +485,8 @@ static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const dem
     if (d->material.id && w->bodies.material[i] != d->material.id) return 0;
     return demi_outlet_has(d, demi_outlet_place(w, p, d, demi_at(w->bodies.pos + 4*i)));
 }
-/* Grain i as a counting outlet sees it: has it come in, or gone back? */
+/* Updates a counting outlet for grain i: counts it if it has entered the region or gone back. in: 1
+   if it is in the region now. The first look at a grain counts nothing. */
 static void demi_outlet_count(dem_world *w, demi_outlet *o, int i, int in) {
     const uint32_t bit = 1u << o->zone, known = bit << DEMI_ZONES, before = w->bodies.zones[i];
     const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
@@ -492,7 +501,8 @@ static void demi_outlet_count(dem_world *w, demi_outlet *o, int i, int in) {
     }
     w->bodies.zones[i] = (before & ~bit) | known | (in ? bit : 0);
 }
-/* After a move: those that only count look; then the first outlet that a grain is in takes it. */
+/* Runs the outlets after bodies have moved. Counting outlets count. Then the first removing outlet
+   that contains a grain removes it. */
 static dem_result demi_outlets_run(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;

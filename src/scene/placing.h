@@ -1,32 +1,36 @@
 /* ---------------------------------------------------------------------------------------------
    >>placing
-   Where new grains find room: one engine for fills, packings and feeds. A region says which places
-   there are: a box, of which an axis that holds a whole period has no faces, a cylinder in it, a
-   function. A crowd says who is near: spheres in a tree of boxes, halved along the longest side
-   whenever one holds more than a few; each box knows the largest radius in it, so that what cannot
-   be near is passed over whole, whatever the mixture (1:100 and more), and nobody looks at every
-   body for every place. Walls are asked through their own cells. Places are tried at random, one
-   after the other, none moves another away [random sequential addition], by random numbers of their
-   own: the same seed gives the same places.
+   Free positions for new grains, for fills, packings and feeds. A region defines the possible
+   positions: a box (without faces on an axis where it holds a whole period), a cylinder in it, or a
+   user-defined function. An occupancy tree ("crowd") finds the spheres near a position. It is a
+   binary tree of boxes; a box with more than DEMI_CROWD_LEAF spheres is halved along its longest
+   side. Each box stores the largest radius in it, so a search skips boxes that are too far away and
+   visits few bodies even for radii of 1:100 and more. Walls are tested through their own cells.
+   Fills use random sequential addition: positions are tried at random, one after another, and no
+   grain moves another. They have their own random numbers, so the same seed gives the same
+   positions.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_CROWD_LEAF = 8, DEMI_CROWD_DEPTH = 60 };
-/* Tries for one grain: places that were taken, and places that the region does not have. */
+enum { DEMI_CROWD_LEAF = 8, DEMI_CROWD_DEPTH = 60 };     /* spheres of a leaf; depth of the tree */
+/* Tries for one grain: positions that are occupied, and positions outside the region. */
 enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
-/* Lattice places that a packing looks at. */
+/* Lattice sites that a packing may test. */
 #define DEMI_PACK_MOST 3e8
 
+/* A node of the tree. */
 typedef struct demi_node {
     int32_t child;                 /* the first of its two halves; 0: a leaf */
-    int32_t first, count;          /* of a leaf: spheres, from `first` on by `next` */
-    dem_real largest;              /* m, largest radius below it */
+    int32_t first, count;          /* of a leaf: its first sphere, linked by `next`; their number */
+    dem_real largest;              /* m, largest radius in it */
 } demi_node;
+/* A sphere in the tree. body: index of its body; -1: not a body yet. next: -1: the last. */
 typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
+/* An occupancy tree. Its spheres and nodes are w->crowd and w->crowd_nodes. */
 typedef struct demi_crowd {
     demi_periods p;
-    double lo[3], size[3];         /* of the tree's box; on a periodic axis the whole period */
+    double lo[3], size[3];         /* m, of the root's box; on a periodic axis the whole period */
     int count, nodes;
 } demi_crowd;
-/* A box on the way down the tree. */
+/* A node and its box during the descent. */
 typedef struct demi_nook { int32_t node; double lo[3], size[3]; } demi_nook;
 
 static demi_sphere *demi_crowd_spheres(const dem_world *w) {
@@ -39,7 +43,7 @@ static int demi_longest(const double *size) {
     const int k = size[1] > size[0];
     return size[2] > size[k] ? 2 : k;
 }
-/* The half of a nook that is below (0) or above (1) its middle. */
+/* Returns the half of a box below (upper 0) or above (1) its middle. */
 static demi_nook demi_nook_half(const demi_nook *n, int32_t child, int upper) {
     demi_nook h = *n;
     const int k = demi_longest(n->size);
@@ -48,11 +52,12 @@ static demi_nook demi_nook_half(const demi_nook *n, int32_t child, int upper) {
     if (upper) h.lo[k] += h.size[k];
     return h;
 }
+/* 1 if x is in the upper half. */
 static int demi_nook_upper(const demi_nook *n, dem_vec3 x) {
     const int k = demi_longest(n->size);
     return (double)(k == 0 ? x.x : k == 1 ? x.y : x.z) >= n->lo[k] + n->size[k]/2;
 }
-/* The whole of the tree's box. */
+/* Returns the root. */
 static demi_nook demi_crowd_root(const demi_crowd *c) {
     demi_nook n;
     n.node = 0;
@@ -60,14 +65,14 @@ static demi_nook demi_crowd_root(const demi_crowd *c) {
     memcpy(n.size, c->size, sizeof n.size);
     return n;
 }
-/* Sphere i, first in the leaf's chain. */
+/* Links sphere i into a leaf, as its first. */
 static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
     all[i].next = leaf->first;
     leaf->first = i;
     leaf->count++;
     leaf->largest = DEMI_MAX(leaf->largest, all[i].radius);
 }
-/* Halves a leaf. 0 when memory ran out; it is as it was. */
+/* Splits a leaf into two halves. Returns 0 if memory runs out; the leaf is then unchanged. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     demi_sphere *all = demi_crowd_spheres(w);
     demi_node *nodes;
@@ -88,9 +93,9 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     }
     return 1;
 }
-/* One more sphere in the crowd. What stands outside the tree's box counts to the nearest leaf,
-   which is never farther from a place in the box than the sphere is. body: its index, if it is one
-   already. 0 when memory ran out. */
+/* Adds a sphere to the tree. A sphere outside the root's box goes to the nearest leaf. That leaf is
+   never farther from a position in the box than the sphere is, so no search misses it. body: its
+   index, or -1. Returns 0 if memory runs out. */
 static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius, int body) {
     demi_nook at = demi_crowd_root(c);
     demi_sphere *s;
@@ -114,7 +119,7 @@ static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radi
     demi_leaf_put(node, demi_crowd_spheres(w), c->count++);
     return 1;
 }
-/* How far a place is from a nook, squared; less where that takes no thought. */
+/* Lower bound on the squared distance, m2, of position x from a box. */
 static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const double *x) {
     double d2 = 0;
     int k;
@@ -123,7 +128,7 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
         const double period = (double)c->p.period[k];
         double d = below > above ? below : above;
         if (!(d > 0)) continue;
-        if (period > 0) {                       /* or the other way round */
+        if (period > 0) {                       /* the other way round the period */
             const double round = period - n->size[k] - d;
             d = round < 0 ? 0 : DEMI_MIN(d, round);
         }
@@ -131,8 +136,9 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
     }
     return d2;
 }
-/* How many of the crowd a sphere overlaps, and the bodies they are; ends with the first that
-   `found` has no room for. Its centre is in the tree's box. */
+/* Returns the number of spheres in the tree that overlap this one and stores their bodies in
+   `found`, which holds `room`. Stops at the first that does not fit and returns room + 1. The
+   centre must be in the root's box. */
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = demi_crowd_spheres(w);
@@ -149,7 +155,7 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
         const demi_node *node = nodes + n.node;
         const double cut = (double)(radius + node->largest);
         if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
-        if (node->child) {                      /* the half it is in comes first */
+        if (node->child) {                      /* visits the half that contains it first */
             const int upper = demi_nook_upper(&n, at);
             stack[top++] = demi_nook_half(&n, node->child, !upper);
             stack[top++] = demi_nook_half(&n, node->child, upper);
@@ -165,7 +171,7 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
     }
     return count;
 }
-/* Does a sphere overlap nobody in the crowd? */
+/* True if a sphere overlaps no sphere in the tree. */
 static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius) {
     return !demi_crowd_look(w, c, centre, radius, 0, 0);
@@ -173,17 +179,17 @@ static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 cen
 
 /* --- regions --- */
 
-/* Where centres may be, ready for drawing. */
+/* Possible positions of centres, in the form that drawing needs. */
 typedef struct demi_region {
-    dem_vec3 lo;                   /* m */
+    dem_vec3 lo;                   /* m, lower corner and size of the box of centres */
     double size[3];
-    int cylinder;                  /* 1 + the axis it is along; 0: all of the box */
+    int cylinder;                  /* 1 + axis of the cylinder in it; 0: the whole box */
     dem_inside_fn inside;
     void *user;
 } demi_region;
 
-/* Centres keep `off` (m) from the faces of the box. A box that holds a whole period has no faces
-   on that axis. 0: there is no room. */
+/* Sets up the region of centres at least `off` (m) from the faces of the box. A box that holds a
+   whole period has no faces on that axis. Returns 0 if nothing is left. */
 static int demi_region_make(const dem_world *w, const dem_region *from, double off,
                             demi_region *to) {
     const demi_periods p = demi_periods_of(w);
@@ -210,8 +216,8 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
     to->user = from->user;
     return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
 }
-/* True if the centre x, whose place in the box is u (0 to 1 on each axis), is in the region. Where
-   the box leaves centres one place on an axis, that is the middle. */
+/* True if the centre x is in the region. u: its position relative to the box, 0 to 1 on each axis.
+   An axis of size 0 counts as the middle of the cylinder. */
 static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, dem_real radius) {
     double round = 0;
     int k;
@@ -220,13 +226,13 @@ static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, 
             round += (2*u[k] - 1)*(2*u[k] - 1);
     return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
 }
-/* The place that three numbers from 0 to 1 name. 0: not of the region. */
+/* Sets *x to the position with relative coordinates u. Returns 0 if it is outside the region. */
 static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
     *x = demi_v(g->lo.x + (dem_real)(g->size[0]*u[0]), g->lo.y + (dem_real)(g->size[1]*u[1]),
                 g->lo.z + (dem_real)(g->size[2]*u[2]));
     return demi_region_keeps(g, u, *x, radius);
 }
-/* The same for a centre that is in the box. */
+/* True if a centre in the box is in the region. */
 static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
     const dem_vec3 off = demi_sub(x, g->lo);
     const double at[3] = {(double)off.x, (double)off.y, (double)off.z};
@@ -236,8 +242,8 @@ static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
     return demi_region_keeps(g, u, x, radius);
 }
 
-/* Begins a crowd with the bodies that spheres of this radius in the region could overlap; one look
-   at each body. p: the scene's, which a slab does not have. 0 when memory ran out. */
+/* Starts a tree with all bodies that spheres of this radius in the region could overlap. p: the
+   periods of the scene; those of a slab differ. Returns 0 if memory runs out. */
 static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
                             demi_periods p) {
     dem_vec3 mid;
@@ -266,7 +272,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     for (i = 0; i < w->bodies.count; i++) {
         const dem_real r = w->bodies.pos[4*i + 3];
         const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->bodies.pos + 4*i), mid));
-        /* a part in a thousand more: rounding must not lose a neighbour */
+        /* 0.1 % more, so that rounding does not lose a neighbour */
         const double s = 1.001*(double)(r + radius);
         if (fabs((double)d.x) > half[0]*1.001 + s || fabs((double)d.y) > half[1]*1.001 + s ||
             fabs((double)d.z) > half[2]*1.001 + s) continue;
@@ -274,7 +280,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     }
     return 1;
 }
-/* Its arrays go when the placing is done; feeds, which place again and again, keep theirs. */
+/* Frees the arrays of the tree. Feeds do not call this, because they need them again. */
 static void demi_crowd_end(dem_world *w) {
     demi_free(w, w->crowd);
     demi_free(w, w->crowd_nodes);
@@ -286,7 +292,7 @@ static void demi_crowd_end(dem_world *w) {
 
 /* --- walls --- */
 
-/* Does a sphere touch none of the elements of a wall? at: in the wall's frame. */
+/* True if a sphere touches no element of a wall. at: its centre in the wall's frame. */
 static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) {
     const dem_real touch = radius*(DEMI_SINGLE ? DEM_R(0.9999) : DEM_R(0.999999999));
     const dem_vec3 out = demi_v(radius, radius, radius);
@@ -308,9 +314,9 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
             }
     return 1;
 }
-/* Does a sphere touch no wall, where walls are now? What is behind a plane or on the wrong side of
-   a cylinder touches it; in a sieve's sheet there is no room, holes or not; the inside of a closed
-   mesh is a place like any other. */
+/* True if a sphere touches no wall at the walls' present poses. Positions behind a plane or on the
+   wrong side of a cylinder count as touching, and so does the whole sheet of a sieve with its
+   holes. The inside of a closed mesh counts as free. */
 static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
     int j, n;
     for (j = 0; j < w->wall_count; j++) {
@@ -324,15 +330,17 @@ static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
     }
     return 1;
 }
+/* True if a sphere touches neither a sphere of the tree nor a wall. */
 static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
-    /* in the domain: a region may be more periods away than can be counted */
+    /* moved into the domain first: a region may be too many periods away to count them */
     return demi_crowd_free(w, c, x, radius) &&
         demi_walls_clear(w, demi_place_of(&c->p, x), radius);
 }
 
 /* --- fills --- */
 
-/* All orientations are equally likely (Shoemake 1992); in a planar world all about z. */
+/* Draws a uniformly distributed orientation (Shoemake 1992); in a planar world a rotation about z.
+   */
 static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
     const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
     const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
@@ -341,8 +349,8 @@ static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
     return dem_quat_make((dem_real)(r*demi_sin(a)), (dem_real)(r*demi_cos(a)),
                          (dem_real)(s*demi_sin(b)), (dem_real)(s*demi_cos(b)));
 }
-/* Adds what was placed in the crowd from sphere `first` on, all or nothing. 0 when memory ran
-   out. */
+/* Adds bodies for the spheres of the tree from `first` on. shape: -1: spheres. Returns 0 if memory
+   runs out; then it adds none. */
 static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material,
                              int shape) {
     const demi_sphere *s = demi_crowd_spheres(w);
@@ -360,8 +368,9 @@ static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int m
     if (c->count > first) demi_scene_changed(w);
     return 1;
 }
-/* Finds places in a region for up to `count` spheres, of one radius or (radii) of their own, which
-   join the crowd. Answers how many; -1: memory ran out. */
+/* Finds positions in a region for up to `count` spheres and adds them to the tree. They have one
+   radius, or those in `radii` unless it is null. turned: 1: also draws orientations. Returns the
+   number of spheres; -1 if memory runs out. */
 static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *region, dem_real radius,
                             const dem_real *radii, int turned, int count, uint64_t state) {
     demi_region g;
@@ -388,8 +397,8 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
     }
     return count;
 }
-/* Where centres of spheres of this radius may be. 0 with an error message for a cylinder along no
-   axis, and for a box that is not finite or too small. */
+/* Sets up the region of centres of spheres of this radius. Returns 0 with an error message if the
+   cylinder has no axis, or the box is not finite or too small. */
 static int demi_region_check(dem_world *w, const char *call, const dem_region *region,
                              dem_real radius, demi_region *g) {
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z'))
@@ -407,8 +416,8 @@ static int demi_region_check(dem_world *w, const char *call, const dem_region *r
     else return 1;
     return 0;
 }
-/* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
-   radius; or with spheres of these radii, the largest first. */
+/* Fills a region with spheres of one radius, or of the given radii (largest first), or with bodies
+   of a shape (>= 0) whose bounding sphere has this radius. Returns the number of bodies added. */
 static int demi_fill(dem_world *w, const char *call, dem_material material, int shape,
                      dem_real radius, const dem_real *radii, const dem_region *region, int count,
                      uint64_t seed) {
@@ -427,7 +436,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                  : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
                    demi_walls_strange(w, call, shape)) return 0;
     if (!demi_region_check(w, call, region, radius, &g)) return 0;
-    /* centres of the smallest are anywhere in there */
+    /* the region of the smallest contains the centres of all */
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
     done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
@@ -447,7 +456,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                   (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
                   region->inside ? "region" : "box", shape < 0
                   ? "pack them with dem_spheres_pack" : "place them with dem_bodies_add");
-    demi_built(w, call);                        /* fewer than asked: the answer says so */
+    demi_built(w, call);                        /* also if fewer fit: the caller sees the number */
     return done;
 }
 DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius,
@@ -470,7 +479,7 @@ DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes 
     if (demi_null(w, call, sizes, "sizes")) return 0;
     radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
     if (!radii) { demi_no_memory(w, call); return 0; }
-    /* none are asked for: the region must still have room for one */
+    /* even for count 0 the region must have room for one */
     if (demi_sizes_draw(w, call, sizes, count ? count : 1, 0, radii) == DEM_OK) {
         for (i = 0; i < count/2; i++) {         /* the largest first */
             const dem_real r = radii[i];
@@ -485,23 +494,26 @@ DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes 
 
 /* --- packings --- */
 
-/* Sphere (i, j, k) of a hexagonal close packing of spheres of radius r that starts at the origin:
-   even and odd layers alternate. In a plane: a triangular lattice, k = 0. */
+/* Centre (i, j, k) of a hexagonal close packing of spheres of radius r, with the first at the
+   origin. Even and odd layers alternate. In planar worlds k = 0 gives a triangular lattice. */
 static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
     return demi_v((dem_real)(r*(double)(2*i + ((j + k) & 1))),
                   (dem_real)(r*sqrt(3.0)*((double)j + (double)(k & 1)/3.0)),
                   (dem_real)(r*(double)k*2*sqrt(6.0)/3));
 }
+/* Lattice of a packing. */
 typedef struct demi_lattice {
-    dem_vec3 lo;                   /* m, the first place */
-    double size[3], r;             /* m, how far the last one may be from it; half a pitch */
+    dem_vec3 lo;                   /* m, first site */
+    double size[3], r;             /* m, largest distance of the last site from it; half the pitch
+                                      */
     dem_real radius;
     const demi_region *room;
-    int count;                     /* at most; 0: all */
-    double looked;                 /* places looked at */
+    int count;                     /* limit of spheres; 0: as many as fit */
+    double looked;                 /* sites tested */
 } demi_lattice;
-/* Free places of the lattice, in layers along z, join the crowd's array (not its tree: they do not
-   overlap each other). Answers how many; -1: memory ran out. */
+/* Appends the free sites of the lattice to the array of spheres, in layers along z. They are not
+   added to the tree, because they do not overlap each other. Returns their number; -1 if memory
+   runs out. */
 static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
     const double slack = 1e-9*g->r;
     int64_t i, j, k;
@@ -529,12 +541,13 @@ static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
         }
     }
 }
-/* About how many places a lattice has. */
+/* Estimates the number of sites of a lattice. */
 static double demi_lattice_places(const dem_world *w, const demi_lattice *g) {
     const double rows = g->size[1]/(g->r*sqrt(3.0)) + 1, layers = g->size[2]/(g->r*1.633) + 1;
     return (g->size[0]/(2*g->r) + 1)*rows*(w->desc.planar ? 1 : layers);
 }
-/* A lattice in the room that centres have. 0: a period is shorter than its pitch. */
+/* Sets up a lattice in the region of centres. padding: m, gap between spheres. Returns 0 if a
+   period is shorter than the pitch. */
 static int demi_lattice_make(const dem_world *w, const demi_region *room, dem_real radius,
                              dem_real padding, demi_lattice *g) {
     const demi_periods p = demi_periods_of(w);
@@ -545,7 +558,7 @@ static int demi_lattice_make(const dem_world *w, const demi_region *room, dem_re
     g->radius = radius;
     g->room = room;
     demi_put(lo, room->lo);
-    for (k = 0; k < 3; k++) {                   /* round a period, the last keeps off the first */
+    for (k = 0; k < 3; k++) {                   /* the last must not overlap the first's image */
         const int full = p.period[k] > 0 && room->size[k] >= (double)p.period[k];
         g->size[k] = room->size[k] - (full ? 2*g->r : 0);
         if (full) lo[k] += radius;

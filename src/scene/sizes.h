@@ -1,16 +1,18 @@
 /* ---------------------------------------------------------------------------------------------
    >>sizes
-   Distributions of size. Each kind is a function, the share that is finer than a radius, made to go
-   from 0 below min to 1 at max; a table of it at radii of equal ratio, with the numbers that belong
-   to the shares, is all that drawing and classes need. Shares of mass become numbers by the mass of
-   a grain, r^3 or r^2. Tests: tests/scene/test_sizes.c.
+   Size distributions. Each kind is a cumulative distribution, the fraction finer than a radius. It
+   is truncated and rescaled to rise from 0 below min to 1 at max. A table of the cumulative number
+   distribution at radii of equal ratio serves to draw radii and to form classes. Fractions by mass
+   become fractions by number with the mass of a grain, proportional to r^3 (planar worlds: r^2).
+   Tests: tests/scene/test_sizes.c.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_SIZE_STEPS = 2048 };
 typedef struct demi_size_table {
-    double at[DEMI_SIZE_STEPS + 1];      /* m, from the smallest to the largest */
-    double number[DEMI_SIZE_STEPS + 1];  /* share of the number that is up to there; the last: 1 */
+    double at[DEMI_SIZE_STEPS + 1];      /* radii, m, from the smallest to the largest */
+    double number[DEMI_SIZE_STEPS + 1];  /* fraction of the number up to there; the last is 1 */
 } demi_size_table;
-/* 2/sqrt(pi) x exp(-x^2) sum (2 x^2)^n/(1 3 5 ... (2n + 1)): all terms positive. */
+/* Error function: 2/sqrt(pi) x exp(-x^2) sum over n of (2 x^2)^n/(1 3 5 ... (2n + 1)). All terms
+   have the same sign, so there is no cancellation. */
 static double demi_erf(double x) {
     double term = x, sum = x;
     int n;
@@ -21,7 +23,8 @@ static double demi_erf(double x) {
     }
     return 2/sqrt(DEMI_PI)*demi_exp(-x*x)*sum;
 }
-/* Share finer than r (m), of the distribution without ends. */
+/* Fraction finer than r (m) before truncation to min and max. For the uniform distribution r
+   itself, which demi_size_finer rescales. */
 static double demi_size_share(const dem_sizes *d, double r) {
     int k;
     switch (d->kind) {
@@ -44,9 +47,10 @@ static double demi_size_share(const dem_sizes *d, double r) {
         }
         return 1;
     }
-    return r;                                   /* uniform: made to go from 0 to 1 below */
+    return r;                                   /* uniform */
 }
-/* Why a distribution is none, into `why`; "" when it is one. Its ends are then lo and hi. */
+/* Checks a distribution. `why` receives the reason if it is invalid; else it becomes "" and *lo and
+   *hi receive the smallest and largest radius, m. */
 static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why, size_t room) {
     const double median = (double)d->median, scale = (double)d->scale;
     const double last = d->passing[DEMI_MIN(DEMI_MAX(d->count, 1), DEM_SIEVES) - 1];
@@ -110,7 +114,8 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
                     "grains between min and max (%g m); change min or max", *hi);
 #undef DEMI_SIZE_NEEDS
 }
-/* The ends of a distribution; 0 with a sentence in the name of `call` when it is none. */
+/* Sets *lo and *hi to the smallest and largest radius, m. Returns 0 and fails in the name of `call`
+   if the distribution is invalid. */
 static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, double *lo,
                           double *hi) {
     static const char *const names[] = {"uniform", "log-normal", "Weibull", "sieves", "normal",
@@ -123,21 +128,23 @@ static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, do
               "kind needs", call, kind >= 0 && kind < 6 ? names[kind] : "unknown", why);
     return 0;
 }
-/* Share finer than r of the distribution between its ends. */
+/* Fraction finer than r of the distribution truncated to lo .. hi. */
 static double demi_size_finer(const dem_sizes *d, double lo, double hi, double r) {
-    /* what passes the first sieve is of its size: a step there */
+    /* grains that pass the first sieve count as of its size: a step there */
     const int step = d->kind == DEM_SIZES_SIEVE_CURVE && lo <= (double)d->radius[0];
     const double below = step ? 0 : demi_size_share(d, lo);
     if (r < lo) return 0;
     if (r >= hi) return 1;
     return (demi_size_share(d, r) - below)/(demi_size_share(d, hi) - below);
 }
+/* Mass of a grain, up to a factor. */
 static double demi_size_mass(const dem_world *w, double r) { return w->desc.planar ? r*r : r*r*r; }
+/* Fills the table of the cumulative number distribution. */
 static void demi_size_table_make(const dem_world *w, const dem_sizes *d, double lo, double hi,
                                  demi_size_table *t) {
     const int n = DEMI_SIZE_STEPS;
     const double ratio = demi_log(hi/lo)/n;
-    double share = demi_size_finer(d, lo, hi, lo);    /* what is all of the smallest size */
+    double share = demi_size_finer(d, lo, hi, lo);    /* all of the smallest size */
     int k;
     t->at[0] = lo;
     t->number[0] = d->by_count ? share : share/demi_size_mass(w, lo);
@@ -151,7 +158,7 @@ static void demi_size_table_make(const dem_world *w, const dem_sizes *d, double 
     for (k = 0; k <= n; k++) t->number[k] /= t->number[n] > 0 ? t->number[n] : 1;
     t->number[n] = 1;
 }
-/* The radius that a share of the number is finer than. */
+/* Returns the radius, m, below which this fraction of the number lies. */
 static double demi_size_draw(const demi_size_table *t, double share) {
     int lo = 0, hi = DEMI_SIZE_STEPS;
     if (share < t->number[0]) return t->at[0];
@@ -169,7 +176,7 @@ DEM_API double dem_sizes_finer_get(dem_world *w, const dem_sizes *d, dem_real ra
     if (!demi_size_ends(w, "dem_sizes_finer_get", d, &lo, &hi)) return -1;
     return demi_size_finer(d, lo, hi, (double)radius);
 }
-/* dem_sizes_draw, in the name of `call`. */
+/* As dem_sizes_draw, with error messages in the name of `call`. */
 static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_sizes *d, int count,
                                   uint64_t seed, dem_real *radii) {
     demi_size_table *t;
