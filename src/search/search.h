@@ -1,16 +1,19 @@
 /* ---------------------------------------------------------------------------------------------
    >>search
-   Which pairs might touch before the next rebuild: all with distance < Ra + Rb + skin, found by one
-   of the methods below, stored in one canonical order (a ascending, then b), so that every method
-   gives the same list and the same bits. A rebuild sorts bodies by cell, deals them to domains of
-   about 2000, lists for each domain the pairs inside it and the pairs leading out, carries contact
-   memory over, and lists the wall elements near each grain.
+   Broad phase of contact detection: finds the candidate pairs, which may touch before the next
+   rebuild. These are all pairs with distance < Ra + Rb + skin (+ range of the law). There are
+   several search methods. Each stores pairs in the same canonical order (a ascending, then b), so
+   every method gives the same list and the same bits. A rebuild sorts bodies by cell, divides them
+   into work groups of about 2000, and lists for each group the pairs inside it and the pairs with
+   later groups. Then it moves the contact histories to the new lists and lists the wall elements
+   near each grain (>>lists, >>rebuild). This part writes the cells, levels, bins and the linked
+   linear list of dem_world, the order of bodies, and the candidate pairs.
    --------------------------------------------------------------------------------------------- */
 
-/* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
+/* Row of a body in an array of four reals per body. An unsigned index saves a sign extension. */
 #define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
 
-/* Divides a box into cells no smaller than `least`, no more than about 4 for each of `count`. */
+/* Divides a box into cells of at least `least` (m) on each axis, at most about 4*count cells. */
 static void demi_cells_lay(const double *lo, const double *hi, double least, int count, int *cells,
                            double *size) {
     int k;
@@ -20,8 +23,8 @@ static void demi_cells_lay(const double *lo, const double *hi, double least, int
     }
     for (k = 0; k < 3; k++) size[k] = DEMI_MAX((hi[k] - lo[k])/cells[k], least*1e-9);
 }
-/* Bodies outside count to the nearest cell, so that everybody is in one. `axes`: numbers run
-   fastest along the first of them. */
+/* Returns the cell of position x; outside the grid, the nearest cell. Cell numbers increase fastest
+   along axes[0], then along axes[1]. */
 static int demi_cell_of(const double *origin, const double *size, const int *cells,
                         const int *axes, const dem_real *x) {
     int c[3], k;
@@ -31,8 +34,9 @@ static int demi_cell_of(const double *origin, const double *size, const int *cel
     }
     return c[axes[0]] + cells[axes[0]]*(c[axes[1]] + cells[axes[1]]*c[axes[2]]);
 }
-/* Numbers run slowest along the axis of most cells: domains, which are stretches of the order, are
-   then thick slabs with few pairs across, also where a scene is flat. */
+/* Sorts the axes by their number of cells, ascending, so that cell numbers increase slowest along
+   the axis with the most cells. Work groups, which are ranges of this order, are then thick slices
+   with few pairs between them, even in flat scenes. */
 static void demi_axes_order(const int *cells, int *axes) {
     int k;
     for (k = 0; k < 3; k++) axes[k] = k;
@@ -44,7 +48,8 @@ static void demi_axes_order(const int *cells, int *axes) {
     }
 }
 
-/* Lays the grid that bodies are sorted by; then the cell of each body. 0 when memory ran out. */
+/* Sets up the grid by which bodies are sorted, and computes the cell of each body. least: m,
+   smallest cell. Returns 0 if memory runs out. */
 static int demi_grid_lay(dem_world *w, double least) {
     double lo[3], hi[3];
     int i, k, n;
@@ -72,8 +77,8 @@ static int demi_grid_lay(dem_world *w, double least) {
     return 1;
 }
 
-/* Puts what bodies have of it in the order of bodies.order. The sizes there are, by name: copies of
-   constant length are instructions, others calls. */
+/* Permutes one array of bodies into the order of bodies.order. The sizes that occur are written
+   out, because a memcpy of constant length compiles to instructions, any other to a call. */
 static void demi_permute(dem_world *w, const demi_body_array *a) {
     char *to = (char *)w->bodies.scratch;
     const char *from = demi_data(w, a);
@@ -84,7 +89,7 @@ static void demi_permute(dem_world *w, const demi_body_array *a) {
     if (item == 4*sizeof(dem_real)) DEMI_PERMUTE(4*sizeof(dem_real));
     else if (item == sizeof(dem_real)) DEMI_PERMUTE(sizeof(dem_real));
     else if (item == sizeof(int32_t)) DEMI_PERMUTE(sizeof(int32_t));
-    else {                                      /* piece by piece: there is room for four reals */
+    else {                                      /* in pieces: scratch holds four reals per body */
         for (k = 0; k < item; k += 4*sizeof(dem_real)) {
             const size_t piece = DEMI_MIN(item - k, 4*sizeof(dem_real));
             char *back = demi_data(w, a) + k;
@@ -97,8 +102,8 @@ static void demi_permute(dem_world *w, const demi_body_array *a) {
 #undef DEMI_PERMUTE
     memcpy(demi_data(w, a), to, n*item);
 }
-/* Puts the bodies of cell c, in their order, at order[start[c]] .. order[start[c + 1] - 1]. Answers
-   whether they stood so already. */
+/* Counting sort: puts the bodies of cell c, in their present order, at order[start[c]] ..
+   order[start[c + 1] - 1], for n cells. Returns 1 if bodies were sorted already. */
 static int demi_cells_fill(dem_world *w, int n) {
     int32_t *start = w->cell_start;
     int i, sorted = 1;
@@ -111,7 +116,7 @@ static int demi_cells_fill(dem_world *w, int n) {
     for (i = 0; i < w->bodies.count; i++) w->bodies.order[start[w->bodies.cell_of[i] + 1]++] = i;
     return sorted;
 }
-/* Sorts bodies by cell; within a cell they keep their order. */
+/* Sorts bodies by cell. The sort is stable: bodies of a cell keep their order. */
 static void demi_bodies_sort(dem_world *w) {
     int i;
     if (demi_cells_fill(w, w->cells[0]*w->cells[1]*w->cells[2])) return;
@@ -122,14 +127,14 @@ static void demi_bodies_sort(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) w->bodies.slot_index[w->bodies.slot[i]] = i;
 }
 
-/* Memory of a pair in the filed list: its place, or -1; *flip when a and b have changed places
-   since. */
+/* Returns the index of a pair's saved contact history (demi_filed), or -1. *flip receives 1 if a
+   and b have exchanged their roles since. */
 static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
     const int32_t sa = (int32_t)w->bodies.slot[a], sb = (int32_t)w->bodies.slot[b];
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
     int k;
     if (!w->filed.count || row >= w->filed.rows) return -1;
-    if (w->filed.stride != w->memory_stride) return -1;     /* of other laws: it means nothing */
+    if (w->filed.stride != w->memory_stride) return -1;     /* saved under other laws: invalid */
     for (k = w->filed.start[row]; k < w->filed.start[row + 1]; k++) {
         const int32_t p = w->filed.partner[k];
         if (p == other) { *flip = sa > sb; return k; }
@@ -138,8 +143,9 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
     return -1;
 }
 
-/* Notes which image of b is nearest to a. It stays so until the next list: positions are brought
-   back into the periodic box only then, and a period holds more than two candidates' lengths. */
+/* Returns the offset in image_shift of b's image nearest to a. It is valid until the next list,
+   because positions are wrapped into the periodic box only at a rebuild, and a period is at least
+   twice as long as two grains and the skin (demi_periods_refuse). */
 static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, int a, int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
     int code = 0, e, weight = 4;
@@ -149,7 +155,8 @@ static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, 
     }
     return (unsigned char)code;
 }
-/* Where the 27 images of a body are; candidates name theirs by its number, a byte. */
+/* Computes the shifts, m, to the 27 images of a body. Candidates store the offset of theirs in a
+   byte. */
 static void demi_image_shifts(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int code, e;
@@ -160,8 +167,8 @@ static void demi_image_shifts(dem_world *w) {
         }
 }
 
-/* Bounding spheres say little of long bodies: do they reach each other, but for the skin, along the
-   line of their centres? */
+/* True if the gap of two bodies along the line of their centres is below `skin`. A sharper test
+   than bounding spheres for long bodies. gap: vector from a's centre to b's. */
 static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem_real skin) {
     const dem_real d = demi_length(gap);
     dem_vec3 n;
@@ -170,7 +177,8 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
     return d - demi_support(w, a, n) - demi_support(w, b, demi_scale(n, -1)) < skin;
 }
 
-/* Tests one pair (a < b) and, if near enough, enters it in the list of a's domain. */
+/* Tests one pair (a < b) and appends it to the list of a's work group d if its gap is below `skin`.
+   Pairs of two fixed bodies and of two ghosts are left out. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
@@ -195,10 +203,10 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     list->image[k] = demi_pair_image(w, p, a, b);
 }
 
-/* --- methods: each offers, for every body a of domain d in turn, its possible partners b > a in
-       ascending order --- */
+/* --- search methods. For every body a of work group d, in turn, each calls demi_pair_offer with
+       the possible partners b > a in ascending order. --- */
 
-/* Everybody with everybody: slow, and so plain that the others are tested against it. */
+/* All pairs: slow, and so simple that the other methods are tested against it. */
 static void demi_rows_all_pairs(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     int a, b;
@@ -207,7 +215,9 @@ static void demi_rows_all_pairs(dem_world *w, int d) {
             demi_pair_offer(w, d, &p, demi_cover(w), a, b);
 }
 
-/* Cell indices c-1, c, c+1 along an axis, wrapped when periodic, without doubles, ascending. */
+/* Stores the cell indices c - 1, c, c + 1 along an axis of n cells, ascending and without
+   duplicates. On a periodic axis they wrap, otherwise those outside are left out. Returns their
+   number. */
 static int demi_neighbours(int c, int n, int periodic, int *out) {
     int count = 0, k, j;
     for (k = -1; k <= 1; k++) {
@@ -219,15 +229,15 @@ static int demi_neighbours(int c, int n, int periodic, int *out) {
         for (j = 0; j < count; j++) seen |= out[j] == q;
         if (!seen) out[count++] = q;
     }
-    for (k = 1; k < count; k++)                 /* at most three: put in order */
+    for (k = 1; k < count; k++)                 /* sorts at most three */
         for (j = k; j > 0 && out[j] < out[j - 1]; j--) { int t = out[j]; out[j] = out[j - 1];
                                                         out[j - 1] = t; }
     return count;
 }
 
-/* Bodies stand in the order of their cells, so that a cell is a range of indices, and neighbouring
-   cells along the first axis are often one range together. Each pair is found once: in the lower
-   cell, or the lower body. */
+/* Uniform grid (linked cells). Bodies are sorted by cell, so a cell is a range of indices, and
+   neighbouring cells along the first axis are often a single range. Each pair is found once: from
+   the body in the lower cell or, in the same cell, from the lower index. */
 static void demi_rows_grid(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const dem_real cover = demi_cover(w);
@@ -241,7 +251,7 @@ static void demi_rows_grid(dem_world *w, int d) {
     }
     for (a = w->domains[d].begin; a < w->domains[d].end; a++) {
         c = w->bodies.cell_of[w->bodies.order[a]];
-        if (c != last) {  /* bodies of a cell share the ranges of index to look at */
+        if (c != last) {  /* all bodies of a cell search the same ranges */
             int at[3][3];
             const int mx = demi_neighbours(c%n[0], n[0], wraps[0], at[0]);
             const int my = demi_neighbours(c/n[0]%n[1], n[1], wraps[1], at[1]);
@@ -265,20 +275,19 @@ static void demi_rows_grid(dem_world *w, int d) {
     }
 }
 
-/* --- levels: a hierarchical grid [OGA12] for bodies of very different radii, where the cells of
-       one grid, as wide as the largest body, would each hold thousands of small ones. Radii are put
-       in classes; every class has a grid of its own, whose cells hold one or two of its bodies. A
-       body looks at each class in turn, no farther than it reaches: at few cells of the coarser
-       ones, at those that its surface crosses of the finer ones. It keeps the partners that stand
-       after it and puts them in order; so each pair is found from one side, whichever stands first
-       (there, small ones look for large ones only; here rows must come in order, in any domain).
-       --- */
+/* --- levels: a hierarchical grid [OGA12] for bodies of very different radii. The cells of a single
+       grid, as wide as the largest body, would each hold thousands of small bodies. Here radii are
+       divided into classes, and each class (level) has its own grid, whose cells hold one or two of
+       its bodies. A body searches every level within its own reach: few cells of the coarser
+       levels, and the cells near its surface in the finer ones. Partners with a higher index are
+       collected and sorted, so each pair is found once, from its lower index. (In [OGA12] only
+       small bodies search, for larger ones; here every row of a work group must be in order.) --- */
 
-/* Estimated work of a search, in distance tests, for one level of `count` bodies of up to `radius`
-   among a packing of volume `room`, with `finer` bodies in the levels below it. Bodies of the level
-   look at 27 of its cells (9 in a plane), half of it for partners that stand after them; the finer
-   ones and it find each other in about half of that; and whoever looks at a level at all pays for
-   some 10 tests. */
+/* Estimates the work of a search, in distance tests, for one level: `count` bodies of radius up to
+   `radius` (m) in a packing of volume `room`, with `finer` bodies in the finer levels. A body of
+   the level searches 27 cells of it (9 in a plane), and half of the partners have a higher index.
+   Pairs with finer bodies cost about half of that. Every body that searches the level costs some 10
+   tests more. */
 static double demi_level_work(const dem_world *w, double radius, double room, double count,
                               double finer) {
     const double side = 2*radius + (double)demi_cover(w), all = w->desc.planar ? 9 : 27;
@@ -287,9 +296,9 @@ static double demi_level_work(const dem_world *w, double radius, double room, do
     return count*part*(0.5*all*count + 0.25*all*finer) + 10*(count + finer);
 }
 
-/* Counts bodies by radius: class k holds those from radius_max/2^(k/2) down to sqrt 2 less; then
-   top[k] is the largest of them and below[k] how many are in classes k and on. Answers the volume
-   that all fill when each has a cube (square) of its own. */
+/* Counts bodies by class of radius: class k is radius_max/2^(k/2) down to a factor sqrt 2 less.
+   top[k]: m, largest radius of class k; below[k]: bodies in class k and finer ones. Returns the
+   total volume of the cubes (planar: squares) around all bodies. */
 static double demi_radii_count(const dem_world *w, double *top, int *below) {
     double limit[DEMI_LEVELS], room = 0;
     int i, k;
@@ -299,7 +308,7 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
         top[k] = 0;
         below[k] = 0;
     }
-    /* neighbours are often alike: from where k is */
+    /* neighbours in the arrays are often alike: starts from the last k */
     for (i = 0, k = 0; i < w->bodies.count; i++) {
         const double r = (double)w->bodies.pos[4*i + 3], side = 2*r;
         while (k > 0 && r > limit[k]) k--;
@@ -312,13 +321,14 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
     return room;
 }
 
-/* Works out which classes to join into levels so that a search costs least, whether levels pay, and
-   with that the method when the choice is ours. All of it follows from radii and skin alone, and
-   what bodies are sorted by is the same for every method: then so are all bits. */
+/* Chooses how to join the classes into levels at the lowest cost (by dynamic programming), whether
+   levels are cheaper than one grid, and the method if desc.search is AUTO. The choice depends only
+   on radii and the skin, and bodies are sorted in the same way for every method, so all methods
+   give the same bits. */
 static void demi_levels_choose(dem_world *w) {
     double top[DEMI_LEVELS], least[DEMI_LEVELS + 1], room, one;
     int below[DEMI_LEVELS + 1], next[DEMI_LEVELS + 1], i, k;
-    const int alike = w->effects.radius_max <= 2*w->effects.radius_min;    /* enough for one grid */
+    const int alike = w->effects.radius_max <= 2*w->effects.radius_min;    /* one grid suffices */
     const int by_name = w->desc.search == DEM_SEARCH_HIERARCHICAL &&
     w->asked.search != DEM_SEARCH_AUTO;
     w->levels.wide = w->levels.count = 0;
@@ -328,7 +338,7 @@ static void demi_levels_choose(dem_world *w) {
     below[DEMI_LEVELS] = 0;
     room = demi_radii_count(w, top, below);
     least[DEMI_LEVELS] = 0;
-    for (i = DEMI_LEVELS - 1; i >= 0; i--) {  /* best way to divide classes i and on */
+    for (i = DEMI_LEVELS - 1; i >= 0; i--) {  /* cheapest division of classes i and finer */
         least[i] = least[i + 1];
         next[i] = i + 1;
         if (below[i] == below[i + 1]) continue;
@@ -352,14 +362,15 @@ static void demi_levels_choose(dem_world *w) {
     if (w->asked.search == DEM_SEARCH_AUTO &&
         w->levels.wide) w->desc.search = DEM_SEARCH_HIERARCHICAL;
     if (w->desc.search == DEM_SEARCH_HIERARCHICAL) return;
-    /* bodies are sorted by finer cells than those of the grid asked for: one level is that grid */
+    /* with wide radii, bodies are sorted by cells finer than those of a uniform grid; then the
+       requested grid is a single level */
     w->levels.count = w->levels.wide && w->desc.search == DEM_SEARCH_GRID;
     w->levels.level[0].radius = (double)w->effects.radius_max;
     w->levels.level[0].count = w->bodies.count;
 }
 
-/* Lays the cells of all levels and deals the bodies, sorted by now, to them; the arrays that the
-   sorting needed serve again. 0 when memory ran out. */
+/* Sets up the cells of all levels and assigns the sorted bodies to them. Reuses the arrays of the
+   sort. Returns 0 if memory runs out. */
 static int demi_levels_lay(dem_world *w) {
     static const int along[3] = {0, 1, 2};
     double hi[3];
@@ -385,10 +396,10 @@ static int demi_levels_lay(dem_world *w) {
     return 1;
 }
 
-/* Cells of a level along one axis within `reach` of x. On a periodic axis they may lie beyond its
-   ends, and when they go all the way round, each is there once and `round` is set. */
+/* A range of cells of a level along one axis. On a periodic axis it may extend beyond the ends; if
+   it covers the whole period, it contains each cell once and `round` is 1. */
 typedef struct demi_stretch { int first, last, round; } demi_stretch;
-/* Cells of a level, along one axis, that are within `reach` of x. */
+/* Returns the cells of a level along one axis within `reach` (m) of x. */
 static demi_stretch demi_level_span(const dem_world *w, const demi_level *level, int axis, double x,
                                  double reach) {
     const int n = level->cells[axis];
@@ -405,14 +416,14 @@ static demi_stretch demi_level_span(const dem_world *w, const demi_level *level,
     s.last = s.round ? n - 1 : (int)(at + far);
     return s;
 }
-/* Distance along one axis from x to the cell `c`, squared. */
+/* Squared distance, m2, of x from cell c along one axis. */
 DEM_INLINE double demi_level_gap2(const dem_world *w, const demi_level *level, int axis, double x,
                                   int c) {
     const double from = w->cell_origin[axis] + level->size[axis]*c - x;
     const double to = from + level->size[axis], gap = from > 0 ? from : to < 0 ? to : 0;
     return gap*gap;
 }
-/* Offers a the bodies after it in cells `first` to `last` of a row of cells along x. */
+/* Tests body a with the bodies of higher index in cells `first` to `last` of a row along x. */
 static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, int row,
                              int first, int last) {
     const int32_t *start = w->cell_start;
@@ -422,13 +433,13 @@ static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, 
         if (w->bodies.order[i] > a)
             demi_pair_offer(w, d, p, demi_cover(w), a, w->bodies.order[i]);
 }
-/* Offers a what it can reach in one level. */
+/* Tests body a with the bodies of one level that are within reach. */
 static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
                            const demi_level *level) {
     const dem_real *at = w->bodies.pos + 4*a;
     const double x = (double)at[0], y = (double)at[1], z = (double)at[2];
     const int *n = level->cells;
-    /* what round-off of distances over a whole period may add */
+    /* bound on the rounding error of distances over a whole period */
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
     const double reach =
@@ -446,7 +457,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
             const int row = slice + n[0]*(j < 0 ? j + n[1] : j >= n[1] ? j - n[1] : j);
             demi_stretch s = sx;
             if (still < 0) continue;
-            /* the row leaves the sphere of reach before it leaves the cube around it */
+            /* clips the row to the sphere of reach, which is shorter than the cube's edge */
             if (s.last - s.first > 3 && !s.round) s = demi_level_span(w, level, 0, x, sqrt(still));
             if (s.first < 0) {
                 demi_level_offer(w, d, p, a, row, s.first + n[0], n[0] - 1);
@@ -461,7 +472,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     }
 }
 
-/* Sorts few numbers by insertion, many as a heap: no memory, no bad case. */
+/* Restores the heap order of v[0] .. v[n - 1] below index `at`. */
 static void demi_heap_sink(int32_t *v, int at, int n) {
     const int32_t t = v[at];
     int child;
@@ -472,7 +483,8 @@ static void demi_heap_sink(int32_t *v, int at, int n) {
     }
     v[at] = t;
 }
-/* Few by insertion, many by Williams' heap sort: no recursion, no memory. */
+/* Sorts n integers: few by insertion, many by heap sort. It needs no memory and no recursion, and
+   has no bad case. */
 static void demi_ints_sort(int32_t *v, int n) {
     int i, j;
     if (n <= 32) {
@@ -491,8 +503,9 @@ static void demi_ints_sort(int32_t *v, int n) {
         demi_heap_sink(v, 0, i);
     }
 }
-/* Puts the partners of one body, entries `from` to `to` of the domain, in order. Partner and image
-   travel as one number: there are fewer than INT_MAX/64 bodies, and 27 images, told in fours. */
+/* Sorts the partners of one body, entries `from` to `to` - 1 of the group. Partner and image are
+   packed into one integer: there are fewer than INT_MAX/64 bodies and 27 images, whose offsets are
+   multiples of 4. */
 static void demi_row_sort(const demi_list *list, int d, int from, int to) {
     int32_t *b = list->b + d*list->stride;
     unsigned char *image = list->image + d*list->stride;
@@ -506,7 +519,7 @@ static void demi_row_sort(const demi_list *list, int d, int from, int to) {
         b[k] /= 32;
     }
 }
-/* Each body against all levels, its partners then put in order: rows are those of one grid. */
+/* Searches all levels for each body, then sorts its partners, which gives the order of one grid. */
 static void demi_rows_levels(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const demi_domain *domain = &w->domains[d];
@@ -519,20 +532,21 @@ static void demi_rows_levels(dem_world *w, int d) {
     }
 }
 
-/* --- linked linear list [ALK07] 2.3.2. On each axis the ends of all boxes stand in one sorted
-   list. A move
-       sorts it again by exchanges of neighbours; when the lower end of one box passes the upper end
-       of another, the two begin or cease to overlap on that axis, and the pair table is told. Boxes
-       are those of radius + skin/2. Along a periodic axis every box counts as endless: correct, and
-       slow. --- */
+/* --- linked linear list [ALK07] 2.3.2, a sweep and prune. On each axis the ends of all bounding
+       boxes are kept in one sorted list. After bodies have moved, insertion sort restores the order
+       by exchanges of neighbours. When the lower end of one box passes the upper end of another,
+       the two start or cease to overlap on that axis, and the pair table is updated. Boxes have
+       half width radius + skin/2. On a periodic axis every box counts as infinite, which is correct
+       but slow. --- */
 typedef struct demi_pair_key { int32_t lo, hi; } demi_pair_key;          /* slots; lo = -1: empty */
 
+/* Hash of a pair in a table of `room` entries, a power of two. */
 static size_t demi_pair_hash(int32_t lo, int32_t hi, size_t room) {
     uint64_t x = ((uint64_t)(uint32_t)lo << 32 | (uint32_t)hi)*UINT64_C(0x9E3779B97F4A7C15);
     return (size_t)(x >> 20) & (room - 1);
 }
-/* Open addressing with a power of two of places, at most two thirds full; deletion closes the gap.
-   */
+/* Adds a pair to the table unless it is there: open addressing in a power of two of entries, at
+   most two thirds full. Returns 0 if memory runs out. */
 static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
     demi_pair_key *table = w->lll_table;
     size_t room = demi_room(table, sizeof *table), k;
@@ -560,8 +574,8 @@ static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
     w->lll_size++;
     return 1;
 }
-/* Open addressing without tombstones: what stood behind moves up, so that no search stops at a gap
-   [Knuth, 6.4, algorithm R]. */
+/* Removes a pair if it is there. No tombstones: later entries move up, so that no search stops at a
+   gap [Knuth, 6.4, algorithm R]. */
 static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
     demi_pair_key *table = w->lll_table;
     const size_t room = demi_room(table, sizeof *table);
@@ -584,12 +598,13 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
         gap = k;
     }
 }
+/* Lower or upper end, m, of the box of a body, by slot. */
 static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
     const int i = w->bodies.slot_index[slot];
     const dem_real grow = w->bodies.pos[4*i + 3] + demi_cover(w)/2;
     return upper ? w->bodies.pos[4*i + axis] + grow : w->bodies.pos[4*i + axis] - grow;
 }
-/* Do the boxes of two bodies, by slot, overlap on every axis that is not periodic? */
+/* True if the boxes of two bodies, by slot, overlap on every axis that is not periodic. */
 static int demi_boxes_overlap(const dem_world *w, int s, int t) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -599,7 +614,7 @@ static int demi_boxes_overlap(const dem_world *w, int s, int t) {
     }
     return 1;
 }
-/* a total order: lower ends first */
+/* Order of the ends: by value, then lower before upper ends, then by slot. */
 static int demi_end_before(const demi_end *x, const demi_end *y) {
     if (x->value < y->value) return 1;
     if (x->value > y->value) return 0;
@@ -609,8 +624,9 @@ static int demi_end_before(const demi_end *x, const demi_end *y) {
 static int demi_end_compare(const void *x, const void *y) {
     return demi_end_before((const demi_end *)x, (const demi_end *)y) ? -1 : 1;
 }
-/* First time, or after bodies came or went: sort outright and sweep the first axis that is not
-   periodic. */
+/* Builds the lists and the pair table from scratch, at the first search and after bodies were added
+   or removed: sorts the ends and sweeps the first axis that is not periodic. Returns 0 if memory
+   runs out. */
 static int demi_lll_start(dem_world *w) {
     const int n = w->bodies.count;
     size_t i;
@@ -631,7 +647,7 @@ static int demi_lll_start(dem_world *w) {
     w->lll_size = 0;
     w->lll_boxes = n;
     while (sweep < 3 && w->desc.boundary[sweep] == DEM_BOUNDARY_PERIODIC) sweep++;
-    if (sweep == 3) {                           /* endless everywhere: every pair */
+    if (sweep == 3) {                           /* all axes periodic: every pair */
         for (k = 0; k < n; k++)
             for (j = k + 1; j < n; j++)
                 if (!demi_pair_table_add(w, (int32_t)w->bodies.slot[k],
@@ -654,7 +670,8 @@ static int demi_lll_start(dem_world *w) {
     }
     return 1;
 }
-/* The permutation update: insertion sort, exchanges told to the pair table. */
+/* Updates the lists by insertion sort and the pair table at each exchange. Returns 0 if memory runs
+   out. */
 static int demi_lll_update(dem_world *w) {
     int axis, k, j;
     for (axis = 0; axis < 3; axis++) {
@@ -667,7 +684,7 @@ static int demi_lll_update(dem_world *w) {
                 const demi_end *f = &ends[j - 1];
                 if (e.upper != f->upper && e.box != f->box &&
                     w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
-                    /* [f e] -> e before f: apart */
+                    /* upper end passes lower end: the boxes separate */
                     if (e.upper) demi_pair_table_remove(w, e.box, f->box);
                     /* lower end passes upper end */
                     else if (demi_boxes_overlap(w, e.box, f->box) &&
@@ -684,13 +701,14 @@ static int demi_int_compare(const void *x, const void *y) {
     const int32_t a = *(const int32_t *)x, b = *(const int32_t *)y;
     return a < b ? -1 : a > b;
 }
-/* The table's pairs as rows of b by a, ascending. 0 when memory ran out. */
+/* Updates the pair table and lists its pairs by their lower body, partners ascending. Returns 0 if
+   memory runs out. */
 static int demi_lll_rows(dem_world *w) {
     int32_t *start, *rows;
     size_t i;
     int k, pass, fresh;
     fresh = !w->lll_valid;
-    w->lll_valid = 0;                           /* until it is whole again */
+    w->lll_valid = 0;                           /* until it is complete */
     if (fresh ? !demi_lll_start(w) : !demi_lll_update(w)) return 0;
     w->lll_valid = 1;
     if (!DEMI_GROW(w, w->lll_row_start, (size_t)w->bodies.count + 2) ||
@@ -716,7 +734,7 @@ static int demi_lll_rows(dem_world *w) {
                   demi_int_compare);
     return 1;
 }
-/* The pairs of the table, by their lower body, as demi_lll_rows has put them. */
+/* Tests the pairs that demi_lll_rows has listed. */
 static void demi_rows_linked(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const int32_t *start = w->lll_row_start;
@@ -727,12 +745,11 @@ static void demi_rows_linked(dem_world *w, int d) {
             demi_pair_offer(w, d, &p, demi_cover(w), a, rows[k]);
 }
 
-/* --- bins of bounding boxes [MAZ11]: each body stands in every bin that its box, of radius +
-       skin/2, touches, so that bodies need not be smaller than a bin. Two meet in the first bin of
-       the one that the other has, too, along every axis, and nowhere else; a periodic axis goes
-       round. --- */
+/* --- bins of bounding boxes [MAZ11]: each body is entered in every bin that its box (half width
+       radius + skin/2) touches, so bodies need not be smaller than a bin. A pair is found only in
+       the first bin of a that b also touches, on every axis. Periodic axes wrap. --- */
 
-/* Where a body's box is. */
+/* Computes the bins of a body's box: for each axis the first one and how many more. */
 static void demi_bins_of(dem_world *w, int body) {
     const double grow = ((double)w->bodies.pos[4*body + 3] + (double)demi_cover(w)/2)*(1 + 1e-5);
     int32_t *at = w->bin_of + 6*body;
@@ -746,7 +763,7 @@ static void demi_bins_of(dem_world *w, int body) {
         at[2*k + 1] = (int32_t)(round ? hi - lo : DEMI_MAX(DEMI_MIN(hi, n - 1), 0) - at[2*k]);
     }
 }
-/* Deals a body to its bins: counts (items null), or enters it. */
+/* Counts a body in its bins if items is null, otherwise enters it. */
 static void demi_bins_deal(const dem_world *w, int body, int32_t *count, int32_t *items) {
     const int32_t *at = w->bin_of + 6*body;
     const int *n = w->bins;
@@ -760,8 +777,8 @@ static void demi_bins_deal(const dem_world *w, int body, int32_t *count, int32_t
                 count[bin]++;
             }
 }
-/* Bins about as wide as an average box, and wider where large ones would fill too many. 0 when
-   memory ran out. */
+/* Sets up bins about as wide as an average box, or wider if large bodies would fill too many, and
+   enters all bodies. Returns 0 if memory runs out. */
 static int demi_bins_lay(dem_world *w) {
     double hi[3], least = 0, all;
     int i, k, n;
@@ -787,11 +804,12 @@ static int demi_bins_lay(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) demi_bins_deal(w, i, w->bin_start + 1, w->bin_items);
     return 1;
 }
-/* Is the i-th bin of a, along an axis of n, the first that b has, too? */
+/* True if the i-th bin of a, along an axis of n bins, is the first that b also touches. */
 DEM_INLINE int demi_bins_meet(const int32_t *a, const int32_t *b, int i, int n) {
     const int behind = a[0] < b[0] ? a[0] - b[0] + n : a[0] - b[0];
     return i == (behind <= b[1] ? 0 : n - behind);
 }
+/* Tests each body with the bodies in its bins. */
 static void demi_rows_bins(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const demi_domain *domain = &w->domains[d];
@@ -808,7 +826,7 @@ static void demi_rows_bins(dem_world *w, int d) {
                     for (e = w->bin_start[bin + 1] - 1; e >= w->bin_start[bin]; e--) {
                         const int b = w->bin_items[e];
                         const int32_t *other = w->bin_of + 6*b;
-                        if (b <= a) break;      /* they stand in their order */
+                        if (b <= a) break;      /* items are ascending */
                         if (demi_bins_meet(at, other, i, n[0]) &&
                             demi_bins_meet(at + 2, other + 2, j, n[1]) &&
                             demi_bins_meet(at + 4, other + 4, k, n[2]))
@@ -820,16 +838,17 @@ static void demi_rows_bins(dem_world *w, int d) {
     }
 }
 
-/* --- what is common --- */
+/* --- table of the methods --- */
 
-/* By cells: of one size, or of several (levels). */
+/* Searches by cells, of one size or of several (levels). */
 static void demi_rows_cells(dem_world *w, int d) {
     if (w->levels.count) demi_rows_levels(w, d); else demi_rows_grid(w, d);
 }
-/* Searches, a row each, in the order of their enum (>>add-search): name in reports; a domain's
-   candidates, all of which go through demi_pair_offer; what is laid before, 0 when memory ran out
-   (none: cells are enough); 1 where the bodies of a cell are compared with each other, so that
-   crowds in one cell cost. All find the same pairs. */
+/* Search methods, one row each, in the order of dem_search (>>add-search). All find the same pairs.
+   name: in reports. rows: finds the candidates of a work group and passes each to demi_pair_offer.
+   lay: prepares a search and returns 0 if memory runs out; null: the cells of the sort suffice.
+   crowds: 1 if all bodies of a cell are tested with each other, so that crowded cells are
+   expensive. */
 typedef struct demi_search_row {
     const char *name;
     void (*rows)(dem_world *w, int d);
@@ -837,7 +856,7 @@ typedef struct demi_search_row {
     int crowds;
 } demi_search_row;
 static const demi_search_row demi_searches[] = {
-    {"automatic", demi_rows_cells, 0, 1},       /* becomes one of the others at the first list */
+    {"automatic", demi_rows_cells, 0, 1},       /* replaced by another at the first list */
     {"all pairs", demi_rows_all_pairs, 0, 0},
     {"uniform grid", demi_rows_cells, 0, 1},
     {"linked linear list", demi_rows_linked, demi_lll_rows, 0},
@@ -846,7 +865,7 @@ static const demi_search_row demi_searches[] = {
 };
 enum { DEMI_SEARCHES = (int)(sizeof demi_searches/sizeof *demi_searches) };
 
-/* One domain's candidates, by the search in force. */
+/* Finds the candidates of one work group by the method in force. */
 static void demi_domain_search(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     domain->own = domain->cross = 0;
