@@ -1,12 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>lists
-   What a rebuild puts next to the neighbour list: candidates on walls (elements that a body may
-   touch before the next rebuild), room for all lists, and the contacts that are kept (>>kept): they
-   go from the lists of before, by slot, to those that are new. All
-   room is made before anything moves, so that a rebuild which gets no memory has changed nothing.
+   Wall candidates (the wall elements that a body may touch before the next rebuild), allocation of
+   all lists, and the transfer of persistent contacts (>>kept) from the old lists, by slot, to the
+   new ones. All memory is allocated before anything moves, so a rebuild that runs out of memory has
+   changed nothing. This part writes the wall_..., cross_..., touching_... and kept_... fields of
+   dem_world.
    --------------------------------------------------------------------------------------------- */
 
-/* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
+/* Appends an element of a wall to the wall candidates of work group d. gap: m, between body and
+   element; shift: m, from the body to its image at the wall. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
                             int element, dem_real gap, dem_vec3 shift) {
     int k = domain->walls;
@@ -16,13 +18,13 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_body[k] = body;
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
-    w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* a little for rounding */
+    w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* allows for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
 }
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough);
-/* The candidates of one body and wall, from `first` on: ascending by element, each once, so that
-   the order does not hang on cells. */
+/* Sorts the candidates of one body and wall, from entry `first` on, by element and removes
+   duplicates, so that their order does not depend on the wall's cells. */
 static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first) {
     int32_t *e = w->wall_element + d*w->wall_stride;
     dem_real *gap = w->wall_gap + d*w->wall_stride;
@@ -47,7 +49,7 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
     }
     domain->walls = n;
 }
-/* Elements of one wall near body i as it is seen `shift` farther on. */
+/* Lists the elements of wall j near body i, displaced by `shift` (m) to one of its images. */
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
     const demi_wall *wall = &w->walls[j];
     const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
@@ -73,7 +75,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                     for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
                         const int element = wall->cell_items[k];
                         const int32_t *e = w->wall_element + d*w->wall_stride;
-                        int q = DEMI_MAX(first, domain->walls - 16);       /* rather not twice */
+                        int q = DEMI_MAX(first, domain->walls - 16);       /* few duplicates */
                         while (q < domain->walls && e[q] != element) q++;
                         if (q < domain->walls) continue;
                         away = demi_wall_distance(wall, element, at, near_by);
@@ -84,8 +86,8 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
     }
     if (domain->walls > first) demi_walls_order(w, domain, d, first);
 }
-/* m, into shift: from a place to the n-th of its images from which a wall may be nearer than `far`,
-   n = 0, 1, ... 0: there is none. */
+/* Sets *shift, m, to the displacement from a position to the n-th of its images (n = 0, 1, ...)
+   that may be nearer to a wall than `far`. Returns 0 if there are no more. */
 static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 place, dem_real far,
                            int n, dem_vec3 *shift) {
     dem_real x[3];
@@ -104,7 +106,7 @@ static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 p
     *shift = demi_at(x);
     return !n;
 }
-/* Elements of all walls near body i. */
+/* Lists the elements of all walls near body i, unless it is fixed or a ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, n;
@@ -117,7 +119,8 @@ static void demi_body_walls(dem_world *w, int d, int i) {
             demi_wall_look(w, domain, d, i, j, shift);
     }
 }
-/* Candidates on walls of one domain, body by body; those of a body and wall stand together. */
+/* Lists the wall candidates of a work group, body by body; those of a body and a wall are
+   consecutive. */
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i;
@@ -126,7 +129,8 @@ static void demi_domain_walls(dem_world *w, int d) {
     for (i = domain->begin; i < domain->end; i++) demi_body_walls(w, d, i);
 }
 
-/* Room for a list. 0 when memory ran out; what did grow is pointed at all the same. */
+/* Allocates a candidate list of `stride` entries per work group. Returns 0 if memory runs out;
+   arrays that have grown stay valid. */
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) &&
@@ -136,11 +140,12 @@ static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int str
     if (ok) list->stride = stride;
     return ok;
 }
-/* Has every near pair coefficients of its own? */
+/* True if there are more species than the table holds, so that every pair of the pruned list stores
+   its own coefficients. */
 static int demi_many_species(const dem_world *w) {
     return w->effects.species_count > DEMI_SPECIES;
 }
-/* The same for the near list. */
+/* As demi_list_reserve, for a pruned neighbour list. */
 static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
@@ -155,7 +160,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
     if (ok) near->stride = stride;
     return ok;
 }
-/* The same for candidates on walls. */
+/* The same for wall candidates. */
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
@@ -166,13 +171,13 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     if (ok) w->wall_stride = stride;
     return ok;
 }
-/* Room for what domains do to walls. */
+/* Allocates the sums of forces of each work group on each wall. */
 static int demi_wall_sums_room(dem_world *w) {
     const size_t n = (size_t)w->domain_count*(size_t)w->wall_count;
     return DEMI_GROW(w, w->wall_sums, n) &&
            (!demi_exchanges(w) || DEMI_GROW(w, w->wall_rates, (size_t)w->bodies.real_count*n));
 }
-/* Room for all entries that the cross lists can hold. */
+/* Allocates the forces of all entries that `cross` can hold. */
 static int demi_cross_reserve(dem_world *w) {
     const size_t entries = (size_t)w->domain_count*(size_t)w->cross.stride;
     const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
@@ -182,15 +187,15 @@ static int demi_cross_reserve(dem_world *w) {
                               (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1)));
     return ok;
 }
-/* The domain a body belongs to. */
+/* Returns the work group of a body. */
 static int demi_domain_of(const dem_world *w, int body) {
     int d = (int)((int64_t)body*w->domain_count/w->bodies.count);
     while (body >= w->domains[d].end) d++;
     while (body < w->domains[d].begin) d--;
     return d;
 }
-/* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from
-   before it. */
+/* Lists the entries of `cross` by the work group of body b, so that each group can add the forces
+   of pairs that earlier groups compute. */
 static void demi_cross_index(dem_world *w) {
     int d, k, e;
     for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
@@ -213,9 +218,10 @@ static void demi_cross_index(dem_world *w) {
     w->cross_incoming_start[w->domain_count] = w->cross_entries;
 }
 
-/* Places that one body may have with one wall at most: its candidates of domain d from k on, *end:
-   the first that is not theirs. A polyhedron has four of each way in which it touches (a facet's
-   two sides, its curtains), and four of each of gaps. */
+/* Returns the largest number of contact points of one body with one wall. Its candidates in work
+   group d begin at k; *end receives the first of the next body or wall. A polyhedron may have four
+   points in each of the ways in which it touches (the two sides of facets, the skirts at open
+   edges), and four more by gaps. */
 static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
     const demi_wall *wall = &w->walls[id];
@@ -232,13 +238,14 @@ static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     *end = k;
     return w->bodies.shaped ? DEMI_MAX(n, flats) : n;
 }
-/* The most contacts with walls that domain d may ever have with these candidates. */
+/* Returns the largest number of wall contacts of work group d with the present candidates. */
 static int demi_places_most(const dem_world *w, int d) {
     int k = 0, n = 0;
     while (k < w->domains[d].walls) n += demi_places_of(w, d, k, &k);
     return n;
 }
-/* Room for the places of one body and wall, for each domain its own. 0 when memory ran out. */
+/* Allocates w->touching for the contact points of one body and wall, with a segment for each work
+   group. Returns 0 if memory runs out. */
 static int demi_touching_reserve(dem_world *w) {
     size_t n = 0;
     int d, k;
@@ -257,10 +264,11 @@ static int demi_touching_reserve(dem_world *w) {
                         DEMI_GROW(w, w->touching_table, 4*n);
     return w->touching_valid;
 }
-/* Where each domain's contacts stand when there is room for what its candidates may give: as a rule
-   hardly more than one contact for each, and what lasts (crowd), and a quarter. Slabs of spheres do
-   not stop in the middle of a step to make room: as much as there may ever be. listed: domains in
-   use; the others only hold what lasts. */
+/* Computes where the persistent contacts of each work group begin (first). A group gets room for
+   one contact per wall candidate or, if more, for the contacts that continue (crowd), plus a
+   quarter. Slabs of spheres do not allocate in the middle of a step, so they get room for the
+   largest possible number of wall contacts. Groups from `listed` on are out of use and only hold
+   contacts that continue. */
 static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int *first) {
     int d;
     for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
@@ -274,13 +282,13 @@ static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int 
         first[d + 1] = first[d] + n;
     }
 }
-/* Room for contacts in the domains of a new list, and for the walls' sums; nothing moves yet.
-   first: where those of each domain will begin. 0 when memory ran out. */
+/* Allocates the persistent contacts of a new list and the walls' sums; moves nothing yet. first
+   receives where those of each work group will begin. Returns 0 if memory runs out. */
 static int demi_kept_room(dem_world *w, int *first) {
     int crowd[DEMI_DOMAINS], d, k, total = 0;
     memset(crowd, 0, sizeof crowd);
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
-    for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
+    for (d = 0; d < DEMI_DOMAINS; d++)          /* upper bound per group */
         for (k = 0; k < w->domains[d].kept; k++) {
             const demi_kept *c = demi_kept_of(w, d) + k;
             const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
@@ -291,8 +299,9 @@ static int demi_kept_room(dem_world *w, int *first) {
            DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
            DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]);
 }
-/* Contacts that still last, from the last list (by slot) into the domains of the new one, each with
-   its lower body as a: what turns round, turns round. */
+/* Moves the contacts whose bodies and walls still exist from the old list (by slot) into the work
+   groups of the new one. Body a becomes the one with the lower index. Where this exchanges a and b,
+   the normal and the vectors of the history change sign, and arms and parts are exchanged. */
 static void demi_kept_move(dem_world *w, const int *first) {
     int d, k, e = 0, i;
     for (d = 0; d < DEMI_DOMAINS; d++) {
@@ -321,7 +330,7 @@ static void demi_kept_move(dem_world *w, const int *first) {
         w->domains[d].kept = 0;
     }
     memcpy(w->kept_first, first, sizeof w->kept_first);
-    /* deal out in the order of body a; `order` has done its work in the search and counts here */
+    /* counting sort by body a; bodies.order is free after the search and holds the counts */
     if (e) memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
     for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
     for (d = 0; d < w->domain_count; d++)

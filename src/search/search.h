@@ -281,7 +281,7 @@ static void demi_rows_grid(dem_world *w, int d) {
        its bodies. A body searches every level within its own reach: few cells of the coarser
        levels, and the cells near its surface in the finer ones. Partners with a higher index are
        collected and sorted, so each pair is found once, from its lower index. (In [OGA12] only
-       small bodies search, for larger ones; here every row of a work group must be in order.) --- */
+       small bodies search, for larger ones; here each row of a work group must be in order.) --- */
 
 /* Estimates the work of a search, in distance tests, for one level: `count` bodies of radius up to
    `radius` (m) in a packing of volume `room`, with `finer` bodies in the finer levels. A body of
