@@ -1,26 +1,29 @@
 /* ---------------------------------------------------------------------------------------------
    >>near
-   The near list: candidates that touch or may within margin.span, were they to meet head-on at the
-   speed they have now; and margin.slack more, because speeds change. Forces are worked out for all
-   of it, touching or not, so that a step neither looks at candidates nor packs them; what does not
-   touch answers zero. It is made anew, from the candidates, when the time is over or accelerations
-   may have used up the slack. Memory comes from the list before or, after a search, from where it
-   was filed. Numbers do not depend on how long a list lasts: a zero more or less does not change a
-   sum.
-   Why nothing is missed: let v be the speed at which two bodies approach when the list is made. A
-   step changes a velocity by at most last_change, dt times the largest acceleration of all; after n
-   steps two have changed by at most 2 (change), change the sum of these. So they have come nearer
-   than v t by at most creep, the sum over steps of 2 dt change. A pair that was left out had a gap
-   of more than v span + slack: as long as the age is below span and creep below slack, it is open.
+   The pruned neighbour list ("near" in names), for which forces are computed. It contains the
+   candidates that touch or could touch within the time margin.span if they approached head-on at
+   their present relative speed, plus margin.slack for changes of speed. Forces are computed for all
+   its pairs; those that do not touch give zero. So a step neither tests candidates nor collects
+   pairs. The list is rebuilt from the candidates after the time margin.span, or earlier if
+   accelerations may have used up the slack. It takes contact histories from the previous pruned
+   list or, after a search, from demi_filed. Results do not depend on how long a list lasts, because
+   one zero more or less does not change a sum.
+   Proof that no contact is missed: let v be the relative speed of two bodies when the list is
+   built. A step changes a velocity by at most last_change, that is dt times the largest
+   acceleration of all bodies. After n steps the relative velocity has changed by at most 2 change,
+   where change is the sum of last_change. So the two have approached by at most v t + creep, where
+   creep is the sum over steps of 2 dt change. A pair that is not in the list had a gap larger than
+   v span + slack. As long as age < span and creep < slack, the pair does not touch.
    --------------------------------------------------------------------------------------------- */
 
-/* --- species: which spheres are alike, and the coefficients of every two kinds. A scene has few of
-       them (one, two sizes of beads, balls and powder) or as many as grains (radii drawn at
-       random), seldom something between. With few, a near pair carries the number of a row, 4 byte
-       where its coefficients take 88, and tiles of pairs that are all of one row copy nothing; a
-       single steel ball among glass beads then slows only the tiles that it is in. With many, each
-       pair carries its own. The species are those of the last search: whoever comes in between, by
-       a feed, must be of one of them (demi_species_known), or the list is made anew. --- */
+/* --- species: classes of equal spheres, and the coefficients of every two species. A scene has few
+       species (beads of one or two sizes, balls and powder) or as many as grains (radii drawn at
+       random), seldom a number between. With few, a pair of the pruned list stores the number of a
+       row of the table: 4 bytes instead of 88 for its coefficients. Tiles whose pairs all have the
+       same row copy nothing, so a single steel ball among glass beads slows only its own tiles.
+       With many species, each pair stores its own coefficients. Species are determined at each
+       search. A grain that a feed inserts in between must belong to one of them
+       (demi_species_known), otherwise lists are rebuilt. --- */
 static demi_species demi_species_of(const dem_world *w, int body) {
     demi_species s;
     s.radius = w->bodies.pos[4*body + 3];
@@ -30,8 +33,8 @@ static demi_species demi_species_of(const dem_world *w, int body) {
     s.none = 0;
     return s;
 }
-/* Which one the body is of; species_count when of none. By every bit: a radius that differs in the
-   last one has coefficients of its own. */
+/* Returns the species of a sphere, species_count if it has none. Compares every bit: a radius that
+   differs in the last bit is another species. */
 static int demi_species_find(const dem_world *w, int body) {
     const demi_species s = demi_species_of(w, body);
     int k;
@@ -39,12 +42,13 @@ static int demi_species_find(const dem_world *w, int body) {
         if (!memcmp(&w->effects.species[k], &s, sizeof s)) break;
     return k;
 }
-/* Has the body coefficients with others? Not when a file names other species than its bodies
-   are. */
+/* True if coefficients for this body are available. False if a checkpoint contains species that do
+   not fit its bodies. */
 static int demi_species_has(const dem_world *w, int body) {
     return demi_many_species(w) || demi_species_find(w, body) < w->effects.species_count;
 }
-/* Those of all spheres there are; of one more than have a table when there are more. */
+/* Determines the species of all spheres. species_count becomes DEMI_SPECIES + 1 if there are more
+   than the table holds. */
 static void demi_species_count(dem_world *w) {
     demi_in_force *e = &w->effects;
     int i;
@@ -55,21 +59,22 @@ static void demi_species_count(dem_world *w) {
         e->species_count++;
     }
 }
-/* Coefficients of a pair. R* of equal radii is half of them to the last bit, so that two alike get
-   what a world gets in which all are. */
+/* Computes the coefficients of two species. For equal radii R* is exactly half the radius, so that
+   the result has the same bits as in a world of equal spheres. */
 static void demi_species_coefs(const dem_world *w, const demi_species *a, const demi_species *b,
                                dem_real *coef) {
     const double ra = (double)a->radius, rb = (double)b->radius;
     const double sum = (double)a->inv_mass + (double)b->inv_mass;
-    /* there a fixed grain has mass too */
+    /* in that convention a fixed grain has a mass too */
     const double inv = w->desc.convention == DEM_CONVENTION_MILL
         ? 1/(double)a->mass + 1/(double)b->mass : sum;
     demi_coefficients(w, a->material - 1, b->material - 1,
                       ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 1/inv, 0, coef);
     coef[DEMI_M_EFF] = (dem_real)(1/sum);
 }
-/* Which columns differ from pair to pair, and are asked for. In a table one can see it; of too many
-   species it is those that hang on radii, and on materials where there are several. */
+/* Determines which columns of coefficients differ between pairs and are read by a law. With a table
+   it compares the rows. With too many species these are the columns that depend on radii and, if
+   there are several materials, on materials. */
 static void demi_species_vary(dem_world *w) {
     const int rows = w->effects.species_count*w->effects.species_count;
     const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL | 1 << DEMI_K_AD;
@@ -91,24 +96,24 @@ static void demi_species_vary(dem_world *w) {
         if (k >= rows) w->species_vary &= ~(1 << e);
     }
 }
-/* Would a new sphere find its coefficients? */
+/* True if coefficients for a new sphere are available without a rebuild. */
 static int demi_species_known(const dem_world *w, int material, dem_real radius) {
     const demi_species *s = w->effects.species;
     int k;
     for (k = 0; k < w->effects.species_count && !demi_many_species(w); k++)
         if (s[k].material == material + 1 && s[k].inv_mass > 0 && !(s[k].radius < radius) &&
             !(s[k].radius > radius)) return 1;
-    /* a second material makes columns vary that did not */
+    /* a second material would make further columns vary */
     return demi_many_species(w) &&
            (w->species_vary >> DEMI_MU & 1 || w->bodies.material[0] == material + 1);
 }
-/* Room for the table; 0 when memory ran out. What is refused here is refused before any list is
-   changed; filling the table cannot fail. */
+/* Allocates the table. Returns 0 if memory runs out, before any list has changed. Filling the table
+   (demi_species_lay) cannot fail. */
 static int demi_species_room(dem_world *w) {
     const size_t n = demi_many_species(w) ? 0 : (size_t)w->effects.species_count;
     return DEMI_GROW(w, w->species_coef, n*n*DEMI_PAIR_COLUMNS);
 }
-/* What is in it. */
+/* Fills the table. */
 static void demi_species_lay(dem_world *w) {
     const int n = w->effects.species_count;
     int k;
@@ -116,7 +121,8 @@ static void demi_species_lay(dem_world *w) {
         demi_species_coefs(w, &w->effects.species[k/n], &w->effects.species[k%n],
                            w->species_coef + DEMI_PAIR_COLUMNS*k);
 }
-/* A pair learns its row, or is given columns; only needed where bodies differ. */
+/* Sets the row or the coefficients of entry p of work group d, the pair of spheres a and b. Only
+   needed if bodies differ. */
 static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
     const demi_species one = demi_species_of(w, a), other = demi_species_of(w, b);
     dem_real coef[DEMI_PAIR_COLUMNS], *to;
@@ -130,7 +136,7 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
 }
-/* Entry `to` of the domain has the coefficients of entry `from`, of the same list or another. */
+/* Copies the coefficients of entry `from` of a list to entry `to` of the same or another list. */
 static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int to,
                                  const demi_near *last, int from) {
     const size_t columns = DEMI_PAIR_COLUMNS, stride = (size_t)near->stride;
@@ -147,8 +153,9 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
     old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
     for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
 }
-/* Picks near ones from the candidates of one list, without a branch; their entries from p on.
-   Answers where they end, or -1 when there is no room. */
+/* Selects the pairs of spheres of the pruned list from a group's candidates, without a branch.
+   Writes them from entry p on and returns their end, or -1 if there is no room. mixed: 1 if there
+   are also other bodies, whose pairs are left out. */
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
@@ -175,7 +182,7 @@ static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int en
     return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
         : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
-/* m/s, at most, with what their spins bring: how fast surfaces of two bodies approach. */
+/* Upper bound, m/s, on the approach speed of the surfaces of two bodies, rotation included. */
 static dem_real demi_approach(const dem_world *w, int a, int b) {
     const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
     dem_real speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b),
@@ -186,13 +193,13 @@ static dem_real demi_approach(const dem_world *w, int a, int b) {
                      demi_scale_of(w, b, fb);
     return speed;
 }
-/* How near two bodies' surfaces, or parts of them, are that may touch while the list lasts, m. */
+/* Gap, m, below which two bodies, or parts of them, may touch during the life of the list. */
 static dem_real demi_near_cut(const dem_world *w, int a, int b) {
     return (dem_real)(w->margin.reach + w->margin.slack) +
         (dem_real)w->margin.span*demi_approach(w, a, b);
 }
-/* A body's spheres about its centre, rows of centre and radius, and how many; lone: for that of a
-   sphere. 0: it is of other parts. */
+/* Returns the spheres of a body, rows of centre (relative to the body's) and radius, m, and their
+   number. lone: storage for the row of a sphere. Returns null if the body has other parts. */
 DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
     const demi_shape *shape = demi_shape_of(w, body);
     *count = shape ? shape->count : 1;
@@ -201,7 +208,8 @@ DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real 
     lone[3] = w->bodies.pos[4*body + 3];
     return lone;
 }
-/* Are two bodies, or parts of them, nearer than `cut`, m? */
+/* True if the gap of two bodies, or of two of their parts, is below `cut`, m. shift: m, to the
+   image of b. */
 static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *shift, dem_real cut) {
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
@@ -224,7 +232,7 @@ static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *sh
     }
     return 0;
 }
-/* As demi_near_pick, pairs that are not of two spheres: by the distance of their surfaces. */
+/* As demi_near_pick for pairs other than two spheres: tests the gap of their surfaces. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
     const int room = w->near.stride - DEMI_LANES;
@@ -240,7 +248,8 @@ static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin,
     }
     return k < end ? -1 : p;
 }
-/* Memory and coefficients of the domain's entry p, which is new or was entry `from` before. */
+/* Sets the contact history and coefficients of entry p of work group d. from: its entry in the
+   previous list, -1 if it is new or after a search; then saved history is used if there is any. */
 static void demi_near_recall(dem_world *w, int d, int p, int from) {
     demi_near *near = &w->near;
     const demi_near *last = &w->near_last;
@@ -266,8 +275,9 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     }
 }
 
-/* What follows from the near list of a domain: groups are filled up with copies of their last pair,
-   whose answers nobody reads (then no group is cut short), and candidates learn their entries. */
+/* Completes the pruned list of a work group. Pads it to a multiple of DEMI_LANES with copies of the
+   last pair, whose results are ignored, so that every vector is full. Stores in each candidate its
+   entry in the pruned list. */
 static void demi_near_adopt(dem_world *w, int d) {
     demi_near *near = &w->near;
     const demi_domain *domain = &w->domains[d];
@@ -300,7 +310,7 @@ static void demi_near_adopt(dem_world *w, int d) {
             list->place[near->k[d*near->stride + p]] = p + 1;
     }
 }
-/* The near list that was being made is the one in use now; memory comes over with its pairs. */
+/* Makes the list that was built the current one. */
 static void demi_domain_adopt(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     domain->near_own = domain->near_next_own;
@@ -312,7 +322,8 @@ static void demi_domain_adopt(dem_world *w, int d) {
     demi_near_adopt(w, d);
 }
 
-/* Near pairs of one domain. */
+/* Builds the pruned list of a work group: first the pairs of spheres, then the others; in both, the
+   pairs inside the group, then those with later groups. Sets `overflow` if there is no room. */
 static void demi_domain_near(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_near *near = &w->near;
@@ -354,27 +365,30 @@ static void demi_domain_near(dem_world *w, int d) {
     }
     domain->near_next_shaped_end = p;
 }
-/* --- quiet bodies: where nothing but near pairs and walls can push (no gravity, no force field,
-       no other slab), bodies in none of those fly straight on until the next near list: only
-       positions change. Told for DEMI_SOME bodies at a time. Skipping writes what was there, so
-       bits are the same. --- */
+/* --- isolated bodies ("quiet"). If only contacts can act (no gravity, no force field, no other
+       slab), a body without pair in the pruned list and without wall candidate moves in a straight
+       line until the next pruned list. Then a step only changes its position. Isolation is stored
+       for blocks of DEMI_SOME bodies. Skipping the rest of the step leaves exactly the values that
+       computing it would write, so the bits are the same. --- */
 typedef struct demi_quiet {
-    int restless;                  /* 2: something may push; 1: not now, but did; 0: quiet */
-    dem_real speed2;               /* the largest |v|^2 when last looked at */
+    int restless;                  /* 2: forces may act; 1: not now, but before; 0: isolated */
+    dem_real speed2;               /* (m/s)^2, largest |v|^2 when it was last computed */
 } demi_quiet;
+/* Returns the block of body i. */
 DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
-    return w->quiet + d + i/DEMI_SOME;     /* no two domains share one */
+    return w->quiet + d + i/DEMI_SOME;     /* work groups never share a block */
 }
 static int demi_quiet_reserve(dem_world *w, int bodies) {
     return DEMI_GROW(w, w->quiet, (size_t)(bodies/DEMI_SOME + w->domain_count + 1));
 }
+/* True if bodies of this scene can be isolated. */
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
            (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count;
 }
-/* Says of every few bodies whether anything is near any of them: where nothing is, and no field
-   acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */
+/* Marks the blocks of a work group whose bodies have pairs in the pruned list or wall candidates.
+   For the other blocks a step neither collects nor clears forces. */
 static void demi_domain_quiet(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const demi_near *near = &w->near;
@@ -396,15 +410,16 @@ static void demi_domain_quiet(dem_world *w, int d) {
         demi_quiet_at(w, d, w->wall_body[d*w->wall_stride + k])->restless = 2;
 }
 
-/* How long the next near list is to last, from counted work, so that it is the same on every run: a
-   force costs 1; making the list, 0.15 for each candidate and 1 for each near pair (bench/ measures
-   both). Pairs that do not touch grow with the span, how often the list is made shrinks with it. */
+/* Chooses span and slack of the next pruned list. The cost is estimated from counts, not from time,
+   so that every run makes the same choice: 1 for a force, and for building the list 0.15 for each
+   candidate and 1 for each of its pairs (bench/ measures both). With a longer span the list
+   contains more pairs that do not touch, and is built less often. */
 static void demi_near_choose(dem_world *w) {
     const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1),
         dt = (double)w->clock.dt;
     double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span;
     int d;
-    if (span < dt) span = dt;                   /* the first of all */
+    if (span < dt) span = dt;                   /* the first list */
     if (w->margin.age > 0) {
         for (d = 0; d < w->domain_count; d++) {
             const demi_domain *domain = &w->domains[d];
@@ -413,7 +428,7 @@ static void demi_near_choose(dem_world *w) {
             touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
             candidates += domain->own + domain->cross;
         }
-        if (w->bodies.shaped) candidates *= 6;   /* supports, and some meetings */
+        if (w->bodies.shaped) candidates *= 6;   /* support points, some gaps */
         longer = sqrt((0.15*candidates + near)*dt/
                       (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
@@ -424,17 +439,19 @@ static void demi_near_choose(dem_world *w) {
     w->margin.slack = DEMI_MIN(DEMI_MAX(w->margin.slack, 1e-5*r), 0.1*r);
     w->margin.span = span;
 }
-/* A step has gone by, in which no velocity changed by more than `change`. */
+/* Records a step in which no velocity changed by more than `change`, m/s. */
 static void demi_near_pass(dem_world *w, double change) {
     w->margin.last_change = change;
     w->margin.change += change;
     w->margin.creep += 2*w->margin.change*(double)w->clock.dt;
     w->margin.age += (double)w->clock.dt;
 }
+/* True if the pruned list must be rebuilt. */
 static int demi_near_due(const dem_world *w) {
     return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
 }
-/* Makes the near list; fresh: after a search. 0 when memory ran out: the list before is in use. */
+/* Builds the pruned list; fresh: 1 after a search. Returns 0 if memory runs out; the previous list
+   then stays in use. */
 static int demi_near_make(dem_world *w, int fresh) {
     const demi_near swap = w->near;
     int d, again, stride;
@@ -448,7 +465,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     }
     stride = DEMI_MAX(w->near_last.stride, DEMI_MAX(64, w->bodies.count/w->domain_count*5/2));
     stride = (stride + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    do {                                        /* until every domain's pairs fit */
+    do {                                        /* until the pairs of every group fit */
         again = 0;
         if (demi_near_reserve(w, &w->near, w->domain_count, stride)) {
             demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_near);
@@ -465,7 +482,7 @@ static int demi_near_make(dem_world *w, int fresh) {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
-    /* speeds now, and those that move, are as much as this apart */
+    /* the velocities used here and those of the next move may differ by this much */
     w->margin.change = w->margin.last_change;
     return 1;
 }
