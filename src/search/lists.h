@@ -2,8 +2,8 @@
    >>lists
    Wall candidates (the wall elements that a body may touch before the next rebuild), allocation of
    all lists, and the transfer of persistent contacts (>>kept) from the old lists, by slot, to the
-   new ones. All memory is allocated before anything moves, so a rebuild that runs out of memory has
-   changed nothing. This part writes the wall_..., cross_..., touching_... and kept_... fields of
+   new ones. All memory is allocated before any contact moves, so a rebuild that runs out of memory
+   loses none. This part writes the wall_..., cross_..., touching_... and kept_... fields of
    dem_world.
    --------------------------------------------------------------------------------------------- */
 

@@ -1,15 +1,16 @@
 /* ---------------------------------------------------------------------------------------------
    >>rebuild
-   Everything that hangs on which bodies are near which, made anew: the effects in force, the
-   skin, the order of bodies, domains, lists. Why so often: a list is right as long as nobody has
-   gone farther than half the skin (margin.gone), since all pairs nearer than the skin are in
-   it; a wide skin makes lists last and each of them long, and the skin is chosen where both
-   together cost least. Refusals come first: a rebuild that fails leaves places, memory and the
-   old list as they were. New bodies may join a list that stands (demi_list_join).
+   Rebuild of the neighbour lists, with everything that depends on them: the laws in force, the
+   skin, the order of bodies, work groups and lists. Also inserts single bodies into an existing
+   list (demi_list_join). A list contains all pairs with gaps below the skin, so it is valid as long
+   as no body has moved farther than half the skin (margin.gone). A wide skin makes lists last
+   longer but contain more pairs; demi_skin_choose minimises the total cost. Checks come first. A
+   rebuild that fails loses nothing: contact histories are saved by slot (demi_filed), bodies keep
+   their state except for their order and periodic image, and the next call tries again.
    --------------------------------------------------------------------------------------------- */
 
-/* What contacts keep: with the user's own law what desc says, with built-in ones what their rows
-   say, one after the other (demi_laws_set); or what the row of the response says. */
+/* Lays out the contact history: as desc says with a user-defined law, the reals of the built-in
+   laws one after the other (demi_laws_set), or as the row of the response says. */
 static void demi_effects_memory(dem_world *w) {
     const demi_response_kind *response = &demi_response_kinds[w->desc.response];
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
@@ -21,8 +22,8 @@ static void demi_effects_memory(dem_world *w) {
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
-/* Does any pair of the scene have friction, rolling friction, or static friction above that of
-   sliding? */
+/* Sets the three to 1 if any pair of materials has friction, rolling friction, or static friction
+   above its sliding friction. */
 static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
     int i, j;
     *friction = *rolling = *sticks = 0;
@@ -34,9 +35,9 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int 
             *sticks |= p->friction_static > p->friction;
         }
 }
-/* m: the farthest that a law is asked about any two, the largest of this radius. Impulses look
-   ahead three steps of the fastest body, at most a radius, and no farther than a short period
-   has room for: there they see a fast partner later. */
+/* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
+   impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
+   and less in a short period, where a fast partner is found later. */
 static double demi_reach_of(const dem_world *w, double radius) {
     if (demi_reach_free(w)) {
         const demi_periods p = demi_periods_of(w);
@@ -51,7 +52,7 @@ static double demi_reach_of(const dem_world *w, double radius) {
     }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
-/* The effects of the live scene: which laws act, whether all bodies are alike. */
+/* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
     demi_pairs_rub(w, &friction, &rolling, &sticks);
@@ -82,14 +83,14 @@ static void demi_effects(dem_world *w) {
     demi_species_count(w);
 }
 
-/* Skin from counted work, so that it is the same on every run: looking at a candidate costs 1, a
-   search 40 per body (bench/ measures both); candidates, looked at whenever the near list is made,
-   grow with the skin, searches shrink with it. */
+/* Chooses the skin. The cost is estimated from counts, not from time, so that every run makes the
+   same choice: 1 for testing a candidate, 40 per body for a search (bench/ measures both). A larger
+   skin makes more candidates, which are tested for every pruned list, and fewer searches. */
 static void demi_skin_choose(dem_world *w) {
     const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1);
     const double steps = (double)(w->clock.steps - w->clock.last_rebuild);
     int k;
-    /* all bodies may be others by now */
+    /* the bodies may have been replaced since */
     w->margin.skin_auto = DEMI_MIN(w->margin.skin_auto, 2*r);
     if (w->desc.skin > 0) { w->margin.skin = (double)w->desc.skin; return; }
     if (w->desc.skin < 0) { w->margin.skin = 0; return; }
@@ -109,7 +110,7 @@ static void demi_skin_choose(dem_world *w) {
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
         w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
     }
-    for (k = 0; k < 3; k++) {  /* a period must hold two grains and the skin, twice */
+    for (k = 0; k < 3; k++) {  /* a period must be at least twice two grains and the skin */
         const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
             2*(double)w->effects.radius_max - w->margin.reach;
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
@@ -118,33 +119,33 @@ static void demi_skin_choose(dem_world *w) {
     w->margin.skin = w->margin.skin_auto;
 }
 
-/* Does a function of the user's answer forces? */
+/* True if user-defined functions act on bodies. */
 static int demi_own(const dem_world *w) {
     return w->desc.law || w->desc.body_reals_fn || w->desc.force || w->desc.body_force;
 }
-/* Do laws ask for spins in this scene? Does any body have one that matters? */
+/* True if forces depend on spins. demi_turns: also if bodies have orientations. */
 static int demi_spins(const dem_world *w) {
     return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
            w->effects.rolling != DEM_ROLLING_NONE;
 }
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
-/* How many domains: of the number of bodies alone, so that bits do not depend on threads; 1, 2, 4,
-   or a multiple of 8, which most numbers of threads share fairly. */
+/* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
+   numbers of threads. It depends only on the number of bodies, so bits do not depend on threads. */
 static int demi_domains_for(int count) {
     int n = 1;
     while (n < 8 && n*DEM_DOMAIN_BODIES < count) n *= 2;
     return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
-/* A domain out of use: what it counted long ago must not steer the next lists. Contacts that last
-   are still to be moved. */
+/* Clears a work group that is out of use, because old counts must not influence later choices. Its
+   number of persistent contacts stays, because these are still to be moved. */
 static void demi_domain_forget(demi_domain *o) {
     const int kept = o->kept;
     memset(o, 0, sizeof *o);
     o->kept = kept;
 }
-/* Says that a body is nowhere: a run that blew up before, and was gone on with. */
+/* Fails because a body has no valid position: the run blew up earlier and was continued. */
 static dem_result demi_lost(dem_world *w, int body) {
     const dem_real *x = w->bodies.pos + 4*body;
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position is "
@@ -155,8 +156,9 @@ static dem_result demi_lost(dem_world *w, int body) {
                      (unsigned)w->bodies.slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
                      DEMI_FARTHEST);
 }
-/* Bodies that lie on each other, or far from all others, share a cell, and a cell's bodies are all
-   compared. 1 with a sentence when that would take minutes. */
+/* Fails and returns 1 if a search would take minutes. All bodies of a cell are tested with each
+   other, and many share a cell if they lie on each other, or if a few bodies far away stretch the
+   grid. */
 static int demi_crowd_refuse(dem_world *w) {
     const int32_t *start = w->cell_start;
     const int n = w->cells[0]*w->cells[1]*w->cells[2];
@@ -175,8 +177,8 @@ static int demi_crowd_refuse(dem_world *w) {
               w->cell_size[1], w->cell_size[2]);
     return 1;
 }
-/* A wall longer than the period does not repeat, and must be there for all that stands in the box;
-   says so when one ends too near. */
+/* A wall longer than the period does not repeat, so it must extend beyond the box far enough for
+   every body in it. Fails and returns 1 if one ends too early. */
 static int demi_walls_end(dem_world *w, const char *call) {
     const demi_periods p = demi_periods_of(w);
     const double reach = demi_reach_free(w) ? 0 : w->margin.reach;
@@ -200,13 +202,14 @@ static int demi_walls_end(dem_world *w, const char *call) {
         }
     return 0;
 }
-/* --- new spheres join the list, so that a steady feed does not have it made anew for every grain:
-       the candidates of a newcomer are written behind those of the others. It belongs to the last
-       domain. Whether there is room hangs on counts alone, not on what was allocated: runs that go
-       on from a checkpoint must do the same. --- */
-enum { DEMI_JOIN_MOST = 8192 };
+/* --- insertion into an existing list, so that a steady feed does not cause a rebuild for every
+       grain. A new sphere belongs to the last work group, and its candidates are appended to the
+       lists. Whether there is room depends only on counts and not on what was allocated, because a
+       run continued from a checkpoint must do the same. --- */
+enum { DEMI_JOIN_MOST = 8192 };                 /* limit of w->join_room */
 
-/* Is there no room behind the candidates? 1: pairs inside, 2: pairs leading out, 4: walls. */
+/* Returns the lists that lack room for join_room more candidates: bits 1 pairs inside, 2 pairs with
+   later groups, 4 walls. */
 static int demi_join_lack(const dem_world *w) {
     const int last = w->domain_count - 1;
     int d, lack = 0;
@@ -216,13 +219,14 @@ static int demi_join_lack(const dem_world *w) {
         if (w->domains[d].cross + w->join_room > w->cross.stride) lack |= 2;
     return lack | (w->domains[last].walls + w->join_room > w->wall_stride ? 4 : 0);
 }
-/* May a sphere join? Not when it would bring an effect in, nor beside bodies of other shapes. */
+/* True if a sphere may be inserted into the list: not if it would bring in a new effect or species,
+   and only if all bodies are spheres. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
     if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
         w->bodies.ghost) return 0;
     return demi_species_known(w, material, radius);
 }
-/* Could the two touch before the near list is made anew? As demi_near_pick asks. */
+/* True if the two belong in the pruned list, by the test of demi_near_pick. */
 static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int b) {
     const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->bodies.pos + 4*b),
                                                 demi_at(w->bodies.pos + 4*a)));
@@ -231,9 +235,10 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
            (dem_real)(w->margin.reach + w->margin.slack) +
                             (dem_real)w->margin.span*demi_length(u);
 }
-/* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
-   skin. 0: there was no room, the list must be made anew. Asks for no memory: what it needs was
-   there before the body came (demi_world_put), or a refusal would look like a lack of room. */
+/* Inserts body i, just appended, into the list. found: all bodies whose gap to it may be below the
+   skin, ascending. Returns 0 if there is no room; then a rebuild is needed. It does not allocate:
+   demi_world_put has reserved what it needs, because here running out of memory would look like a
+   lack of room. */
 static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) {
     const int last = w->domain_count - 1, walls = w->domains[last].walls;
     const demi_periods p = demi_periods_of(w);
@@ -263,8 +268,9 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     return 1;
 }
 
-/* What the laws of before kept, for those in force now: each law's reals go where it has them. own:
-   how many the user's law has, which are the first; -1: the laws are built in. */
+/* Converts a contact history from the previous laws (was, old) to those in force (now, m): the
+   reals of each law that is still in force move to its new position, the others become 0. own:
+   number of reals of a user-defined law, which come first; -1: built-in laws. */
 static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
                             const dem_real *old, dem_real *m) {
     int k;
@@ -277,14 +283,14 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
         m[now->at_rolling + k] = old[was->at_rolling + k];
     for (k = 0; k < now->normal->memory; k++) m[now->at_normal + k] = old[was->at_normal + k];
 }
-/* All memory on its way to the next list (there is none now). 0 when memory ran out; nothing
-   changed then. */
+/* Converts all contact histories, saved ones and those of persistent contacts, while there is no
+   list. Returns 0 if memory runs out; then it has changed nothing. */
 static int demi_memory_move(dem_world *w, const demi_laws *was) {
     const size_t from = (size_t)w->filed.stride, to = (size_t)w->laws.memory;
     const int own = w->desc.law ? w->desc.law_memory : -1;
     dem_real old[DEMI_MEMORY], *fresh = 0;
     int d, k;
-    if (w->filed.stride != was->memory) w->filed.count = 0;    /* of no use: not these laws' */
+    if (w->filed.stride != was->memory) w->filed.count = 0;    /* invalid: of other laws */
     if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
     for (k = 0; k < w->filed.count; k++)
         demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from,
@@ -302,8 +308,9 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     }
     return 1;
 }
-/* The effects of the scene as it is now; when friction has come into it, or has gone, memory moves
-   with the laws. 0 when memory ran out: the laws of before stay in force. */
+/* Determines the effects of the present scene. If this changes the laws in force, for example
+   because friction was added, it converts the contact histories. Returns 0 if memory runs out; then
+   the previous laws stay in force. */
 static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws, *now = &w->laws;
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
@@ -323,7 +330,7 @@ static int demi_effects_take(dem_world *w) {
     demi_effects_memory(w);
     return 0;
 }
-/* Answers 1 with a sentence when a period is too short for one image of each partner. */
+/* Fails and returns 1 if a period is so short that a pair could touch through two images. */
 static int demi_periods_refuse(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     const double need = 2*(2*(double)w->effects.radius_max + (double)demi_cover(w));
@@ -338,7 +345,7 @@ static int demi_periods_refuse(dem_world *w) {
         }
     return 0;
 }
-/* Deals the bodies, in the order of the sort, to domains. */
+/* Divides the sorted bodies among the work groups. */
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
@@ -349,13 +356,15 @@ static void demi_domains_deal(dem_world *w) {
         w->domains[d].overflow = 0;
     }
 }
-/* Which of the lists in `lists` (1: own, 2: cross, 4: walls) some domain had too little room in. */
+/* Returns which of the lists in `lists` (bits 1 own, 2 cross, 4 walls) were too short in some work
+   group. */
 static int demi_lists_overflow(const dem_world *w, int lists) {
     int d, over = demi_join_lack(w);
     for (d = 0; d < w->domain_count; d++) over |= w->domains[d].overflow;
     return over & lists;
 }
-/* Neighbour lists of bodies: searched anew until every domain's pairs fit. 0: no memory. */
+/* Finds the candidate pairs and repeats the search with more room until those of every work group
+   fit. Returns 0 if memory runs out. */
 static int demi_pairs_find(dem_world *w) {
     const int n = w->domain_count, stride = DEMI_MAX(64, w->bodies.count/n*3);
     int over;
@@ -374,7 +383,7 @@ static int demi_pairs_find(dem_world *w) {
     demi_cross_index(w);
     return 1;
 }
-/* Candidates on walls, likewise. */
+/* The same for wall candidates. */
 static int demi_walls_find(dem_world *w) {
     int room = DEMI_MAX(w->wall_stride, 64);
     do {
@@ -384,15 +393,15 @@ static int demi_walls_find(dem_world *w) {
     } while (demi_lists_overflow(w, 4));
     return 1;
 }
-/* Contacts that are kept move to the new lists: all room first, for what has moved cannot go
-   back. */
+/* Moves the persistent contacts to the new lists. Allocates everything first, because the move
+   cannot be undone. Returns 0 if memory runs out. */
 static int demi_contacts_move(dem_world *w) {
     int first[DEMI_DOMAINS + 1];
     if (!demi_kept_room(w, first) || !demi_touching_reserve(w)) return 0;
     demi_kept_move(w, first);
     return 1;
 }
-/* Slots freed since the last list may be used again. */
+/* Makes the slots freed since the last list available again. */
 static void demi_slots_release(dem_world *w) {
     while (w->bodies.slot_pending >= 0) {
         const int slot = w->bodies.slot_pending;
@@ -401,9 +410,9 @@ static void demi_slots_release(dem_world *w) {
         w->bodies.slot_free = slot;
     }
 }
-/* Rebuilds everything the step needs to find contacts: first what may be refused, then bodies are
-   put in order, then lists are made and memory moves to them. DEM_ERROR_MEMORY leaves bodies and
-   memory as they were (the next call tries again). */
+/* Rebuilds everything that a step needs to find contacts: makes all checks, sorts the bodies,
+   builds the lists and moves the contact histories to them. After DEM_ERROR_MEMORY no body and no
+   history is lost, and the next call tries again. */
 static dem_result demi_lists_make(dem_world *w, const char *call) {
     double least;
     int k;
@@ -415,7 +424,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
-    demi_wrap(w);                               /* after what may be refused: places stay then */
+    demi_wrap(w);                               /* after all checks, which leave positions alone */
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
@@ -443,15 +452,15 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     w->stage.list_valid = 1;
     return DEM_OK;
 }
-/* A rebuild that is refused leaves the domains of before: contacts still stand in those. */
+/* Rebuilds the lists. A rebuild that fails restores the number of work groups. */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
     const int domains = w->domain_count;
     const dem_result result = demi_lists_make(w, call);
-    if (result != DEM_OK) w->domain_count = domains;    /* contacts still stand in those */
+    if (result != DEM_OK) w->domain_count = domains;    /* contacts are still in those */
     return result;
 }
 
-/* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
+/* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
     demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls were added or changed "
               "after the last step, so there is no list of contacts; call dem_candidates_rebuild "
