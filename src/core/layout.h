@@ -57,7 +57,7 @@ typedef struct demi_near_balls {
 } demi_near_balls;
 /* The pruned neighbour list of all work groups: candidates that touch or may touch soon. Group d
    owns the entries d*stride .. as above: first the pairs inside the group, then, from a multiple of
-   DEMI_LANES on, the pairs with a body of another group. The reals of a pair are stored in columns:
+   DEMI_LANES on, the pairs with a body of a later group. The reals of a pair are stored in columns:
    value e of entry p of the group is memory[(d*columns + e)*stride + p]. */
 typedef struct demi_near {
     int stride;                    /* capacity per work group, a multiple of DEMI_LANES */
@@ -98,7 +98,7 @@ typedef struct demi_touching {
     int32_t corner, corners;
 } demi_touching;
 /* A side or corner of a facet within reach of a body. >>touch uses these links to find which facets
-   are connected and whether they form a closed ring around the body. */
+   are connected and whether they form a ring around the body. */
 typedef struct demi_link {
     dem_real distance;             /* to the body's centre, in the metric of the body's part */
     int32_t number, corner;        /* number of the side (corner 0) or of the corner (corner 1) */
@@ -136,12 +136,13 @@ typedef struct demi_shape {
     dem_vec3 centre;               /* m, centre of mass in that frame */
 } demi_shape;
 
-/* A persistent contact: any contact except sphere on sphere, whose history is stored in the pruned
-   neighbour list. It exists as long as the two touch. The contacts of a work group are in the order
-   of body a, pairs before walls; forces are added in this order. In each step, touch builds the
-   list kept_next from scratch and finds for each contact the one of the previous step (kept_now)
-   that it continues. respond copies the history from that contact and computes the forces. Then the
-   two lists are swapped. So touch can start again with more room if the list was too short. */
+/* A persistent contact: any contact except sphere on sphere. (The history of two spheres is in the
+   pruned neighbour list.) It exists as long as the two touch. The contacts of a work group are in
+   the order of body a, pairs before walls; forces are added in this order. In each step, touch
+   builds the list kept_next from scratch and finds for each contact the one of the previous step
+   (kept_now) that it continues. respond copies the history from that contact and computes the
+   forces. Then the two lists are swapped. So touch can start again with more room if the list was
+   too short. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
@@ -153,9 +154,9 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
-    dem_real overlap, deep;        /* m; 0: passing through a reduced hole, < 0: a gap, see
-                                      demi_kept_asked. deep: overlap over the smaller half width
-                                      along the normal (of a sphere: its radius) */
+    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force, as on the way through a reduced
+                                      hole (demi_kept_asked). deep: overlap over the smaller half
+                                      width along the normal (of a sphere: its radius) */
     dem_real share, lift, grip;    /* weights of damping, elastic force, friction */
     dem_real weight;               /* its weight before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
@@ -194,9 +195,8 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
    the lower index. A force on a body of a later group is stored in cross_force, and that group adds
    it in the order of the list. So the number of threads changes who computes, but never the order
    of a sum, and results have the same bits for any number of threads. Each list is one array in
-   which every group has a segment of equal length, so threads never wait for each other to
-   allocate. A group whose segment is too short sets `overflow`, and the list is built again with
-   more room. */
+   which every group has its own segment, so threads never wait for each other to allocate. A group
+   whose segment is too short sets `overflow`, and the list is built again with more room. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside the group, pairs with a body of a
@@ -664,10 +664,11 @@ typedef struct demi_lookers {
     void (*outputs_again)(dem_world *w);        /* called after reading a checkpoint */
 } demi_lookers;
 
-/* Data of the solvers for impulses, set up again in every step (>>impulses). meeting: constraint of
-   a contact; impulse: a contact as solvers iterate over it; beside: its data that sweeps do not
-   need; twist: rolling and spinning friction; mover: velocities of a body or wall point as solvers
-   see them; rod: a joint; knot: a body or joint in the linear system of all joints. */
+/* Data of the solvers for impulses, set up again in every step (>>impulses). demi_meeting: the
+   constraint of a contact. demi_impulse: the same contact as solvers iterate over it. demi_beside:
+   its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
+   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
+   joint in the linear system of all joints. */
 struct demi_meeting;
 struct demi_impulse;
 struct demi_beside;

@@ -1,7 +1,8 @@
 /* ---------------------------------------------------------------------------------------------
    >>platform
-   Portability layer: compiler attributes, floating-point rules, OpenMP and the clock. No other part
-   tests for a compiler. The only parallel loop is demi_parallel. It hands whole work groups
+   Portability layer: compiler attributes, floating-point rules, OpenMP and the clock. Apart from a
+   few pragmas around single kernels and the calls of operating systems, differences between
+   compilers are handled here. The only parallel loop is demi_parallel. It hands whole work groups
    ("domains" in the code) to threads, and the functions that it calls do not depend on the number
    of threads. DEM_INLINE forces inlining, because a kernel is specialised only where it is inlined
    into its variants.

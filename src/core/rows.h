@@ -27,7 +27,7 @@ enum { DEMI_0_NOT, DEMI_0_TOO, DEMI_0_ALONE };
 typedef struct demi_field_row {
     const char *name, *words;       /* words: names of an enum's values, from 0; of a number: a
                                        further limit, for the error message */
-    size_t offset, size;            /* offset in its struct; size of the whole field, bytes */
+    size_t offset, size;            /* offset in its struct; size in a checkpoint, bytes */
     char type;
     uint64_t (*digest)(const void *item);
     int how;
@@ -60,7 +60,7 @@ typedef struct demi_field_row {
 #define DEMI_LIMITED_IF(of, field, type, how, most, unit, words, other, kinds, zero) \
     {#field, words, DEMI_WHERE(of, field), type, 0, how, most, unit, other, kinds, zero, 0}
 
-/* Size of one element of a field, bytes. A vector has several elements. */
+/* Size of one element of a field in a checkpoint, bytes. A vector has several elements. */
 static size_t demi_row_item(const demi_field_row *r) {
     switch (r->type) {
     case 't': return r->size;

@@ -80,6 +80,7 @@ static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
       DEMI_SPRUNG | DEMI_SIZED | DEMI_MIDDLE, "EPSD") \
     /* the last */
 
+/* A row of the tables. */
 typedef struct demi_law_row {
     int kind;                      /* the enum constant; -1 ends a table */
     dem_law_fn law;                /* null for "none" and "auto" */
@@ -116,7 +117,7 @@ DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
 static int demi_laws_keep(const dem_world *w) {
     return !w->desc.law && demi_response_is(w, DEMI_LAWS);
 }
-/* True if a law in force reads r_eff or m_eff. */
+/* True if a law in force reads r_eff or m_eff; a user-defined law may. */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
                             w->laws.rolling->traits) & DEMI_SIZED);

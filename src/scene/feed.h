@@ -2,10 +2,10 @@
    >>feed
    Feeds insert grains during a run, and outlets remove or count them. A feed inserts between two
    steps and appends the new grains to the candidate list (demi_list_join). An outlet acts within a
-   step, after bodies have moved and when a list is rebuilt. A feed draws from its own random state
-   in a fixed order: first the class, then positions and velocities until a position is free. The
-   number of grains that are due depends only on the time. A demi_feeder finds room and inserts the
-   grains: here a world, in >>slabs-run all slabs.
+   step, after bodies have moved, when lists are rebuilt and every DEMI_OUTLET_REST steps. A feed
+   draws from its own random state in a fixed order: first the class, then positions and velocities
+   until a position is free. The number of grains that are due depends only on the time. A
+   demi_feeder finds room and inserts the grains: here a world, in >>slabs-run all slabs.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* positions tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* neighbours that a new grain may have */
@@ -109,7 +109,8 @@ static uint64_t demi_digest_sizes(const void *item) {
     const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
     return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
 }
-/* Rows of the desc, which is the first member of a demi_feed. */
+/* Rows of the desc, which is the first member of a demi_feed. The name of each row is
+   part of a checkpoint's digest, so `desc.inside` keeps it. */
 #define DEMI_FED(field, type) DEMI_ROW(dem_feed_desc, field, type)
 static const demi_field_row demi_feed_rows[] = {DEMI_FED(material, 'i'),
     {"class_count", 0, DEMI_WHERE(dem_feed_desc, class_count), 'i', 0, DEMI_OVER, DEM_CLASSES, "",

@@ -7,6 +7,7 @@
    Tests: tests/scene/test_sizes.c.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_SIZE_STEPS = 2048 };
+/* Cumulative number distribution at radii of equal ratio. */
 typedef struct demi_size_table {
     double at[DEMI_SIZE_STEPS + 1];      /* radii, m, from the smallest to the largest */
     double number[DEMI_SIZE_STEPS + 1];  /* fraction of the number up to there; the last is 1 */
@@ -130,7 +131,7 @@ static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, do
 }
 /* Fraction finer than r of the distribution truncated to lo .. hi. */
 static double demi_size_finer(const dem_sizes *d, double lo, double hi, double r) {
-    /* grains that pass the first sieve count as of its size: a step there */
+    /* grains that pass the first sieve count as of its size: a step of the distribution */
     const int step = d->kind == DEM_SIZES_SIEVE_CURVE && lo <= (double)d->radius[0];
     const double below = step ? 0 : demi_size_share(d, lo);
     if (r < lo) return 0;

@@ -366,10 +366,10 @@ static void demi_domain_near(dem_world *w, int d) {
     domain->near_next_shaped_end = p;
 }
 /* --- isolated bodies ("quiet"). If only contacts can act (no gravity, no force field, no other
-       slab), a body without pair in the pruned list and without wall candidate moves in a straight
-       line until the next pruned list. Then a step only changes its position. Isolation is stored
-       for blocks of DEMI_SOME bodies. Skipping the rest of the step leaves exactly the values that
-       computing it would write, so the bits are the same. --- */
+       slab), a body without a pair in the pruned list and without a wall candidate moves in a
+       straight line until the next pruned list. Then a step only changes its position. Isolation is
+       stored for blocks of DEMI_SOME bodies. Skipping the rest of the step leaves exactly the
+       values that computing it would write, so the bits are the same. --- */
 typedef struct demi_quiet {
     int restless;                  /* 2: forces may act; 1: not now, but before; 0: isolated */
     dem_real speed2;               /* (m/s)^2, largest |v|^2 when it was last computed */

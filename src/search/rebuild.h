@@ -4,9 +4,9 @@
    skin, the order of bodies, work groups and lists. Also inserts single bodies into an existing
    list (demi_list_join). A list contains all pairs with gaps below the skin, so it is valid as long
    as no body has moved farther than half the skin (margin.gone). A wide skin makes lists last
-   longer but contain more pairs; demi_skin_choose minimises the total cost. Checks come first. A
-   rebuild that fails loses nothing: contact histories are saved by slot (demi_filed), bodies keep
-   their state except for their order and periodic image, and the next call tries again.
+   longer but contain more pairs; demi_skin_choose minimises the total cost. A rebuild that
+   fails loses nothing: contact histories are saved by slot (demi_filed), bodies keep their state
+   except for their order and periodic image, and the next call tries again.
    --------------------------------------------------------------------------------------------- */
 
 /* Lays out the contact history: as desc says with a user-defined law, the reals of the built-in
@@ -110,7 +110,7 @@ static void demi_skin_choose(dem_world *w) {
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
         w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
     }
-    for (k = 0; k < 3; k++) {  /* a period must be at least twice two grains and the skin */
+    for (k = 0; k < 3; k++) {  /* a period: at least twice two grains and the skin */
         const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
             2*(double)w->effects.radius_max - w->margin.reach;
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
@@ -410,7 +410,7 @@ static void demi_slots_release(dem_world *w) {
         w->bodies.slot_free = slot;
     }
 }
-/* Rebuilds everything that a step needs to find contacts: makes all checks, sorts the bodies,
+/* Rebuilds everything that a step needs to find contacts: makes the checks, sorts the bodies,
    builds the lists and moves the contact histories to them. After DEM_ERROR_MEMORY no body and no
    history is lost, and the next call tries again. */
 static dem_result demi_lists_make(dem_world *w, const char *call) {
@@ -424,7 +424,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
-    demi_wrap(w);                               /* after all checks, which leave positions alone */
+    demi_wrap(w);                               /* after these checks, so that they leave positions alone */
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
