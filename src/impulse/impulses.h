@@ -1,61 +1,72 @@
 /* ---------------------------------------------------------------------------------------------
    >>impulses
-   In place of contact laws: rigid grains, and impulses that keep them out of each other ([TAS10],
-   [STE96]). At the end of a step positions and velocities belong to one time. The next step's
-   contacts are found half a step ahead (demi_ahead), at x + v dt/2: from there bodies go on by
-   whole steps, so that the next places where contacts are found, a dt later, are those at which
-   nothing may overlap. Every contact and gap nearer than the law's range is laid down here, and
-   >>solvers looks for impulses so that after the next kick
+   Contact constraints of rigid grains (non-smooth dynamics [TAS10], [STE96]): impulses, instead of
+   contact laws, prevent overlap. This part sets up the constraints of a step and owns w->solver;
+   >>solvers finds the impulses, >>impulses-told applies them.
+   At the end of a step positions and velocities belong to the same time. Contacts of the next step
+   are detected half a step ahead (demi_ahead), at x + v dt/2. From there bodies move by whole
+   steps, so nothing may overlap at the next detection, dt later. Every pair with a gap below the
+   range of the law becomes a constraint. The solver finds impulses such that after the next kick
        un + bias >= 0, push >= 0, one of the two 0;   bias = gap/dt, or e un before an impact;
-       friction |T| <= mu push against the slip (DEM_CONE_COULOMB), or both together in the cone's
-       own convex sense (DEM_CONE_CONVEX); rolling |R| <= mu_r R* push and twist |S| <= mu_s R* push
-       against the relative spin, across the normal and about it.
-   Cohesion pulls with its force from outside, so that push may be less than it; compliance C adds
-   push C/dt^2 to bias: a spring 1/C, taken at the end of the step. Restitution is Newton's for
-   every contact by itself (Moreau's convention for simultaneous ones): un after = -e un before, on
-   closing contacts that would touch in the step, faster than what gravity brings in one.
-   A meeting is laid down in two halves: who and where it is remembered, in the order of the lists;
-   and what sweeps go over, by colours. Contacts of one colour share no body that moves, so threads
-   take them in runs, and bits do not depend on how many threads there are.
+       friction |T| <= mu push opposes the slip (DEM_CONE_COULOMB), or friction and normal impulse
+       together obey the convex relaxation of the cone (DEM_CONE_CONVEX);
+       rolling friction |R| <= mu_r R* push opposes the relative spin across the normal, and
+       spinning friction |S| <= mu_s R* push that about the normal.
+   Cohesion acts as an external attractive force, so the net normal impulse, push - pull, may be
+   negative. Compliance C adds push C/dt^2 to bias: a spring of stiffness 1/C, evaluated at the end
+   of the step. Restitution is Newton's, for each contact individually (Moreau's convention for
+   simultaneous impacts): un after = -e un before, for contacts that would touch in the step and
+   close faster than the speed that gravity adds in a step.
+   A constraint is set up in two passes. The first lists its bodies and the location of its contact
+   history, in the order of the neighbour lists. The second computes the data that sweeps read and
+   write, ordered by colour (graph colouring). Contacts of one colour share no moving body, so
+   threads sweep them in parallel, and results are bit-identical for any number of threads.
    --------------------------------------------------------------------------------------------- */
 
-/* A body: velocity and spin as the impulses found so far make them. inv 0: it goes as it is told.
-   Behind the bodies each contact with a wall has one: the wall's surface there. */
+/* Solver body: velocity v, m/s, and spin w, rad/s, with the impulses found so far. inv: 1/kg; 0:
+   its motion is prescribed. inv_inertia: 1/(kg m2), of spheres; other shapes use
+   demi_solver.tensors. After the bodies the array has one entry per persistent contact (at a wall:
+   the wall's surface at that contact), then one per joint (for an end at a wall or in space). */
 typedef struct demi_mover { dem_real v[3], inv, w[3], inv_inertia; } demi_mover;
-/* Two movers that meet; where it is remembered; its place among the contacts. */
+/* A contact constraint, first pass: two solver bodies and the location of the contact history. */
 typedef struct demi_meeting {
     int32_t a, b;
-    int32_t home;                  /* entry of the near list; ~ that of its domain's kept */
-    int32_t at;                    /* until it has a place: its colour */
+    int32_t home;                  /* entry of the pruned neighbour list, or ~entry of the domain's
+                                      persistent contacts */
+    int32_t at;                    /* index in demi_solver.contacts; before that is known: colour */
 } demi_meeting;
-/* What sweeps go over. Impulses act on b; on a the opposite. Two cache lines. */
+/* A contact constraint, second pass: what sweeps read and write, in two cache lines. Impulses are
+   those on b; a gets the opposite. */
 typedef struct demi_impulse {
-    int32_t a, b;                  /* movers */
+    int32_t a, b;                  /* solver bodies */
     dem_vec3 normal;               /* unit, a -> b */
-    dem_real reach_a, reach_b;     /* m, of spheres: arms are reach_a n and -reach_b n */
-    dem_vec3 slip;                 /* N s: friction */
-    dem_real push, bias, mu;       /* N s; m/s */
-    dem_real gn, gt;               /* 1/kg, what an impulse brings along the normal, and across */
-    dem_real per_n, per_t;         /* kg: 1/(gn + compliance), 1/gt */
+    dem_real reach_a, reach_b;     /* m, spheres only: lever arms are reach_a n and -reach_b n */
+    dem_vec3 slip;                 /* N s, friction impulse */
+    dem_real push, bias, mu;       /* N s, normal impulse; m/s, see above; friction coefficient */
+    dem_real gn, gt;               /* 1/kg, inverse effective masses along and across the normal */
+    dem_real per_n, per_t;         /* kg: 1/(gn + compliance/dt^2), 1/gt */
 } demi_impulse;
-/* Beside it. */
+/* Data of a contact constraint that sweeps do not read. */
 typedef struct demi_beside {
-    dem_real gap, lift, pull, mass; /* m; kg m/s; N s; kg */
+    /* m, gap or overlap to correct (< 0); kg m/s, see demi_impulses_lift; N s, impulse of cohesion;
+       kg, effective mass without rotation */
+    dem_real gap, lift, pull, mass;
     dem_real turns;                /* m/s, <= 0: part of bias, see demi_impulse_turns */
-    int bounces;                   /* bias is that of restitution */
+    int bounces;                   /* 1: bias is that of restitution */
 } demi_beside;
-/* Where there is rolling or spinning friction. */
+/* Rolling and spinning friction of a contact, if any material has them. */
 typedef struct demi_twist {
-    dem_vec3 moment;               /* N m s */
-    dem_real per_roll, per_spin;   /* kg m2: 1/what a moment brings across the normal, about it */
-    dem_real roll, spin;           /* m: limits of the moment over push */
+    dem_vec3 moment;               /* N m s, angular impulse on b */
+    dem_real per_roll, per_spin;   /* kg m2, effective inertia across and about the normal */
+    dem_real roll, spin;           /* m, limits of the moment divided by push */
 } demi_twist;
+/* Colours of contacts; contacts that a thread takes at a time. */
 enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
-/* Overlap, of the radius, that is left as it is: what lies at rest is not stirred by undoing what
-   the last digit of a solve has left. */
+/* Overlap, in radii, that is not corrected. It is larger than the error of a solve, so corrections
+   do not disturb bodies at rest. */
 #define DEMI_LEFT DEM_R(5e-4)
 
-/* Do impulses have a moment beside their force? */
+/* True if some pair of materials has rolling or spinning friction. */
 static int demi_impulses_twist(const dem_world *w) {
     int i, j, twist = 0;
     for (i = 0; i < w->material_count; i++)
@@ -65,16 +76,18 @@ static int demi_impulses_twist(const dem_world *w) {
         }
     return twist;
 }
-/* I^-1 x in the world's frame. */
+/* Returns I^-1 x in the world frame; t: xx yy zz xy xz yz of I^-1. */
 DEM_INLINE dem_vec3 demi_tensor_times(const dem_real *t, dem_vec3 x) {
     return demi_v(t[0]*x.x + t[3]*x.y + t[4]*x.z, t[3]*x.x + t[1]*x.y + t[5]*x.z,
                   t[4]*x.x + t[5]*x.y + t[2]*x.z);
 }
+/* Returns the change of spin, rad/s, that an angular impulse x (N m s) causes. */
 DEM_INLINE dem_vec3 demi_mover_turn(const demi_solver *s, int mover, dem_vec3 x, int shaped) {
     return shaped ? demi_tensor_times(s->tensors + 6*mover, x)
         : demi_scale(x, s->movers[mover].inv_inertia);
 }
-/* A mover gets a change of momentum, and of angular momentum. */
+/* Adds an impulse p (N s) and an angular impulse l (N m s) to a solver body, unless its motion is
+   prescribed. */
 DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem_vec3 l,
                                 int shaped) {
     demi_mover *m = s->movers + mover;
@@ -84,8 +97,9 @@ DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem
     m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
     m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
 }
-/* A domain's bodies as they would go on without contacts; spins of bodies that are not spheres are
-   those of their angular momentum. */
+/* Sets the solver bodies of a domain to the velocities that they would have after the step without
+   contacts, and their inverse inertia tensors. Spins of bodies other than spheres follow from their
+   angular momentum. */
 static void demi_movers_lay(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     int i, k;
@@ -126,42 +140,51 @@ static void demi_movers_lay(dem_world *w, int d) {
             m->v[k] = b.inv > 0 ? b.v[k] + (b.f[k]*b.inv + b.g[k])*s->dt : b.v[k];
     }
 }
-/* A joint as it acts in one step. */
+/* The rows of one joint in one step (>>joints). */
 typedef struct demi_rod {
-    int32_t a, b, rows;            /* movers; rows 0: not in force */
-    int32_t next[2];               /* joint of a, and of b, after this one; -1: none */
-    int32_t knot, ends[2];         /* of the joint; of a and b, -1: it goes as it is told */
-    int32_t stuck;                 /* of a motor that is at its limit: its sign; 0: none is */
-    dem_vec3 arm[2];               /* m */
-    dem_vec3 along[3];             /* unit: about which a may not turn against b; axis of a motor */
-    dem_real before[6], given[6];  /* m/s, rad/s: of a against b; N s, N m s */
+    int32_t a, b, rows;            /* solver bodies; number of rows, 0: not in force */
+    int32_t next[2];               /* next joint of a, and of b, see demi_solver.joined; -1: none */
+    int32_t knot, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
+    int32_t stuck;                 /* sign of the torque of a motor at its limit; 0: below it */
+    dem_vec3 arm[2];               /* m, lever arms from the centres of a and b */
+    dem_vec3 along[3];             /* unit axes of the spin rows: two across the hinge, its own */
+    dem_real before[6], given[6];  /* m/s, rad/s, of a relative to b, before the step; N s, N m s,
+                                      impulses on a */
     dem_real give[6];              /* 1/kg, 1/(kg m2): softness, see DEMI_GIVE */
-    dem_real most, torque;         /* N m s: of a motor; by one of torque */
+    dem_real most, torque;         /* N m s: limit of a motor of speed; impulse of one of torque */
 } demi_rod;
-/* A body that is held, or a joint in force, in the system that is solved for all of them. */
+/* Node of the linear system of all joints: a movable body with joints, or a joint in force. */
 typedef struct demi_knot {
-    int32_t mover, rod;            /* one of the two; the other is -1 */
-    int32_t rank, order;           /* when it is eliminated; which is as the so-manieth */
-    int32_t first, count;          /* its column: rows below the pivot */
-    int32_t group;                 /* one of those that hang together; of that: */
-    int32_t guarded, open;         /* may the joints give no energy? are some apart? 2: by
-                                      somebody */
-    int32_t excess, grounded;      /* joints less bodies; does one go to what is not solved for? */
-    double work, bank, kinetic;    /* J */
-    double x[6];                   /* right-hand side, and solution */
-    dem_quat turned;               /* of a body: at the end of the step */
-    int32_t links, waiting, degree, mark, paid;     /* while the order is sought */
+    int32_t mover, rod;            /* solver body or joint; the other is -1 */
+    int32_t rank, order;           /* its place in the order of elimination; of the node with the
+                                      index `rank`: the node that is eliminated at that place */
+    int32_t first, count;          /* its column of the factor: entries of demi_solver.rows */
+    int32_t group;                 /* a node of its group of connected nodes, at the end the root;
+                                      the root has the values of the group: */
+    int32_t guarded, open;         /* level of the energy guard, 0 to 2, see demi_joints_guard; bit
+                                      0: some joint has a gap, bit 1: because a body was moved */
+    int32_t excess, grounded;      /* joints minus bodies; 1: a joint to a wall, space or a fixed
+                                      body */
+    double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic
+                                      energy of its bodies */
+    double x[6];                   /* right-hand side, then solution */
+    dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
+    /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
+       neighbours left; last node that marked it; see demi_knot_ready */
+    int32_t links, waiting, degree, mark, paid;
 } demi_knot;
+/* Entry of a linked list of nodes; next -1: the last. */
 typedef struct demi_link_of { int32_t to, next; } demi_link_of;
-/* Softness of joints, of what an impulse brings; of those in loops, which may hold more than is
-   needed: its square is above the last digit, so that pivots as small do no harm. How near the
-   points shall come to each other, of the smallest radius. Of the kinetic energy, what joints may
-   give back of what they have taken. */
+/* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in
+   loops, whose rows may be redundant; its square is above round-off, so pivots that small do no
+   harm. DEMI_JOINED: tolerance for the gap of a joint, in smallest radii. DEMI_BANKED: part of the
+   kinetic energy that joints may return after they have absorbed it. */
 #define DEMI_GIVE (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-9))
 #define DEMI_GIVE_LOOPS DEM_R(1e-6)
 #define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))
 #define DEMI_BANKED 1e-3
-/* Are these two joined, so that they do not touch? b < 0: wall. */
+/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
+   they do not touch each other. */
 static int demi_joined(const dem_world *w, int a, int b, int wall) {
     int j, next;
     if (!w->joint_count) return 0;
@@ -175,8 +198,9 @@ static int demi_joined(const dem_world *w, int a, int b, int wall) {
     }
     return 0;
 }
-/* Whom a domain's bodies meet: spheres of the near list within the range, then contacts that are
-   kept: of bodies that are no spheres, and with walls. */
+/* First pass over a domain: lists its contact constraints. These are pairs of spheres from the
+   pruned neighbour list within the range, then persistent contacts: of other shapes, and with
+   walls. Clears the contact history of pairs that are none. */
 static void demi_impulses_meet(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const demi_kept *now = demi_kept_of(w, d);
@@ -211,8 +235,8 @@ static void demi_impulses_meet(dem_world *w, int d) {
     }
     s->meeting_count[d] = (int)(m - (s->meetings + s->meeting_first[d]));
 }
-/* Gives each meeting the first colour that neither of its bodies has, and its place in the order of
-   colours. The last colour takes what finds none: it is swept by one thread. */
+/* Gives each constraint the first colour that neither of its bodies has, and its index in the order
+   of colours. The last colour takes those that find none; one thread sweeps it. */
 static void demi_impulses_colour(dem_world *w) {
     demi_solver *s = &w->solver;
     const int bodies = w->bodies.count;
@@ -240,14 +264,18 @@ static void demi_impulses_colour(dem_world *w) {
             m->at = at[m->at]++;
         }
 }
-/* A unit vector across n (unit): [DUF17]. */
+/* Returns a unit vector perpendicular to n (unit) [DUF17]. */
 DEM_INLINE dem_vec3 demi_across(dem_vec3 n) {
     const dem_real s = n.z < 0 ? DEM_R(-1) : DEM_R(1), a = -1/(s + n.z);
     return demi_v(1 + s*n.x*n.x*a, s*n.x*n.y*a, -s*n.x);
 }
-/* What impulses bring at a contact: along the normal, across it, and by one along the other. */
+/* Inverse effective masses of a contact: the change of relative velocity per unit impulse, 1/kg,
+   along the normal (n) and across it (t), and in two directions across it by an impulse along the
+   normal (across, aside); the change of relative spin, 1/(kg m2), across the normal (roll) and
+   about it (spin). */
 typedef struct demi_brings { dem_real n, t, across, aside, roll, spin; } demi_brings;
-/* Adds what they do to one body of any shape. Sizes across the normal: the largest there is. */
+/* Adds those of one body of any shape. t takes the largest value of all directions across the
+   normal, roll the larger one of two directions. */
 static void demi_brings_add(const demi_solver *s, demi_brings *g, int body, dem_vec3 n,
                             dem_vec3 arm) {
     const dem_vec3 t = demi_across(n), u = demi_cross(n, t);
@@ -264,15 +292,16 @@ static void demi_brings_add(const demi_solver *s, demi_brings *g, int body, dem_
     g->roll += DEMI_MAX(demi_dot(t, rt), demi_dot(u, ru));
     g->spin += demi_dot(n, demi_mover_turn(s, body, n, 1));
 }
-/* Friction that presses, or lifts: steps of push and slip are so short that they do not overshoot
-   by what the other one brings (a rod that is pushed along, [PAI95]). */
+/* Increases n and t by the coupling of normal impulse and friction. Friction can press a contact or
+   lift it (a rod that is pushed along, [PAI95]); with this, the steps of push and slip are so short
+   that neither overshoots because of the other. */
 static void demi_brings_bound(const dem_world *w, demi_brings *g, dem_real friction) {
     const dem_real mixed = DEMI_SQRT(g->across*g->across + g->aside*g->aside);
     const int convex = w->desc.cone == DEM_CONE_CONVEX;
     g->n += convex ? mixed : friction*mixed;
     g->t += convex ? mixed : 0;
 }
-/* Velocity of b relative to a where they meet, as bodies have it before the step. */
+/* Returns the velocity of b relative to a at the contact before the step, m/s. */
 static dem_vec3 demi_impulse_before(const dem_world *w, const demi_impulse *c) {
     const demi_solver *s = &w->solver;
     const dem_vec3 *arms = w->bodies.shaped ? s->arms + 2*(c - s->contacts) : 0;
@@ -283,14 +312,15 @@ static dem_vec3 demi_impulse_before(const dem_world *w, const demi_impulse *c) {
                     ? demi_velocity_at(w->bodies.vel, w->bodies.spin, c->b, arm_b)
                     : demi_at(s->movers[c->b].v), a);
 }
-/* Geometry of a meeting, from either list. */
+/* Geometry and contact history of a constraint, from either list. */
 typedef struct demi_spot {
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m */
-    dem_real gap, r_eff, size;     /* m; size: what gaps are compared with */
+    dem_real gap, r_eff, size;     /* m; size: length that gaps are compared with */
     int material;                  /* index, of b or the wall */
-    const dem_real *memory;
+    const dem_real *memory;        /* real e is memory[e*stride] */
     size_t stride;
 } demi_spot;
+/* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
     demi_spot o;
     if (m->home >= 0) {
@@ -321,7 +351,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     }
     return o;
 }
-/* The surface of a wall, as a mover. */
+/* Sets the solver body of a wall contact to the velocity of the wall's surface there. */
 static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover *m) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
@@ -329,13 +359,14 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
     demi_put(m->v, demi_surface_at(&wall->ahead, demi_add(x, k->arm_a)));
     demi_put(m->w, wall->ahead.spin);
 }
-/* Normals turn between two places where contacts are found. On a concave wall that alone makes a
-   body close that moved along it. If half of that closing velocity is turned back, bodies move
-   along chords from wall to wall and keep their energy; otherwise they would lose some in each
-   step. A contact that lasts knows how much it is: closing now, less the normal velocity with which
-   it was left (bodies still have that one; what a wall has changed its own by is no turn). Returns
-   <= 0, m/s, to be added to the bias: never more than the contact closes by, so that it brings no
-   energy. *hits: m/s, the rest of the closing velocity, which is an impact. */
+/* Returns the correction of bias for the rotation of the normal between two detections, m/s, <= 0.
+   On a concave wall this rotation alone makes a body approach that moved along the wall. If half of
+   that closing velocity is reversed, bodies move along chords from wall to wall and conserve
+   energy; otherwise they would lose some in each step. In a lasting contact the part due to
+   rotation is the closing velocity now, minus the normal velocity after the last step (which the
+   bodies still have), minus the change of the wall's own velocity. The correction never exceeds the
+   closing velocity, so it adds no energy. *hits receives the rest of the closing velocity, m/s,
+   which is an impact. */
 static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                    const demi_spot *o, dem_real closing, dem_real *hits) {
     const dem_real *y = o->memory;
@@ -343,7 +374,7 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
     *hits = closing;
     if (!(y[6*o->stride] > 0) || !w->bodies.went[m->a] ||
         (m->b < w->bodies.count && !w->bodies.went[m->b])) return 0;
-    if (!w->stage.forces_valid) {               /* the same step once more */
+    if (!w->stage.forces_valid) {               /* the same step is solved again */
         if (y[9*o->stride] < 0) *hits = 0;
         return y[9*o->stride];
     }
@@ -356,10 +387,11 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
     *hits = closing - turned;
     return turned < 0 && closing < 0 ? DEMI_MAX(turned/2, closing) : 0;
 }
-/* The coefficient of a meeting with this slip (m/s): static friction holds what did not slide in
-   the last step. What did not push then begins now, and slides from the beginning where its slip is
-   more than gravity gives in a step (`rest`, m/s) and round-off: else a whole impact would feel
-   static friction, and how many did would depend on how far ahead they are seen. */
+/* Returns the friction coefficient of a contact with this slip (m/s). Static friction acts on
+   contacts that did not slide in the last step. A contact without normal impulse in the last step
+   begins now; it slides from the beginning if its slip exceeds round-off and the speed that gravity
+   adds in a step (`rest`, m/s). Otherwise static friction would act during a whole impact, in a
+   number of impacts that would depend on how early contacts are detected. */
 static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
                                       const demi_spot *o, dem_vec3 slip, dem_real rest) {
     const dem_real slow = rest + (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*
@@ -369,9 +401,9 @@ static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
         : o->memory[DEMI_IMPULSE_SLIDES*o->stride] > 0;
     return slides ? pair->friction : DEMI_MAX(pair->friction, pair->friction_static);
 }
-/* The second half of a domain's meetings: all that sweeps need. What is remembered is for turned
-   normals: friction stays across them. Cohesion takes hold of what touches, to a millionth of the
-   radius, and holds it up to a thousandth. */
+/* Second pass over a domain: sets up all that sweeps need. Impulses of the last step are the
+   initial guess, unless desc.cold_start is set; friction is projected onto the present tangent
+   plane. Cohesion begins at gaps below a millionth of the radius and lasts up to a thousandth. */
 static void demi_impulses_lay(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
@@ -387,7 +419,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         const dem_real *y = o.memory;
         demi_impulse *c = s->contacts + m->at;
         demi_beside *beside = s->beside + m->at;
-        /* a contact of several points has what its pair has once */
+        /* the points of a manifold share the compliance and cohesion of their pair */
         const dem_real points = (dem_real)(k && k->corners ? k->corners : 1);
         const dem_real give = pair->compliance*points, had = w->desc.cold_start ? 0 : dt;
         demi_brings g = {0, 0, 0, 0, 0, 0};
@@ -438,7 +470,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         if (s->twisted) {
             demi_twist *t = s->twists + m->at;
             t->moment = demi_scale(demi_v(y[3*o.stride], y[4*o.stride], y[5*o.stride]), had);
-            /* nothing turns about an axis in the plane of a planar world */
+            /* in a planar world no body rotates about an axis in the plane */
             t->per_roll = g.roll > 0 ? 1/g.roll : 0;
             t->per_spin = g.spin > 0 ? 1/g.spin : 0;
             t->roll = pair->rolling_friction*o.r_eff;

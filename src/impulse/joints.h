@@ -1,42 +1,50 @@
 /* ---------------------------------------------------------------------------------------------
    >>joints
-   Joints hold bodies together, to walls or to the space. A joint has rows: three of velocity at the
-   common point, for a hinge two of spin across its axis, and one of a motor. J u of them is the
-   velocity of a against b. All joints are solved at once,
+   Joints: permanent constraints between two bodies, or between a body and a wall or space. A joint
+   is up to six rows of a linear system: three for the relative velocity at the common point, two
+   more for the spin of a hinge across its axis, and one for a motor. J u is the velocity of a
+   relative to b in these rows. All joints are solved simultaneously,
        [ M  -J'  ] [ dv ]   [  0 ]
-       [ -J -give] [ dp ] = [ -r ]   (M: mass and inertia; r: by what the rows are off)
-   by block LDL' in an order of fewest neighbours: from the leaves of a tree to its root, O(n) and
-   without fill ([BAR96]); loops fill in a little. `give` is a softness: 1e-9 of what an impulse
-   brings (DEMI_GIVE); 1e-6 in groups with loops, which may hold more than is needed.
-   r is by what points and axes will be apart where the next step finds them (in its middle, see
-   demi_ahead), with rotations as the integrator makes them, over dt: SHAKE, with a few Newton
-   steps. Its energy swings by O(dt^2).
-   Impulses p of joints that hang together give p (J u before + J u after)/2, exactly. Where that
-   is more than they have taken before (at most 1e-3 of their kinetic energy is remembered), rows
-   are wanted at J u after = -J u before/2, and if need be at -J u before, which gives nothing
-   whatever contacts, motors and fields do. Gaps that are left are closed by moving places alone.
-   A motor with a limit is a row until it reaches that, and then a torque.
-   Owns w->joints. Tests: tests/impulse/test_joints.c.
+       [ -J -give] [ dp ] = [ -r ]   (M: mass and inertia; r: residual velocity of the rows)
+   by block LDL' factorisation with minimum-degree ordering. A tree is eliminated from its leaves to
+   its root in O(n) without fill-in [BAR96]; loops cause a little fill-in. `give` is a small
+   softness that regularises the system: 1e-9 of the inverse effective mass of a row (DEMI_GIVE),
+   and 1e-6 in groups with loops, whose rows may be redundant.
+   r is the distance between the points, and between the axes, at the next contact detection (in the
+   middle of the next step, see demi_ahead), divided by dt. It is predicted with the rotations that
+   the integrator will make. This is SHAKE, solved by a few Newton iterations. Its energy oscillates
+   with an amplitude of O(dt^2).
+   Energy guard: the impulses p of a group of connected joints do the work
+   p (J u before + J u after)/2, exactly. If this exceeds the energy that the group has absorbed
+   before (remembered up to 1e-3 of its kinetic energy), the target of its rows becomes
+   J u after = -J u before/2, and if necessary -J u before, which does no work whatever contacts,
+   motors and fields do. The remaining gaps are closed by displacements that leave velocities
+   unchanged.
+   A motor with a torque limit is a row until it reaches the limit, and then a given torque.
+   Owns w->joints; the system and its solution are in >>joints-solved. Tests:
+   tests/impulse/test_joints.c.
    --------------------------------------------------------------------------------------------- */
 
-/* Index of a body by its id; -1: it is no more. */
+/* Returns the index of the body with this id, or -1 if it does not exist (any more). */
 static int demi_joint_body(const dem_world *w, dem_body b) {
     if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
         w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
     return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
 }
-/* Is what a joint holds still there? */
+/* True if both bodies of a joint, or its body and its wall, still exist. */
 static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
     if (demi_joint_body(w, j->desc.a) < 0) return 0;
     if (j->desc.b.slot) return demi_joint_body(w, j->desc.b) >= 0;
     return !j->desc.wall.id || demi_wall_there(w, j->desc.wall);
 }
+/* Returns the number of joints whose bodies and walls still exist. */
 static int demi_joints_in_force(const dem_world *w) {
     int i, n = 0;
     for (i = 0; i < w->joint_count; i++) n += demi_joint_alive(w, w->joints + i);
     return n;
 }
-/* Its index, or -1 with a sentence. Ids rise and are never given again, so they are in order. */
+/* Returns the index of a joint, or -1 with an error message. Ids ascend and are never used again,
+   so w->joints is sorted by id. */
 static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
     int low = 0, high = w->joint_count;
     while (low < high) {
@@ -51,8 +59,8 @@ static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
               demi_joints_in_force(w));
     return -1;
 }
-/* What is wrong with a motor; 0 with a sentence. The limit is far beyond any machine, and squares
-   of what such a motor brings about are still numbers. */
+/* True if the values of a motor are allowed; 0 with an error message otherwise. The limit, in rad/s
+   and N m, is far beyond any machine and keeps the squares of the resulting values finite. */
 #define DEMI_MOTOR_MOST DEM_R(1e12)
 static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, dem_motor motor,
                            dem_real speed, dem_real torque) {
@@ -65,13 +73,15 @@ static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, 
               "only revolute joints have motors", call, (int)motor, (double)speed, (double)torque);
     return 0;
 }
-/* A place or direction, as seen from body `index` (with `place`: from its centre). */
+/* Returns x in the frame of body `index`: a point, m, relative to its centre if `place` is 1, a
+   direction if it is 0. */
 static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, int place) {
     const demi_periods p = demi_periods_of(w);
     if (place) x = demi_nearest(&p, demi_sub(x, demi_at(w->bodies.pos + 4*index)));
     return dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*index), x);
 }
-/* What is wrong with a desc, but its motor; 0 with a sentence. */
+/* True if a desc is allowed, except for its motor, see demi_motor_sane; 0 with an error message
+   otherwise. */
 static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
     const dem_real size = demi_length(d->axis);
     int a, b = -1;
@@ -128,7 +138,7 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     memset(&j, 0, sizeof j);
     j.desc = *d;
     j.desc.axis = d->kind == DEM_JOINT_REVOLUTE ? demi_unit(d->axis) : demi_v(0, 0, 0);
-    if (d->b.slot) j.desc.wall.id = 0;          /* not used, and so of no meaning */
+    if (d->b.slot) j.desc.wall.id = 0;          /* b is a body, so the wall is ignored */
     else j.desc.b.generation = 0;
     j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
     j.axis[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), j.desc.axis, 0);
