@@ -1,12 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>impulses-told
-   What the impulses found do: forces of the step to come, which move bodies, act on walls and stand
-   in files; memory of contacts; losses. And overlaps that are left are undone in part, by places
-   alone.
+   Application of the solved impulses: forces of the coming step (on bodies, on walls and in
+   output), contact history and energy losses. Part of the remaining overlap is corrected by
+   displacements that leave velocities unchanged. Also contact detection half a step ahead. Calls
+   the solver of >>solvers; writes forces of bodies, loads of walls and the energies due in
+   w->booked.
    --------------------------------------------------------------------------------------------- */
 
-/* Takes the time step as given, since no contact is too short for it; refuses what the solver does
-   not support. */
+/* Sets the time step to desc.dt: rigid contacts have no duration that would limit it. Fails if the
+   solver does not support the rolling or spinning friction or the joints of the scene. */
 static dem_result demi_impulses_settle(dem_world *w) {
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     if (demi_impulses_twist(w) && !solver->moments)
@@ -22,7 +24,8 @@ static dem_result demi_impulses_settle(dem_world *w) {
     w->stage.dt_valid = 1;
     return DEM_OK;
 }
-/* Room for all contacts there may be. 0: memory ran out. */
+/* Allocates the arrays of the solver for all contacts that are possible in this step. Returns 0 if
+   memory ran out. */
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
@@ -44,10 +47,11 @@ static int demi_impulses_room(dem_world *w) {
         (!vectors || (DEMI_GROW(w, s->vectors, vectors*n) && DEMI_GROW(w, s->degrees, bodies))) &&
         (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
 }
-/* Overlaps that are left are undone in part: lifts are velocities that move bodies in this step and
-   are forgotten, so that they bring no energy. They move bodies without turning them. */
-enum { DEMI_LIFTS = 5 };
-#define DEMI_LIFTED DEM_R(0.2)                  /* of an overlap, per step */
+/* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
+   this step and are then discarded, so they add no kinetic energy. They do not rotate bodies. A
+   contact's own lift, kg m/s, is an impulse >= 0, found by projected Gauss-Seidel. */
+enum { DEMI_LIFTS = 5 };                        /* sweeps */
+#define DEMI_LIFTED DEM_R(0.2)                  /* part of an overlap corrected per step */
 static void demi_impulses_lift(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     int i, end;
@@ -67,7 +71,8 @@ static void demi_impulses_lift(dem_world *w, int index) {
         if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
     }
 }
-/* Forces of a domain's bodies: what brings them from what they would do to what they do. */
+/* Sets forces and torques of a domain's bodies to those that produce the solved velocities in the
+   coming step. Gravity is not part of them. */
 static void demi_movers_force(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
@@ -89,16 +94,16 @@ static void demi_movers_force(dem_world *w, int d) {
                 torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
 }
-/* What a domain's meetings have come to: memory, forces on walls, losses: with velocities half of
-   before and half of after, what an impulse takes is exact. */
+/* Stores the results of a domain's constraints: contact history, forces on walls, energy losses.
+   The work of an impulse is exact with the mean of the velocities before and after the step. */
 static void demi_impulses_tell(dem_world *w, int d) {
     demi_solver *s = &w->solver;
     demi_domain *domain = &w->domains[d];
     const dem_real per = 1/s->dt;
-    /* m/s: a slip that the solve may have left, or round-off */
+    /* m/s: slips below this may be an error of the solver, or round-off */
     const dem_real slow = (dem_real)(10*w->booked.residual + (DEMI_SINGLE ? 1e-5 : 1e-10)*
                                      w->booked.speed_max);
-    double *lost = domain->energy;              /* of the step to come */
+    double *lost = domain->energy;              /* J, of the coming step */
     int i, e;
     domain->contacts = domain->kept_walls = 0;
     for (i = 0; i < s->meeting_count[d]; i++) {
@@ -143,7 +148,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
         } else domain->contacts += c->push > 0;
     }
 }
-/* Bodies that stand still, or go as they are told, feel what acts on them, too. */
+/* Adds the contact forces to fixed bodies, so that they can be read and written. */
 static void demi_impulses_fixed(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
@@ -166,16 +171,16 @@ static void demi_impulses_fixed(dem_world *w) {
             }
         }
 }
-/* J, of all domains in this step. */
+/* Returns the energy `what`, J, of the coming step, summed over all domains. */
 static double demi_sum_energy(const dem_world *w, int what) {
     double sum = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
     return sum;
 }
-/* Newton's restitution and friction together may give energy where slip turns round. Where an
-   impact would, e is taken down, at last to 0, which takes energy whatever the shapes. Answers how
-   many there were. */
+/* Newton's restitution and friction together may add energy if the slip reverses. Halves the
+   restitution of each impact that would do so; with `last` sets it to 0, which loses energy for any
+   shape. Returns the number of such impacts. */
 enum { DEMI_TAMINGS = 4 };
 static int demi_impulses_tame(dem_world *w, int last) {
     demi_solver *s = &w->solver;
@@ -195,8 +200,8 @@ static int demi_impulses_tame(dem_world *w, int last) {
     }
     return tamed;
 }
-/* Number of contacts whose friction is at its limit: where many of them hold one body, sweeps
-   converge with a power of their number only (docs/impulses.md). */
+/* Returns the number of contacts at their friction limit. If many of them hold the same body, the
+   error falls only as a power of the number of sweeps (docs/impulses.md). */
 static int demi_solver_limited(const demi_solver *s) {
     int i, limited = 0;
     for (i = 0; i < s->count; i++) {
@@ -206,7 +211,8 @@ static int demi_solver_limited(const demi_solver *s) {
     }
     return limited;
 }
-/* Impulses of the step to come, as forces. Fields of force have been added by now. */
+/* Solves the contact constraints and joints of the coming step, and applies the impulses as forces.
+   Force fields must have been added before. */
 static void demi_impulses(dem_world *w) {
     demi_solver *s = &w->solver;
     const int most = w->desc.sweeps ? w->desc.sweeps : 200;
@@ -241,7 +247,7 @@ static void demi_impulses(dem_world *w) {
     w->booked.due[1] = demi_sum_energy(w, DEMI_E_SLIDE);
     w->booked.due[2] = demi_sum_energy(w, DEMI_E_ROLL);
     w->booked.due[3] = 0;
-    if (!w->stage.forces_valid) return;         /* only looked at */
+    if (!w->stage.forces_valid) return;         /* forces only, no step */
     for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
@@ -253,10 +259,11 @@ static void demi_impulses(dem_world *w) {
     w->margin.gone += farthest;
     w->margin.creep += 2*farthest;
 }
-/* Contacts are found half a step ahead, where bodies get with the velocities they have: there
-   impulses act, and so do fields of force, so that a step is the same forwards and backwards, of
-   second order. Some bodies go there, and come back. */
-enum { DEMI_AHEAD = 1024 };                     /* bodies at a time */
+/* Contacts are detected half a step ahead, where the present velocities carry the bodies. Impulses
+   and force fields act there, so that a step is symmetric in time and of second order. */
+enum { DEMI_AHEAD = 1024 };                     /* bodies that a thread takes at a time */
+/* Moves run `index` of the bodies half a step ahead; last_pos and last_orient keep the present
+   positions and orientations. */
 static void demi_some_ahead(dem_world *w, int index) {
     const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
     const dem_real h = w->clock.dt/2;
@@ -270,6 +277,7 @@ static void demi_some_ahead(dem_world *w, int index) {
     memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
     demi_orient_move(w, 0, begin, end);
 }
+/* Moves them back, and restores their spins. */
 static void demi_some_back(dem_world *w, int index) {
     const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
     const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
@@ -286,8 +294,9 @@ static void demi_some_back(dem_world *w, int index) {
             demi_centres_rotate(w, i);
     }
 }
-/* Bodies and walls half a step ahead: `mid` keeps where walls are. Surfaces have the velocities of
-   a whole step ahead, the middle between two places where contacts are found. */
+/* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
+   is its pose a whole step ahead, midway between two detections; surface velocities are those of
+   that time. */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
@@ -305,13 +314,14 @@ static void demi_ahead(dem_world *w) {
         if (demi_pose_sane(&pose)) wall->ahead = pose;
     }
 }
+/* Moves bodies and walls back to the positions before demi_ahead. */
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->desc.threads, runs, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
-/* Walls' and motors' work of the step to come. */
+/* Adds the work of walls, joints and motors in the coming step to the energies due. */
 static void demi_impulses_due(dem_world *w) {
     int i;
     for (i = 0; i < w->joint_count; i++) {
@@ -322,7 +332,7 @@ static void demi_impulses_due(dem_world *w) {
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
 }
-/* What was due is done, now that bodies have moved by it; of springs nothing is due. */
+/* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
 static void demi_due_book(dem_world *w) {
     static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
     int i;
@@ -330,7 +340,8 @@ static void demi_due_book(dem_world *w) {
     w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
     w->booked.throughput += fabs(w->booked.due[3]);
 }
-/* One near pair, if it has an impulse or overlaps: see demi_response_row. */
+/* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
+   *out and *gap unless out is null: see demi_response_row. */
 static int demi_impulses_info(const dem_world *w, int d, int p, dem_contact_info *out,
                               dem_vec3 *gap) {
     const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;

@@ -162,7 +162,7 @@ typedef struct demi_knot {
     int32_t group;                 /* a node of its group of connected nodes, at the end the root;
                                       the root has the values of the group: */
     int32_t guarded, open;         /* level of the energy guard, 0 to 2, see demi_joints_guard; bit
-                                      0: some joint has a gap, bit 1: because a body was moved */
+                                      0: some joint has a gap, bit 1: since the user moved a body */
     int32_t excess, grounded;      /* joints minus bodies; 1: a joint to a wall, space or a fixed
                                       body */
     double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic

@@ -1,11 +1,13 @@
 /* ---------------------------------------------------------------------------------------------
    >>joints-solved
-   The system that joints and the bodies they hold make: the order of elimination, the blocks, the
-   factor; sweeps over it, the guard of energy, and what joints have come to. Owns rods, knots and
-   what belongs to them in the solver. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
+   Direct solution of the joint constraints of >>joints: sparse block LDL' factorisation. This part
+   has the elimination order, the blocks and their factor, sweeps, the energy guard and the results
+   (forces, power). A rod is a joint in one step. A knot is a node of the system: a body or a joint.
+   Owns rods, knots, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
+   close gaps. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
    --------------------------------------------------------------------------------------------- */
 
-/* Joins knot b to the list of a. 0: memory ran out. */
+/* Adds node `to` at the front of a linked list. Returns 0 if memory ran out. */
 static int demi_knot_link(dem_world *w, int32_t *list, int to) {
     demi_solver *s = &w->solver;
     if (!DEMI_GROW(w, s->links, (size_t)s->link_count + 1)) return 0;
@@ -14,6 +16,7 @@ static int demi_knot_link(dem_world *w, int32_t *list, int to) {
     *list = s->link_count++;
     return 1;
 }
+/* Adds the node of a body (rod -1) or of a joint (mover -1), and returns its index. */
 static int demi_knot_add(demi_solver *s, int mover, int rod) {
     demi_knot *k = s->knots + s->knot_count;
     memset(k, 0, sizeof *k);
@@ -23,13 +26,15 @@ static int demi_knot_add(demi_solver *s, int mover, int rod) {
     k->group = s->knot_count;
     return s->knot_count++;
 }
+/* Returns the root of a node's group of connected nodes (union-find with path halving). */
 static int demi_knot_group(demi_solver *s, int knot) {
     while (s->knots[knot].group != knot)
         knot = s->knots[knot].group = s->knots[s->knots[knot].group].group;
     return knot;
 }
-/* May it be eliminated? A body may. A joint may when a body of its own is gone, one for each, or
-   both of its bodies are: only then does something give way to it. */
+/* True if a node may be eliminated. A body always may. A joint may once one of its bodies was
+   eliminated in its favour (`paid`; a body pays for one joint), or both were: only then does its
+   pivot contain the compliance of a body. */
 static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
     int e, gone = 1;
     if (k->rod < 0 || k->paid) return 1;
@@ -39,7 +44,8 @@ static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
     }
     return gone;
 }
-/* Eliminates one: those it is linked to become its column, and are linked to each other. */
+/* Symbolic elimination of one node: its remaining neighbours become its column of the factor, and
+   neighbours of each other (fill-in). Returns 0 if memory ran out. */
 static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
     demi_solver *s = &w->solver;
     const int first = s->row_count;
@@ -74,8 +80,9 @@ static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
     }
     return 1;
 }
-/* Whichever has the fewest neighbours goes first: from the leaves of a tree to its root, where
-   nothing is filled in, and around loops what fills in little. */
+/* Minimum-degree ordering: eliminates the node with the fewest neighbours first. A tree is
+   eliminated from its leaves to its root without fill-in; loops cause little. Returns 0 if memory
+   ran out. */
 static int demi_knots_order(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, rank = 0, d;
@@ -94,8 +101,8 @@ static int demi_knots_order(dem_world *w) {
     }
     return 1;
 }
-/* Joints as they are in force in this step, and room for what solves them; those that have lost a
-   body go. 0: memory ran out. */
+/* Removes joints that have lost a body or their wall, then builds the system of this step: rods,
+   nodes, groups, elimination order and memory for the blocks. Returns 0 if memory ran out. */
 static int demi_joints_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const size_t bodies = (size_t)w->bodies.count;
@@ -153,14 +160,16 @@ static int demi_joints_room(dem_world *w) {
 
 /* --- the system of one step --- */
 
-/* One end of a joint: the arm from its centre, the point in space, the axis; as it stands, or
-   (ahead) a step later, with the velocities that the impulses found so far make. */
+/* One end of a joint in the world frame: lever arm from the body's centre, m; joined point, m;
+   axis, unit. */
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
-/* s: from where contacts are found in this step to where they are found in the next. A body that
-   has made no step since it was set is found at its beginning, not in its middle. */
+/* Returns the time, s, between the contact detections of this step and the next. A body that has
+   made no step since it was set is at the beginning of the step in the first, not in the middle. */
 static dem_real demi_knot_ahead(const dem_world *w, int body) {
     return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
 }
+/* Returns end 0 (a) or 1 (b) of a joint: as it is now, or (`ahead`) at the next detection, with the
+   velocities of the impulses found so far. */
 static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int ahead) {
     const demi_joint *j = &w->joints[joint];
     const demi_solver *s = &w->solver;
@@ -189,7 +198,7 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
     }
     return o;
 }
-/* Velocity of a against b in the rows. */
+/* Computes the velocity of a relative to b in the six rows, m/s and rad/s. */
 static void demi_rod_velocity(const demi_solver *s, const demi_rod *r, dem_real *u) {
     const demi_mover *a = s->movers + r->a, *b = s->movers + r->b;
     const dem_vec3 turn = demi_sub(demi_at(a->w), demi_at(b->w));
@@ -199,13 +208,14 @@ static void demi_rod_velocity(const demi_solver *s, const demi_rod *r, dem_real 
     demi_put(u, demi_sub(va, vb));
     for (k = 3; k < 6; k++) u[k] = demi_dot(turn, r->along[k - 3]);
 }
-/* Torque of impulses in the rows, on a. */
+/* Returns the angular impulse on a of the impulses p in the rows of spin, N m s. */
 static dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
     dem_vec3 l = demi_v(0, 0, 0);
     int k;
     for (k = 3; k < 6; k++) l = demi_add(l, demi_scale(r->along[k - 3], p[k]));
     return l;
 }
+/* Applies impulses p in the rows of velocity, and an angular impulse l, to a; the opposite to b. */
 static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p,
                            dem_vec3 l) {
     const demi_solver *s = &w->solver;
@@ -214,17 +224,19 @@ static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real
     demi_mover_push(s, r->a, f, demi_add(l, demi_cross(r->arm[0], f)), shaped);
     demi_mover_push(s, r->b, back, demi_sub(demi_cross(r->arm[1], back), l), shaped);
 }
-/* Length of a body, to compare turning with moving by, and how far a joint is closed in a step: it
-   is off by more only where somebody has moved a body. */
+/* Returns the length that compares rotations with displacements, m: the smaller radius of the two
+   bodies. It also limits how far a gap is closed in a step; gaps are larger only after the user has
+   moved a body. */
 static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
     const dem_real a = w->bodies.pos[4*r->a + 3];
     return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
 }
-/* Is row k of a joint in force? In the plane nothing tilts; a motor at its limit is a torque. */
+/* True if row k of a joint is in force. Planar worlds have no tilt; a motor at its limit is a
+   torque instead of a row. */
 static int demi_rod_row(const dem_world *w, const demi_rod *r, int k) {
     return k < r->rows && (k < 3 || (k < 5 ? !w->desc.planar : !r->stuck));
 }
-/* Row k of a joint's end as a row of six: what the velocity and spin there are taken by. */
+/* Computes row k of the Jacobian at one end of a joint: the factors of velocity and spin there. */
 static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, int k, double *row) {
     static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const int body = end ? r->b : r->a;
@@ -239,7 +251,8 @@ static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, in
         row[3 + i] = turns ? sign*(double)turn[i] : 0;
     }
 }
-/* Mass and inertia of a body, 6 x 6; 1 where nothing turns. */
+/* Computes the 6 x 6 matrix of mass, kg, and inertia, kg m2, of a body; inertia 1 if it cannot
+   rotate. */
 static void demi_knot_mass(const dem_world *w, int body, double *m) {
     const double inv = (double)w->bodies.inv_inertia[body];
     int i, k;
@@ -262,8 +275,9 @@ static void demi_knot_mass(const dem_world *w, int body, double *m) {
         for (k = 0; k < 3; k++) m[6*(3 + k) + 3 + i] = (double)column[k];
     }
 }
-/* Inverse of a symmetric matrix, 6 x 6, sign times a positive definite one, in place. Squares of
-   its factor's diagonal are at least those of `least`, if given. */
+/* Inverts a symmetric 6 x 6 matrix in place, which is `sign` times a positive definite one, by
+   Cholesky factorisation. `least` (may be null): lower bounds of the squared diagonal of the
+   factor. */
 static void demi_block_invert(double *m, double sign, const dem_real *least) {
     double f[36], inv[36];
     int i, j, k;
@@ -274,7 +288,7 @@ static void demi_block_invert(double *m, double sign, const dem_real *least) {
             f[6*j + i] = j > i ? sum*f[7*i] : 1/sqrt(DEMI_MAX(sum, least ? (double)least[i]
                                                                         : DBL_MIN));
         }
-    for (i = 0; i < 6; i++) {                   /* of the factor; f's diagonal is inverse already */
+    for (i = 0; i < 6; i++) {                   /* inverse of the factor f, whose diagonal is inverted already */
         inv[7*i] = f[7*i];
         for (j = i + 1; j < 6; j++) {
             double sum = 0;
@@ -305,15 +319,16 @@ static void demi_block_times(double *y, const double *a, const double *x, int tr
     for (i = 0; i < 6; i++)
         for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
 }
-/* The block of two knots that are linked: in the column of whichever goes first, rows of the other.
-   */
+/* Returns the block of two linked nodes: in the column of the one eliminated first, with the rows
+   of the other. */
 static double *demi_knots_block(const demi_solver *s, int a, int b) {
     const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
     int e = s->knots[early].first;
     while (s->rows[e] != late) e++;
     return s->blocks + 36*((size_t)s->knot_count + (size_t)e);
 }
-/* [M -J'; -J -give], factored: M of bodies, J rows of joints, give their softness. */
+/* Assembles [M -J'; -J -give] and factors it: M of bodies, J rows of joints, give their softness.
+   Rows that are not in force are -1 on the diagonal. */
 static void demi_knots_factor(dem_world *w) {
     demi_solver *s = &w->solver;
     double row[6];
@@ -356,7 +371,7 @@ static void demi_knots_factor(dem_world *w) {
         }
     }
 }
-/* From the right-hand sides x of all knots to the solution. */
+/* Solves the system: x of all nodes is the right-hand side before, and the solution after. */
 static void demi_knots_solve(demi_solver *s) {
     const double *columns = s->blocks + 36*(size_t)s->knot_count;
     int rank, e;
@@ -377,7 +392,8 @@ static void demi_knots_solve(demi_solver *s) {
         for (e = 0; e < 6; e++) k->x[e] = -y[e];
     }
 }
-/* Rows of joint i, with what is remembered. */
+/* Sets up the rows of joint i: arms, axes, softness, and the impulses of the last step as the
+   initial guess. */
 static void demi_rod_lay(dem_world *w, int i) {
     demi_solver *s = &w->solver;
     demi_joint *j = &w->joints[i];
@@ -389,7 +405,7 @@ static void demi_rod_lay(dem_world *w, int i) {
     const demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
     const dem_real give = group->excess + !group->grounded > 0 ? DEMI_GIVE_LOOPS : DEMI_GIVE;
     int k, e;
-    /* to one place: angular momentum */
+    /* both arms end in the middle of the gap, which conserves angular momentum */
     r->arm[0] = demi_sub(x.arm, demi_scale(off, DEM_R(0.5)));
     r->arm[1] = b ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
     j->state.gap = demi_length(off);
@@ -422,7 +438,8 @@ static void demi_rod_lay(dem_world *w, int i) {
         if (k >= r->rows) r->given[k] = 0;
     }
 }
-/* Joints as they stand in this step. */
+/* Sets up all joints of this step: solver bodies of walls and space, rows, velocities before the
+   step, and the energies and gaps of each group for the energy guard. */
 static void demi_joints_lay(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, e;
@@ -471,7 +488,7 @@ static void demi_joints_lay(dem_world *w) {
     }
     s->factored = 0;
 }
-/* Begins with what is remembered, and what motors of a given torque do. */
+/* Warm start: applies the impulses of the last step, and those of motors with a given torque. */
 static void demi_joints_warm(dem_world *w) {
     int i;
     for (i = 0; i < w->joint_count; i++) {
@@ -480,7 +497,8 @@ static void demi_joints_warm(dem_world *w) {
                                                              demi_scale(r->along[2], r->torque)));
     }
 }
-/* Orientations a step later, as the integrator will bring them about. */
+/* Predicts the orientations of joined bodies at the next detection, with the integrator's own
+   scheme. */
 static void demi_knots_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
     int i;
@@ -502,9 +520,10 @@ static void demi_knots_ahead(dem_world *w) {
         s->knots[i].turned = q;
     }
 }
-/* By what velocities a joint is off: that its points, and axes, be together at the end of the step;
-   or, where that would give energy, that the velocity after the step be the opposite of that before
-   (`shifts`: what is left then, which is made good by places alone). Answers its square. */
+/* Computes the residual velocities of a joint's rows, m/s and rad/s. Their target is that its
+   points and axes coincide at the next detection. In a guarded group the target is the opposite of
+   the velocity before the step (half of it at level 1), unless `shifts` is 1, which asks for the
+   gaps to be closed by displacements. Returns the squared sum, (m/s)^2. */
 static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + i;
@@ -536,8 +555,9 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
     }
     return left;
 }
-/* Solves all joints at once; answers the farthest that one was from it, squared, m/s. x of the
-   knots: what it has changed. */
+/* Solves all joints simultaneously and, unless `shifts` is 1, applies the impulses. x of the nodes
+   receives the changes of velocity and impulse. Returns the largest squared residual of a joint
+   before the solve, (m/s)^2. */
 static dem_real demi_joints_solve(dem_world *w, int shifts) {
     demi_solver *s = &w->solver;
     dem_real worst = 0, lacks[6];
@@ -562,8 +582,8 @@ static dem_real demi_joints_solve(dem_world *w, int shifts) {
     }
     return worst;
 }
-/* Motors that have come to their limit push with that; those that push the wrong way are let go
-   (`free`). Answers how many. */
+/* Motors beyond their torque limit are set to the limit. With `free`, motors at the limit become
+   rows again if their torque has the wrong sign. Returns how many motors changed. */
 static int demi_motors_bound(dem_world *w, int free) {
     demi_solver *s = &w->solver;
     int i, n = 0;
@@ -587,7 +607,8 @@ static int demi_motors_bound(dem_world *w, int free) {
     if (n) s->factored = 0;
     return n;
 }
-/* One sweep over the joints; answers as demi_joints_solve, or 0 below the last digits of places. */
+/* One sweep over the joints. Returns the largest squared residual before it, (m/s)^2, or 0 if this
+   is below the round-off of positions. */
 static dem_real demi_joints_sweep(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real enough = DEMI_JOINED*w->effects.radius_min/s->dt;
@@ -605,8 +626,8 @@ static dem_real demi_joints_sweep(dem_world *w) {
         left = demi_joints_solve(w, 0);
     return worst > digit*digit*far2 ? worst : 0;
 }
-/* J, what a joint's impulses have given, but for its motor: exactly, by the mean of the velocities
-   before and after. */
+/* Returns the work of a joint's impulses in the step, J, without its motor. It is exact with the
+   mean of the velocities before and after. */
 static double demi_rod_work(const dem_world *w, const demi_rod *r) {
     dem_real u[6];
     double work = 0;
@@ -616,9 +637,9 @@ static double demi_rod_work(const dem_world *w, const demi_rod *r) {
         if (demi_rod_row(w, r, k)) work += (double)(r->given[k]*(r->before[k] + u[k]))/2;
     return work;
 }
-/* Whether joints that hang together would give more energy than they have taken before: such are
-   bound to turn their velocities round, which gives none, whatever else acts. Answers how many
-   were not yet. */
+/* Energy guard: raises the level of each group whose joints would do more work than the energy that
+   they have absorbed before. At level 2 they reverse their velocities, which does no work whatever
+   else acts. Returns the number of groups raised. */
 static int demi_joints_guard(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, n = 0;
@@ -636,9 +657,9 @@ static int demi_joints_guard(dem_world *w) {
     for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
     return n;
 }
-/* What guarded joints are still off is undone by places alone, as far as what they have taken pays
-   for what that lifts; a gap that somebody has made by moving a body is closed at any price.
-   Answers how far one has gone, m. */
+/* Closes the gaps of guarded groups by displacements, as far as the energy that they have absorbed
+   covers the work against gravity. Gaps that the user has made by moving a body are closed whatever
+   the work. Returns the largest displacement, m. */
 static double demi_joints_shift(dem_world *w) {
     demi_solver *s = &w->solver;
     double farthest = 0;
@@ -677,8 +698,9 @@ static double demi_joints_shift(dem_world *w) {
     }
     return farthest;
 }
-/* What joints have taken is theirs to give back, up to a part of the kinetic energy: velocities
-   that are together with places swing about those that keep energy. */
+/* Adds the energy that joints have absorbed in this step to what they may return later, at most
+   DEMI_BANKED of the kinetic energy of their group. They need it because velocities that keep the
+   points together oscillate about those that conserve energy. */
 static void demi_joints_bank(dem_world *w) {
     demi_solver *s = &w->solver;
     int i;
@@ -696,14 +718,15 @@ static void demi_joints_bank(dem_world *w) {
             w->joints[i].bank *= DEMI_BANKED*k->kinetic/k->bank;
     }
 }
-/* m, by how much a joint will be apart at the end of the step, tilt and all. */
+/* Returns the gap of joint i at the next detection, m, including the tilt times demi_rod_size. */
 static dem_real demi_rod_gap(const dem_world *w, int i) {
     const demi_periods p = demi_periods_of(w);
     const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
     return demi_length(demi_nearest(&p, demi_sub(x.point, y.point))) +
         demi_length(demi_cross(y.axis, x.axis))*demi_rod_size(w, w->solver.rods + i);
 }
-/* What joints have come to: forces, power; on walls, and on bodies that go as they are told. */
+/* Stores the results of joints: forces, torques, power and remaining gaps. Adds the forces to walls
+   and to fixed bodies. */
 static void demi_joints_tell(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;

@@ -8,8 +8,8 @@
        [ -J -give] [ dp ] = [ -r ]   (M: mass and inertia; r: residual velocity of the rows)
    by block LDL' factorisation with minimum-degree ordering. A tree is eliminated from its leaves to
    its root in O(n) without fill-in [BAR96]; loops cause a little fill-in. `give` is a small
-   softness that regularises the system: 1e-9 of the inverse effective mass of a row (DEMI_GIVE),
-   and 1e-6 in groups with loops, whose rows may be redundant.
+   softness that regularises the system: 1e-9 of the inverse effective mass of a row (1e-6 in single
+   precision), and 1e-6 in groups with loops, whose rows may be redundant (DEMI_GIVE).
    r is the distance between the points, and between the axes, at the next contact detection (in the
    middle of the next step, see demi_ahead), divided by dt. It is predicted with the rotations that
    the integrator will make. This is SHAKE, solved by a few Newton iterations. Its energy oscillates

@@ -1,23 +1,26 @@
 /* ---------------------------------------------------------------------------------------------
    >>solvers
-   Impulses for what >>impulses has laid down. Velocities stand in movers; what a solver changes in
-   an impulse it applies to both bodies. How far a contact is from being solved is told by the step
-   that would solve it alone, in m/s (the natural map in the metric of its inverse mass).
-     Gauss-Seidel   contact after contact, each solved exactly in its own metric: [JEA99], and for
-                    the convex cone [TAS10] with its projection in that metric (a cone again, with
+   Iterative solvers for the contact constraints of >>impulses (sequential impulses and its
+   competitors). Velocities are in the solver bodies, and a solver applies every change of an
+   impulse to both bodies. The residual of a contact is the step that would solve it alone, in m/s
+   (the natural map in the metric of its inverse effective mass).
+     Gauss-Seidel   contact after contact, each solved exactly in its own metric [JEA99]; for the
+                    convex cone [TAS10] with the projection in that metric (again a cone, with
                     mu sqrt(gt/gn)).
-     Jacobi         all at once, each taking a part of its step as small as its bodies have
-                    contacts [TON12]. For comparison: six to twelve times the sweeps.
-     APGD           Nesterov's gradients with restarts [MAZ15]; one product of N = D' M^-1 D with
-                    impulses in each sweep, since products of sums are sums of products.
-     Spectral       gradients with steps of Barzilai and Borwein [BIR00] [HEY13], shortened to the
-                    exact minimum along each way.
+     Jacobi         all contacts at once; each takes a part of its step that is smaller the more
+                    contacts its bodies have [TON12]. For comparison: it needs six to twelve times
+                    as many sweeps.
+     APGD           Nesterov's accelerated gradients with restarts [MAZ15]; one product of
+                    N = D' M^-1 D with impulses per sweep, since the product of a sum is the sum of
+                    the products.
+     Spectral       gradients with Barzilai-Borwein steps [BIR00] [HEY13], shortened to the exact
+                    minimum along each direction.
    The last two minimise over the convex cone. Coulomb's law is that cone with mu |ut| added to the
-   normal velocity (de Saxce): it is added anew every few sweeps, until it stays.
+   normal velocity (de Saxce); this term is updated every DEMI_SAXCE sweeps until it converges.
    >>add-solver: a row in demi_solvers and a constant in dem_solver.
    --------------------------------------------------------------------------------------------- */
 
-/* Velocity of b relative to a where they meet. */
+/* Returns the velocity of b relative to a at the contact, m/s, with the impulses found so far. */
 DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
     const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
     const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
@@ -30,7 +33,7 @@ DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impul
     return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
                                   c->normal));
 }
-/* Both bodies get an impulse p: b this, a the opposite. */
+/* Applies an impulse p, N s, to body b and the opposite to body a. */
 DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
                                    int shaped) {
     if (shaped) {
@@ -43,13 +46,13 @@ DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, 
         demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
     }
 }
-/* What is left of a vector of this size when it may be `most` long. */
+/* Returns t, shortened to the length `most` if it is longer. */
 DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
     const dem_real l2 = demi_dot(t, t);
     return l2 > most*most ? demi_scale(t, most/DEMI_SQRT(l2)) : t;
 }
-/* The impulse allowed that is nearest to this one. Coulomb: push first, then friction within what
-   it allows. Convex: in the metric of steps, 1/per_n and 1/per_t. */
+/* Projects an impulse onto the friction cone. Coulomb: clips push to >= 0, then friction to its
+   limit. Convex: takes the nearest point of the cone in the metric 1/per_n, 1/per_t. */
 DEM_INLINE void demi_impulse_bound(const demi_impulse *c, dem_real *push, dem_vec3 *slip,
                                    int convex) {
     if (convex && c->mu > 0) {
@@ -64,7 +67,8 @@ DEM_INLINE void demi_impulse_bound(const demi_impulse *c, dem_real *push, dem_ve
         *slip = demi_impulse_cap(*slip, c->mu**push);
     }
 }
-/* The impulse that solves a contact alone at this velocity; answers the change, squared, m/s. */
+/* Computes the impulse that solves a contact alone at relative velocity u. Returns the square of
+   the change, (m/s)^2. */
 DEM_INLINE dem_real demi_impulse_wanted(const demi_impulse *c, dem_vec3 u, dem_real *push,
                                         dem_vec3 *slip, int convex) {
     const dem_real un = demi_dot(u, c->normal);
@@ -78,8 +82,9 @@ DEM_INLINE dem_real demi_impulse_wanted(const demi_impulse *c, dem_vec3 u, dem_r
     dt = demi_scale(demi_sub(*slip, c->slip), c->gt);
     return dn*dn + demi_dot(dt, dt);
 }
-/* 1 where friction has reached its limit, to round-off, and the slip u (m/s) is faster than `slow`:
-   of several points that hold a body, one may reach its limit at rest. Without a push as it was. */
+/* Returns 1 if the contact slides: friction is at its limit, to round-off, and the slip of u (m/s)
+   exceeds `slow`. The limit alone does not suffice: of several points that hold a body at rest one
+   may be at its limit. Returns `was` if there is no normal impulse. */
 DEM_INLINE dem_real demi_impulse_slides(const demi_impulse *c, dem_vec3 u, dem_real slow,
                                         dem_real was) {
     const dem_real most = c->mu*c->push*(1 - (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-12)));
@@ -88,7 +93,7 @@ DEM_INLINE dem_real demi_impulse_slides(const demi_impulse *c, dem_vec3 u, dem_r
     return demi_dot(c->slip, c->slip) >= most*most && demi_dot(slip, slip) > slow*slow ? DEM_R(1)
                                                                                         : DEM_R(0);
 }
-/* Rolling and spinning friction of one contact. */
+/* Solves the rolling and spinning friction of one contact alone, and applies the change. */
 DEM_INLINE void demi_twist_solve(const demi_solver *s, const demi_impulse *c, int shaped) {
     demi_twist *t = s->twists + (c - s->contacts);
     const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
@@ -103,19 +108,20 @@ DEM_INLINE void demi_twist_solve(const demi_solver *s, const demi_impulse *c, in
     demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(by, -1), shaped);
     demi_mover_push(s, c->b, demi_v(0, 0, 0), by, shaped);
 }
-/* Sums of one run of contacts: the farthest from being solved (its square), the squares of all; two
-   more that solvers need. */
+/* Sums over one run of contacts: largest squared residual, (m/s)^2; sum of squared residuals; two
+   more sums with a meaning for each solver. */
 typedef struct demi_run_sums { dem_real worst, squares, first, second; } demi_run_sums;
 DEM_INLINE void demi_sums_add(demi_run_sums *o, dem_real change2) {
     o->worst = DEMI_MAX(o->worst, change2);
     o->squares += change2;
 }
-/* Contacts of one run in the colour being swept (of all, when `first` and `last` are those). */
+/* Gives the contacts of run `index`, *begin to *end - 1, among the contacts s->first to s->last -
+   1: those of one colour, or all. */
 static void demi_run_bounds(const demi_solver *s, int index, int *begin, int *end) {
     *begin = s->first + index*DEMI_SWEEP_RUN;
     *end = DEMI_MIN(*begin + DEMI_SWEEP_RUN, s->last);
 }
-/* Every colour once: the task over its runs. */
+/* Calls a task for all contacts: colour after colour, the runs of a colour in parallel. */
 static void demi_colours_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     int k;
@@ -129,7 +135,8 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         s->run += runs;
     }
 }
-/* All contacts, whatever their colour: tasks that change no body. */
+/* Calls a task for all contacts in parallel, whatever their colour. The task must not change
+   bodies. */
 static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
@@ -137,7 +144,8 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_parallel(w, w->desc.threads, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
-/* Sums over the runs of the last round, in their order. */
+/* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
+   result does not depend on threads. */
 static demi_run_sums demi_runs_sum(const demi_solver *s) {
     demi_run_sums all = {0, 0, 0, 0};
     int i;
@@ -149,7 +157,7 @@ static demi_run_sums demi_runs_sum(const demi_solver *s) {
     }
     return all;
 }
-/* Begins with what is remembered. */
+/* Warm start: applies the impulses of the last step to the bodies of a run. */
 static void demi_impulses_warm(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
@@ -166,7 +174,8 @@ static void demi_impulses_warm(dem_world *w, int index) {
 
 /* --- Gauss-Seidel --- */
 
-enum { DEMI_SOON = 8 }; /* bodies are fetched this many contacts ahead: a tenth of the time */
+/* Bodies are prefetched this many contacts ahead, which saves a tenth of the time. */
+enum { DEMI_SOON = 8 };
 #define DEMI_SEIDEL(NAME, CONVEX, SHAPED) \
     static void NAME(dem_world *w, int index) { \
         demi_solver *s = &w->solver; \
@@ -195,13 +204,15 @@ DEMI_SEIDEL(demi_seidel_spheres_convex, 1, 0)
 DEMI_SEIDEL(demi_seidel_shapes, 0, 1)
 DEMI_SEIDEL(demi_seidel_shapes_convex, 1, 1)
 #undef DEMI_SEIDEL
-/* How a solver went on: sweeps, and what the last left (m/s): farthest, rms. */
+/* Result of a solver: number of sweeps; largest and rms residual of the last sweep, m/s. */
 typedef struct demi_solved { int sweeps; double worst, rms; } demi_solved;
 static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums sums) {
     o->worst = sqrt((double)sums.worst);
     o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
 }
-/* Not there yet? By the tolerance given, for the farthest; else by one for the rms. */
+/* True if the solution is not converged. With desc.tolerance: the largest residual exceeds it.
+   Otherwise: the rms residual exceeds 0.05 g dt + 1e-5 times the largest speed, or the largest
+   residual exceeds 30 times that. */
 static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
     const double enough = 0.05*kick + 1e-5*w->booked.speed_max + 1e-12;
@@ -225,7 +236,7 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
 
 /* --- Jacobi --- */
 
-/* What each contact would change, at the same velocities, and the part of it that it may. */
+/* Computes the step of each contact at the same velocities, and takes the allowed part of it. */
 static void demi_jacobi_look(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
@@ -249,7 +260,7 @@ static void demi_jacobi_look(dem_world *w, int index) {
     }
     s->runs[index] = sums;
 }
-/* Applies the vectors of a run. */
+/* Applies the impulses in s->vectors to the bodies of a run. */
 static void demi_vectors_apply(dem_world *w, int index) {
     const demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
@@ -278,8 +289,9 @@ static demi_solved demi_solve_jacobi(dem_world *w, int most) {
 
 /* --- gradients --- */
 
-/* Columns of vectors: a change to be applied; impulses and contacts' velocities at the point left
-   and at the one where the gradient is looked at; what the change brings; where it began. */
+/* Columns of s->vectors, one vector per contact: BY: change of the impulse. X, UX: impulse and
+   relative velocity of the last iterate; Y, UY: of the point where the gradient is taken. BROUGHT:
+   relative velocity that BY causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
 enum { DEMI_BY, DEMI_X, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN, DEMI_GIVEN };
 DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
     return s->vectors + (size_t)column*(size_t)s->count + i;
@@ -291,17 +303,18 @@ DEM_INLINE void demi_impulse_put(demi_impulse *c, dem_vec3 p) {
     c->push = demi_dot(p, c->normal);
     c->slip = demi_sub(p, demi_scale(c->normal, c->push));
 }
-/* Gradient at impulse p where velocity is u. */
+/* Returns the gradient, m/s, at impulse p and relative velocity u. */
 DEM_INLINE dem_vec3 demi_gradient(const demi_impulse *c, dem_vec3 u, dem_vec3 p) {
     const dem_real soft = 1/c->per_n - c->gn;
     return demi_add(u, demi_scale(c->normal, c->bias + soft*demi_dot(p, c->normal)));
 }
-/* |x|^2 of an impulse, in the metric of 1/per_n and 1/per_t. */
+/* Returns the squared norm of an impulse in the metric 1/per_n, 1/per_t. */
 DEM_INLINE dem_real demi_impulse_size2(const demi_impulse *c, dem_vec3 p) {
     const dem_real n = demi_dot(p, c->normal);
     return n*n/c->per_n + (demi_dot(p, p) - n*n)/c->per_t;
 }
-/* Where a step against the gradient leads, within the cone; p and u: a column, and its velocity. */
+/* Sets BY to a step from Y against the gradient, of length s->step, projected onto the cone. Sum
+   `first`: the product of gradient and BY. */
 static void demi_gradient_step(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     demi_run_sums sums = {0, 0, 0, 0};
@@ -321,7 +334,8 @@ static void demi_gradient_step(dem_world *w, int index) {
     }
     s->runs[index] = sums;
 }
-/* What the change brings: first: with the change; second: its size; squares: the change's own. */
+/* Sets BROUGHT to the velocity that BY has given to the bodies. Sums: first: BY.N BY; second: the
+   squared norm of N BY; squares: that of BY. */
 static void demi_gradient_brought(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
@@ -340,7 +354,7 @@ static void demi_gradient_brought(dem_world *w, int index) {
     }
     s->runs[index] = sums;
 }
-/* The product of the change with N, into DEMI_BROUGHT. */
+/* Computes the product of N and BY, into BROUGHT. Returns the sums of demi_gradient_brought. */
 static demi_run_sums demi_gradient_product(dem_world *w) {
     demi_solver *s = &w->solver;
     const int movers = w->bodies.count + w->kept_first[DEMI_DOMAINS];
@@ -351,8 +365,8 @@ static demi_run_sums demi_gradient_product(dem_world *w) {
     demi_runs_all(w, demi_gradient_brought);
     return demi_runs_sum(s);
 }
-/* Goes `step` of the change from Y; what is left there; first: the gradient left with the way from
-   X. Coulomb's law is asked with the bias as it was given. */
+/* Moves Y by s->step times BY, and sums the residual there. Sum `first`: the product of the
+   gradient before the move and the new Y - X. The residual of Coulomb's law uses the given bias. */
 static void demi_gradient_go(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     const int convex = w->desc.cone == DEM_CONE_CONVEX;
@@ -375,7 +389,7 @@ static void demi_gradient_go(dem_world *w, int index) {
     }
     s->runs[index] = sums;
 }
-/* Y becomes X's: on by `step` of the way there was from X. */
+/* Extrapolates: X becomes Y, and Y moves on by s->step times its distance from the old X. */
 static void demi_gradient_on(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     int i, end;
@@ -389,7 +403,7 @@ static void demi_gradient_on(dem_world *w, int index) {
         *demi_vector_at(s, DEMI_UY, i) = demi_add(uy, demi_scale(gone, s->step));
     }
 }
-/* Coulomb's law: mu |ut| is added to the bias, by the velocities there are. */
+/* Coulomb's law: sets the bias to the given one plus mu |ut| of the present velocities. */
 static void demi_gradient_saxce(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     int i, end;
@@ -400,7 +414,7 @@ static void demi_gradient_saxce(dem_world *w, int index) {
         c->bias = demi_vector_at(s, DEMI_GIVEN, i)->x + c->mu*demi_length(ut);
     }
 }
-/* Where gradients begin. */
+/* Sets the starting point of a gradient method. */
 static void demi_gradient_begin(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
@@ -414,13 +428,14 @@ static void demi_gradient_begin(dem_world *w, int index) {
         *demi_vector_at(s, DEMI_GIVEN, i) = demi_v(c->bias, 0, 0);
     }
 }
-/* One step of Nesterov's method; theta and L go from step to step. */
+/* One step of Nesterov's method. theta (momentum) and L (an estimate of the largest eigenvalue of
+   N) persist between steps. Returns the sums of the residual. */
 static demi_run_sums demi_step_apgd(dem_world *w, double *theta, double *L) {
     demi_solver *s = &w->solver;
     demi_run_sums sums, gone;
     double next, beta;
     int tries;
-    for (tries = 0; tries < 60; tries++) {      /* L doubles: in fewer it is past any there is */
+    for (tries = 0; tries < 60; tries++) {      /* L doubles: 60 times is more than any N needs */
         s->step = (dem_real)(1/ *L);
         demi_runs_all(w, demi_gradient_step);
         gone = demi_gradient_product(w);
@@ -432,13 +447,14 @@ static demi_run_sums demi_step_apgd(dem_world *w, double *theta, double *L) {
     sums = demi_runs_sum(s);
     next = (-*theta**theta + *theta*sqrt(*theta**theta + 4))/2;
     beta = *theta*(1 - *theta)/(*theta**theta + next);
-    *theta = sums.first > 0 ? 1 : next;         /* uphill: begin anew */
+    *theta = sums.first > 0 ? 1 : next;         /* uphill: restart */
     s->step = (dem_real)(sums.first > 0 ? 0 : beta);
     demi_runs_all(w, demi_gradient_on);
     *L *= 0.9;
     return sums;
 }
-/* One step of Barzilai and Borwein's; its length goes from step to step. */
+/* One step of the method of Barzilai and Borwein. Its length persists between steps; `odd`
+   alternates between their two formulas. Returns the sums of the residual. */
 static demi_run_sums demi_step_spectral(dem_world *w, double *length, double *odd) {
     demi_solver *s = &w->solver;
     demi_run_sums gone;
@@ -456,7 +472,9 @@ static demi_run_sums demi_step_spectral(dem_world *w, double *length, double *od
     *length = DEMI_MAX(1e-6, DEMI_MIN(*length, 1e6));
     return demi_runs_sum(s);
 }
-enum { DEMI_SAXCE = 25 };                       /* steps between two looks at Coulomb's law */
+enum { DEMI_SAXCE = 25 };                       /* steps between two calls of demi_gradient_saxce */
+/* Runs a gradient method, of which `step` is one step with two numbers that persist. The solver
+   bodies are work space meanwhile; at the end they get the total change of the impulses. */
 static demi_solved demi_solve_gradient(dem_world *w, int most,
                                        demi_run_sums (*step)(dem_world *w, double *a, double *b)) {
     demi_solver *s = &w->solver;
@@ -490,8 +508,8 @@ static demi_solved demi_solve_spectral(dem_world *w, int most) {
     return demi_solve_gradient(w, most, demi_step_spectral);
 }
 
-/* vectors: columns it needs; moments: does it know rolling and spinning friction; joints: are they
-   known to it? */
+/* A solver. vectors: number of columns that it needs; moments: 1 if it supports rolling and
+   spinning friction; joints: 1 if it supports joints; most: largest number of sweeps. */
 typedef struct demi_solver_row {
     const char *name;
     int vectors, moments, joints;
