@@ -1,20 +1,22 @@
 /* ---------------------------------------------------------------------------------------------
    >>bodies
-   Grains: who they are (slots, which never move), where they stand in the arrays (indices, which
-   change whenever the list is rebuilt), adding, removing, placing. Whoever changes who is where
-   calls demi_list_drop first (it stands here because everyone needs it): contact memory is then
-   filed by slot and finds its way into the next list.
+   Storage of bodies: adding, removing, reading and setting them, and periodic images of positions.
+   The slot of a body is its identity and never changes. Its index in the arrays changes whenever
+   the neighbour list is rebuilt. Code that changes indices must call demi_list_drop first, which
+   files the contact history by slot, so that the next list can restore it. Owns w->bodies and
+   w->filed. Other parts change values of bodies: >>integrators moves them, contacts add forces.
    --------------------------------------------------------------------------------------------- */
 
-/* --- one notion of place. On a periodic axis a coordinate stands for all its images, a period
-       apart. Between two rebuilds bodies may stand up to half a skin outside the box (pairs note
-       which image of a partner is nearest, so nobody is moved while a list is in use). Whoever
-       asks where a body is, or how far from another, asks here: searches, fills, feeds, outlets,
-       fields, getters, writers. Tests: tests/search/test_periodic.c. --- */
-/* lo: m, where the box begins; period: m, 0 where an axis is not periodic, and half then huge. */
+/* --- periodic images. On a periodic axis a coordinate means all its images, a period apart.
+       Between two rebuilds bodies may be up to half a skin outside the box: pairs store which image
+       of the partner is nearest, and no body is wrapped while a list is in use. All code that needs
+       a position or a distance uses these functions: searches, fills, feeds, outlets, fields,
+       getters, writers. Tests: tests/search/test_periodic.c. --- */
+/* Periods of the axes, m: begin of the box, half the period, period. An axis that is not periodic
+   has the period 0 and a huge half, so that loops need no case for it. any: 1 if some axis is
+   periodic. */
 typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
-/* The same numbers for every axis, periodic or not, so that loops need not ask: an axis that is not
-   has a period of 0, and half of it is out of reach. */
+/* Returns the periods of a world. */
 static demi_periods demi_periods_of(const dem_world *w) {
     const dem_vec3 lo = w->desc.domain.lo, size = demi_sub(w->desc.domain.hi, lo);
     demi_periods p;
@@ -29,14 +31,14 @@ static demi_periods demi_periods_of(const dem_world *w) {
     }
     return p;
 }
-/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not
-   periodic. For the innermost loops; elsewhere demi_nearest. */
+/* Returns the nearest image of a distance d (minimum image convention), valid for |d| < 1.5 period.
+   For the innermost loops; other code uses demi_nearest. */
 DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
     const dem_real up = d < -half ? period : 0, down = d > half ? period : 0;
     return d + up - down;
 }
-/* The image of coordinate x with from <= image < from + period, whatever rounding does; x itself
-   where the period is 0. */
+/* Returns the image of coordinate x with from <= image < from + period, in spite of rounding; x
+   itself if the period is 0. */
 DEM_INLINE dem_real demi_into(dem_real x, dem_real from, dem_real period) {
     if (!(period > 0) || (x >= from && x < from + period)) return x;
     if (x < from) x += period*(dem_real)ceil((double)((from - x)/period));
@@ -44,21 +46,21 @@ DEM_INLINE dem_real demi_into(dem_real x, dem_real from, dem_real period) {
     if (x >= from + period) x -= period;
     return x < from ? from : x;
 }
-/* A place in the periodic box. */
+/* Returns the image of a position in the periodic box. */
 static dem_vec3 demi_place_of(const demi_periods *p, dem_vec3 x) {
     if (!p->any) return x;
     return demi_v(demi_into(x.x, p->lo[0], p->period[0]), demi_into(x.y, p->lo[1], p->period[1]),
                   demi_into(x.z, p->lo[2], p->period[2]));
 }
-/* What is left of a distance between two places, of any size, when the nearest images are taken. */
+/* Returns the distance between the nearest images of two positions, for a distance of any size. */
 static dem_vec3 demi_nearest(const demi_periods *p, dem_vec3 d) {
     if (!p->any) return d;
     return demi_v(demi_into(d.x, -p->half[0], p->period[0]),
                   demi_into(d.y, -p->half[1], p->period[1]),
                   demi_into(d.z, -p->half[2], p->period[2]));
 }
-/* All bodies in the periodic box: count x 4, as bodies.pos. Holds until bodies move or are
-   sorted. */
+/* Returns the positions of all bodies in the periodic box: count x 4, as bodies.pos. They are valid
+   until bodies move or are sorted. */
 static const dem_real *demi_wrapped(const dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
@@ -70,13 +72,14 @@ static const dem_real *demi_wrapped(const dem_world *w) {
     }
     return w->bodies.scratch;
 }
+/* Gives the two corners of the domain box, m. */
 static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
     lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
     lo[2] = (double)w->desc.domain.lo.z;
     hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
     hi[2] = (double)w->desc.domain.hi.z;
 }
-/* Brings positions back into the periodic box: at a rebuild, when nobody holds images. */
+/* Wraps positions into the periodic box. Only at a rebuild, when no list stores images. */
 static void demi_wrap(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
@@ -90,12 +93,13 @@ static void demi_wrap(dem_world *w) {
     }
 }
 
-/* Is this body a copy of one that another slab owns? (>>slabs; never elsewhere) */
+/* True if this body is a ghost particle: a copy of one that another slab owns (>>slabs). */
 DEM_INLINE int demi_is_ghost(const dem_world *w, int i) {
     return w->bodies.ghost && w->bodies.ghost[w->bodies.slot[i]] == 1;
 }
 
-/* Room for filed memory. 0 when memory ran out. */
+/* Allocates the file of contact histories (demi_filed): number of rows (slots), of entries, and of
+   reals per entry. Returns 0 if memory ran out. */
 static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
     const size_t reals = (size_t)count*(size_t)stride;
     const int ok = DEMI_GROW(w, w->filed.start, (size_t)rows + 2) &&
@@ -104,7 +108,7 @@ static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
     return ok;
 }
 
-/* Does a near pair remember anything? */
+/* True if entry p of domain d's pruned neighbour list has a contact history. */
 static int demi_near_remembers(const dem_world *w, int d, int p) {
     const dem_real *m = w->near.memory + (size_t)d*(size_t)w->memory_stride*(size_t)w->near.stride;
     int e;
@@ -114,8 +118,8 @@ static int demi_near_remembers(const dem_world *w, int d, int p) {
     }
     return 0;
 }
-/* The pairs of domain d in the near list are p = 0 .. near_own - 1, then near_cross .. near_end -
-   1: the one after p. */
+/* Returns the pair after p in a domain's pruned neighbour list. Its pairs are p = 0 .. near_own -
+   1, then near_cross .. near_end - 1. */
 DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
     return p + 1 == domain->near_own ? domain->near_cross : p + 1;
 }
@@ -123,8 +127,9 @@ DEM_INLINE int demi_near_first(const demi_domain *domain) {
     return domain->near_own ? 0 : domain->near_cross;
 }
 
-/* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
-   complement when body a of the pair was the higher one. 0 when memory ran out. */
+/* Files the contact history of all pairs of spheres by slot. The row is the lower slot; partner is
+   the higher slot, or its complement if that was body a of the pair. Returns 0 if memory ran out.
+   */
 static int demi_carry_collect(dem_world *w) {
     const int stride = w->memory_stride;
     int d, p, e, k, total = 0, pass;
@@ -163,13 +168,13 @@ static int demi_carry_collect(dem_world *w) {
     return 1;
 }
 
-/* Contacts that domain d keeps. */
+/* Returns the persistent contacts of domain d. */
 DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
     return w->kept_now + w->kept_first[d];
 }
-/* Marks which materials have touched. Contacts that are kept tell when they begin. Two spheres are
-   looked at before a list is given up, not in every step: a contact shorter than a list's life may
-   be missed; all that lasts is seen. */
+/* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
+   Pairs of spheres are examined only before a list is dropped: contacts shorter than the life of a
+   list may be missed, lasting ones are always found. */
 static void demi_met_look(const dem_world *w, uint64_t *met) {
     int d, p;
     for (d = 0; d < w->domain_count && w->material_count > 1; d++) {
@@ -185,8 +190,8 @@ static void demi_met_look(const dem_world *w, uint64_t *met) {
         }
     }
 }
-/* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed
-   then. */
+/* Marks the neighbour list as invalid and files the contact history. Persistent contacts refer to
+   slots instead of indices from here on. Returns 0 if memory ran out; nothing has changed then. */
 static int demi_list_drop(dem_world *w) {
     int d, k;
     w->bodies.centres_valid = 0;
@@ -197,7 +202,7 @@ static int demi_list_drop(dem_world *w) {
         memset(w->domains[d].met, 0, sizeof w->domains[d].met);
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
-            c->a = (int32_t)w->bodies.slot[c->a];            /* from here on slots */
+            c->a = (int32_t)w->bodies.slot[c->a];
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
     }
@@ -207,7 +212,7 @@ static int demi_list_drop(dem_world *w) {
 
 /* --- the arrays of bodies (demi_body_arrays) --- */
 
-/* Does each body of this world (or slot) have one? */
+/* True if this world has the array. */
 static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
            : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
@@ -215,15 +220,15 @@ static int demi_has(const dem_world *w, const demi_body_array *a) {
            : a->who == DEMI_ZONED ? w->bodies.zoned
            : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
 }
-/* Bytes of one body. */
+/* Returns the bytes of one body in an array. */
 static size_t demi_item(const dem_world *w, const demi_body_array *a) {
     return a->item*(a->who == DEMI_COUNTED ? (size_t)w->bodies.real_count : 1);
 }
-/* Is it state that each body of this world keeps? */
+/* True if the array is state of bodies in this world: copied, saved and restored with them. */
 static int demi_keeps(const dem_world *w, const demi_body_array *a) {
     return a->what && a->who != DEMI_SLOTS && demi_has(w, a);
 }
-/* Bytes that one body keeps in all. */
+/* Returns the bytes of all state of one body. */
 static size_t demi_body_size(const dem_world *w) {
     size_t size = 0;
     int k;
@@ -236,12 +241,12 @@ static char *demi_data(const dem_world *w, const demi_body_array *a) {
     memcpy(&data, (const char *)&w->bodies + a->field, sizeof data);
     return data;
 }
-/* What body i has of it. */
+/* Returns the element of body i in an array. */
 static char *demi_datum(const dem_world *w, const demi_body_array *a, int i) {
     return demi_data(w, a) + (size_t)i*demi_item(w, a);
 }
-/* New room for those arrays that `chosen` names, a bit for each who, keeping the first `used`
-   items. 0 when memory ran out: all are as they were. */
+/* Reallocates the arrays of bodies whose `who` is a bit of `chosen`, and copies the first `used`
+   elements. Returns 0 if memory ran out; all arrays are then unchanged. */
 static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) {
     void *fresh[DEMI_BODY_ARRAYS];
     int k;
@@ -263,11 +268,11 @@ static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) 
     }
     return 1;
 }
-/* Room for so many bodies in all, and for the slots that those to come may need. 0 when memory ran
-   out; arrays that have grown already stay so. */
+/* Reserves memory for this total number of bodies and for the slots that new ones may need. Returns
+   0 if memory ran out; arrays that have grown already stay so. */
 static int demi_bodies_reserve(dem_world *w, size_t count) {
     const size_t old = (size_t)w->bodies.capacity, room = DEMI_MAX(count, old + old/4 + 16);
-    /* slots of removed bodies rest until the next list: each body to come may need a new one */
+    /* slots of removed bodies are free only after a rebuild: each new body may need a new slot */
     const size_t more = count > (size_t)w->bodies.count ? count - (size_t)w->bodies.count : 0;
     const size_t slots = (size_t)w->bodies.slot_count + more;
     const int sets =
@@ -288,7 +293,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
     }
     return 1;
 }
-/* All that body i keeps becomes 0. */
+/* Sets the state of body i to 0. */
 static void demi_body_clear(dem_world *w, int i) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -297,7 +302,7 @@ static void demi_body_clear(dem_world *w, int i) {
             memset(demi_datum(w, a, i), 0, demi_item(w, a));
     }
 }
-/* All that body `from` keeps, into body `to`. */
+/* Copies the state of body `from` to body `to`. */
 static void demi_body_copy(dem_world *w, int from, int to) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -307,7 +312,7 @@ static void demi_body_copy(dem_world *w, int from, int to) {
     }
 }
 
-/* From now on bodies have orientations. 0 when memory ran out; nothing changed then. */
+/* Gives bodies orientations. Returns 0 if memory ran out; nothing has changed then. */
 static int demi_orient_begin(dem_world *w) {
     int i;
     if (w->bodies.orienting) return 1;
@@ -321,7 +326,7 @@ static int demi_orient_begin(dem_world *w) {
     return 1;
 }
 
-/* From here on bodies know in which regions they are. 0 when memory ran out. */
+/* Gives bodies the array `zones` of counting outlets. Returns 0 if memory ran out. */
 static int demi_zones_begin(dem_world *w) {
     if (w->bodies.zoned) return 1;
     if (!demi_bodies_room(w, 1 << DEMI_ZONED, 0, (size_t)w->bodies.capacity)) return 0;
@@ -329,7 +334,7 @@ static int demi_zones_begin(dem_world *w) {
     return 1;
 }
 
-/* J, kinetic, of what moves. */
+/* Returns the kinetic energy of body i, J; 0 if it is fixed. */
 static double demi_body_energy(const dem_world *w, int i) {
     const dem_real *v = w->bodies.vel + 4*i;
     const double m = (double)w->bodies.mass[i];
@@ -338,17 +343,18 @@ static double demi_body_energy(const dem_world *w, int i) {
         (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
-/* What follows from bodies having changed: forces, list and advice must be made anew. */
+/* Marks forces, time step and half-step velocities as outdated, after any change of the scene. */
 static void demi_scene_changed(dem_world *w) {
     w->stage.forces_valid = w->stage.dt_valid = w->stage.primed = 0;
 }
 
-/* Puts one body at the end of the arrays; room and list have been seen to. */
+/* Appends one sphere to the arrays and returns its slot. Memory must be reserved and the neighbour
+   list dropped. */
 static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, dem_vec3 x) {
     const int i = w->bodies.count++;
     const double m = demi_sphere_mass(w, material, (double)radius);
     int slot = w->bodies.slot_free;
-    /* chain: index = -2 - next */
+    /* list of free slots: slot_index is -2 - next */
     if (slot >= 0) w->bodies.slot_free = -2 - w->bodies.slot_index[slot];
     else { slot = w->bodies.slot_count++; w->bodies.slot_generation[slot] = 1; }
     demi_body_clear(w, i);
@@ -370,10 +376,11 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
-/* Why a part of this kind does not know a wall; 0: it does. (>>polyhedra-sieves) */
+/* Returns why contacts between a kind of part and a wall are not available, or null if they are
+   (>>polyhedra-sieves). */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part);
-/* Of a body of this shape (null: a sphere), piece by piece, the kind of part that does not know a
-   wall; -1: all do. */
+/* Returns the first kind of part of a shape (null: a sphere) whose contacts with a wall are not
+   available; -1 if there is none. */
 static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const demi_shape *shape) {
     const int pieces = shape && shape->pieces ? shape->pieces : 1;
     int i;
@@ -383,7 +390,8 @@ static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const d
     }
     return -1;
 }
-/* number: the wall's id. body: its slot, -1: it is yet to come. part: what it is. */
+/* Fails with the reason why a body and a wall cannot be combined. number: the wall's id; body: its
+   slot, -1 for one that is to be added; part: its kind. */
 static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
                                  int body, int part) {
     char who[32] = "the body";
@@ -393,7 +401,7 @@ static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall
                      demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
                      demi_wall_why(w, wall, part));
 }
-/* 1 with a sentence when some wall does not know bodies of a shape that are to be added. */
+/* Returns 1 with an error message if contacts between a shape and some wall are not available. */
 static int demi_walls_strange(dem_world *w, const char *call, int shape) {
     int j;
     for (j = 0; j < w->wall_count; j++) {
@@ -406,18 +414,18 @@ static int demi_walls_strange(dem_world *w, const char *call, int shape) {
     }
     return 0;
 }
-/* Mass of a body of a shape, scaled: flat ones keep their thickness. */
+/* Returns the mass of a body of this shape and scale, kg. Planar bodies keep their thickness. */
 static double demi_shape_mass(const dem_world *w, int material, int shape, double scale) {
     return (double)w->materials[material].density*w->shapes[shape].volume*scale*scale*
         (w->desc.planar ? 1 : scale);
 }
-/* What of an orientation is a rotation in the plane. */
+/* Returns the part of an orientation that is a rotation about z, for planar worlds. */
 static dem_quat demi_quat_flat(dem_quat given) {
     const dem_quat q = demi_quat_unit(given);
     const dem_real l = DEMI_SQRT(q.w*q.w + q.z*q.z);
     return l > 0 ? dem_quat_make(q.w/l, 0, 0, q.z/l) : dem_quat_make(1, 0, 0, 0);
 }
-/* Makes the body just appended one of a shape, scaled. */
+/* Makes the sphere just appended a body of a shape, with its scale and orientation. */
 static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_quat orientation) {
     const demi_shape *as = &w->shapes[shape];
     const double m = demi_shape_mass(w, w->bodies.material[i] - 1, shape, (double)scale);
@@ -484,7 +492,7 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
     return dem_body_id_get(w, w->bodies.count - 1);
 }
 
-/* 0 with a sentence when an array for bodies has a bad value. */
+/* Returns 0 with an error message if an array for new bodies has a bad value. */
 static int demi_bodies_check(dem_world *w, const char *call, int count, const dem_real *x,
                              const dem_real *q, const dem_real *v, const dem_real *spin,
                              const dem_real *scale) {
@@ -517,7 +525,8 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     }
     return 1;
 }
-/* 1 with a sentence when a body of a shape, scaled, would weigh nothing or too much. */
+/* Returns 1 with an error message if the mass or inertia of a scaled shape, or its inverse, is 0 or
+   not finite. */
 static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int shape,
                                   dem_real scale, int i) {
     const double s = (double)scale, m = demi_shape_mass(w, material, shape, s);
@@ -536,8 +545,8 @@ static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, 
                   DEMI_SINGLE ? "single" : "double");
     return bad;
 }
-/* All that may be refused comes first, then the one place where memory may run out, then what
-   cannot fail: so a refused call adds nobody. */
+/* Adds bodies of a shape. All checks come first, then the allocations, then what cannot fail, so a
+   call that fails adds no body. */
 static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material material,
                                   dem_shape shape, int count, const dem_real *positions,
                                   const dem_real *orientations, const dem_real *velocities,
@@ -592,7 +601,7 @@ DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape sha
     return dem_body_id_get(w, w->bodies.count - 1);
 }
 
-/* Index of a body, or -1 with a sentence. */
+/* Returns the index of a body, or -1 with an error message. */
 static int demi_body_index(dem_world *w, const char *call, dem_body b) {
     if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
         w->bodies.slot_generation[b.slot - 1] != b.generation ||
@@ -605,9 +614,9 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
     return w->bodies.slot_index[b.slot - 1];
 }
 
-/* The last body moves to the place that becomes free. The slot rests until the next list is made
-   (demi_slots_release): contact memory on its way still names it. Its generation goes up, so that
-   ids of old find nobody. */
+/* Removes body i; the last body takes its index. The slot is not used again before the next rebuild
+   (demi_slots_release), because filed contact history still refers to it. Its generation increases,
+   so that old ids become invalid. */
 static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
     w->booked.removed += demi_body_energy(w, i);
@@ -657,7 +666,7 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     s->shape.id = w->bodies.orienting ? w->bodies.shape[i] : 0;
     s->orientation = dem_quat_make(1, 0, 0, 0);
     if (w->bodies.orienting) s->orientation = demi_quat_at(w->bodies.orient + 4*i);
-    if (demi_shape_of(w, i))                     /* as its user gave it */
+    if (demi_shape_of(w, i))                     /* as the user gave it */
         s->orientation = dem_quat_multiply(s->orientation,
                                         demi_quat_conjugate(demi_shape_of(w, i)->frame));
     return DEM_OK;
@@ -689,7 +698,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (w->desc.planar)
         w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = w->bodies.spin[4*i] =
             w->bodies.spin[4*i + 1] = 0;
-    /* never moves, whatever it is told */
+    /* a fixed body does not move, whatever velocity was given */
     if (s->fixed) demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));
     if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
     demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
@@ -711,7 +720,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     return DEM_OK;
 }
 
-/* Mass, number and mean velocity of the bodies that can move, and their temperature. */
+/* Returns the granular temperature of the bodies that can move, m2/s2: the mass-weighted variance
+   of velocity per axis. Also gives their mass, kg, number and mean velocity, m/s. */
 static double demi_temperature(const dem_world *w, double *mass, int *count, double *mean) {
     const int axes = w->desc.planar ? 2 : 3;
     double sum = 0, rest;
@@ -720,7 +730,7 @@ static double demi_temperature(const dem_world *w, double *mass, int *count, dou
     *count = 0;
     memset(mean, 0, 3*sizeof *mean);
     for (pass = 0; pass < 2; pass++)
-        for (i = 0; i < w->bodies.slot_count; i++) {      /* by slot: whatever the order is */
+        for (i = 0; i < w->bodies.slot_count; i++) {      /* by slot: independent of the order */
             const int b = w->bodies.slot_index[i];
             const double m = b < 0 ? 0 : (double)w->bodies.mass[b];
             if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
@@ -735,7 +745,7 @@ static double demi_temperature(const dem_world *w, double *mass, int *count, dou
     if (*count < 2) return 0;
     sum /= axes* *mass;
     rest = mean[0]*mean[0] + mean[1]*mean[1] + mean[2]*mean[2];
-    /* what rounding leaves of equal velocities is no temperature */
+    /* 0 if the velocities are equal up to round-off */
     return sum > 1e-12*DEMI_SINGLE*rest + 1e-28*rest ? sum : 0;
 }
 DEM_API double dem_temperature_get(const dem_world *w) {
@@ -758,7 +768,7 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
                          "velocities to scale: give a seed to draw velocities", temperature, count,
                          was);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_temperature_set");
-    /* first, with a seed, the velocities are drawn; then they are scaled */
+    /* pass 0, with a seed: draws velocities; pass 1: scales them */
     for (pass = seed ? 0 : 1; pass < 2; pass++) {
         double now = demi_temperature(w, &mass, &count, drawn), scale;
         scale = now > 0 ? sqrt(temperature/now) : 0;
@@ -799,7 +809,7 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     b.rates = w->bodies.rates;
     return b;
 }
-/* Refuses a call about numbers of the user's where there are none, or that are not finite. */
+/* Fails if bodies have no user-defined numbers, or, with `setting`, if a number is not finite. */
 static dem_result demi_reals_ask(const dem_world *world, const char *call, const dem_real *reals,
                                  int count, int setting) {
     dem_world *w = (dem_world *)world;

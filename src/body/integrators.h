@@ -1,18 +1,20 @@
 /* ---------------------------------------------------------------------------------------------
    >>integrators
-   Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same
-   time t_n; half_vel is the mean velocity of the step that led there, v(t_n - dt/2). Each scheme
-   is one function over a range of bodies; `synced` = 0 says the step before was not finished, so
-   that its last half kick is still due (it is merged with the first one of this step: same
-   arithmetic). Rotation runs along in the same scheme (position Verlet: leapfrog).
+   Time integration: kick, drift, and a prediction of the velocity for contact laws. Between steps
+   pos, vel and force belong to the same time t_n; half_vel is the mean velocity of the last step,
+   v(t_n - dt/2). Each scheme is one function over a range of bodies. `synced` = 0 means that the
+   last half kick of the step before is still due; it is merged with the first one of this step, in
+   the same arithmetic. Spins are integrated by the same scheme (with position Verlet: leapfrog).
+   Moves w->bodies and nothing else.
    >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
    --------------------------------------------------------------------------------------------- */
-typedef struct demi_lane {           /* one body's translation or rotation */
+typedef struct demi_lane {           /* translation or rotation of one body */
     dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each */
     dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
 } demi_lane;
 
-/* v(t + dt/2) = v(t - dt/2) + a dt, and what a law will see: v(t + dt), a taken as constant. */
+/* v(t + dt/2) = v(t - dt/2) + a dt, and the prediction v(t + dt) with constant a for contact laws.
+   h is dt/2. */
 DEM_INLINE void demi_kick_leapfrog(const demi_lane *b, dem_real h) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -27,8 +29,8 @@ DEM_INLINE void demi_finish_half(const demi_lane *b, dem_real h) {
     for (k = 0; k < 3; k++) b->v[k] = b->half[k] + (b->f[k]*b->inv + b->g[k])*h;
 }
 
-/* A body as the schemes see it, its motion and its spin alike: what does not move has 1/mass 0, and
-   no weight. */
+/* Returns the translation (demi_lane_move) or the rotation (demi_lane_turn) of a body, so that the
+   schemes treat both alike. A fixed body has 1/mass 0 and no gravity. */
 DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
     demi_lane b;
     b.v = w->bodies.vel + 4*i; b.half = w->bodies.half_vel + 4*i; b.f = w->bodies.force + 4*i;
@@ -46,8 +48,9 @@ DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
     return b;
 }
 
-/* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half. By rows of four, the
-   last of which stays zero (in pos: the radius, which zero does not move): rows make vectors. */
+/* Velocity Verlet: x(t+dt) = x + dt (v + a dt/2): half kick, drift, prediction; the second half
+   kick comes later. Loops include the fourth real of each body, so that compilers vectorise them:
+   its velocity is 0, which leaves the radius in pos unchanged. */
 static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
     const int synced = w->stage.synced;
@@ -76,7 +79,7 @@ static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turn
             v[k] = half + kick;
         }
 }
-/* v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
+/* Leapfrog: v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
 static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
     int i, k;
@@ -91,7 +94,8 @@ static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
         demi_kick_leapfrog(&b, h);
     }
 }
-/* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [ALK07] eq 2.3; v from differences, predicted with a */
+/* Position Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [ALK07] eq 2.3; v from differences of
+   positions, predicted with a */
 static void demi_move_position_verlet(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
     int i, k;
@@ -112,7 +116,7 @@ static void demi_move_position_verlet(dem_world *w, int begin, int end, int turn
         demi_kick_leapfrog(&b, h);
     }
 }
-/* v(t+dt) = v + a dt, x(t+dt) = x + v(t+dt) dt */
+/* Symplectic Euler: v(t+dt) = v + a dt, x(t+dt) = x + v(t+dt) dt */
 static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt;
     int i, k;
@@ -125,7 +129,7 @@ static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int tur
         }
     }
 }
-/* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
+/* Forward Euler: x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
 static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt;
     int i, k;
@@ -140,9 +144,10 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
         }
     }
 }
-/* x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt: impulses, found at x + v dt/2.
-   A velocity that somebody has set may go into a wall, or part a joint: there they are found at x,
-   and take it off before the body goes. */
+/* Midpoint rule, for impulses: x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt,
+   with contacts detected at x + v dt/2. A velocity that the user has set may point into a wall or
+   part a joint. In the first step after that (`went` 0) contacts are detected at x, and the
+   impulses change the velocity before the body moves. */
 static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt;
     int i, k;
@@ -156,7 +161,7 @@ static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
 }
 static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
     (void)end; }
-/* Velocities of the present time, for schemes that stand at the half step. */
+/* Second half kick, for schemes whose velocities are at the half step. */
 static void demi_finish_halves(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick;
     int i;
@@ -166,11 +171,11 @@ static void demi_finish_halves(dem_world *w, int begin, int end) {
         demi_finish_half(&s, h);
     }
 }
-/* For the ledger: by how much the velocities that laws have seen fell short of the derivative of
-   the path. With x''' = j the prediction falls short by j dt^2/2, and the step's end velocity,
-   which is the central difference of three places, is ahead by j dt^2/6: two thirds of the way from
-   one to the other the errors of second order are gone, of dashpots' losses and of the work of
-   springs alike. */
+/* For the ledger: stores in `late` by how much the velocities used by contact laws were too low,
+   m/s. With x''' = j the prediction is too low by j dt^2/2, and the final velocity of the step, the
+   central difference of three positions, is too high by j dt^2/6. At two thirds of the way from the
+   first to the second the errors of second order cancel, both in the losses of dashpots and in the
+   work of springs. */
 static void demi_late_note(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick, part = DEM_R(2.0)/3;
     const dem_real *DEMI_RESTRICT v = w->bodies.vel, *DEMI_RESTRICT u = w->bodies.half_vel;
@@ -184,7 +189,7 @@ static void demi_late_note(dem_world *w, int begin, int end) {
             late[k] = (u[k] - v[k] + (f[k]*m + g[k - 4*i]*free_fall)*h)*part;
     }
 }
-/* What half_vel and half_spin must be before the first step from a state at t. */
+/* Sets half_vel, half_spin and what depends on them for the first step from a state at time t. */
 static void demi_prime_body(dem_world *w, int i) {
     const dem_real dt = w->clock.dt, h = dt/2;
     const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
@@ -206,39 +211,41 @@ static void demi_prime(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) demi_prime_body(w, i);
     w->stage.primed = 1;
 }
-/* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
-       somebody asked for it, follows. A body that is not a sphere keeps its angular momentum in the
-       world's frame, L(t - dt/2), which torques kick: L(t + dt/2) = L(t - dt/2) + T(t) dt. In
-       between it flies free: from q(t) with L to q(t + dt), by one of the functions below; free
-       flight leaves L as it is, to the bit. What a law sees: half_spin, the mean over the flight,
-       and spin, predicted with the last torque. All are of second order under torques. Checked by
-       tests of rotation (free flight against elliptic functions, order, tops). --- */
+/* --- rotation. The spin of a sphere is integrated by the scheme of its translation; with
+       desc.orientations, its orientation follows from the spin. Other bodies store their angular
+       momentum in the world frame, L(t - dt/2), which torques kick: L(t + dt/2) = L(t - dt/2) +
+       T(t) dt. Between kicks the body rotates freely from q(t) with L to q(t + dt), by one of the
+       functions below, which leave L unchanged to the bit. Contact laws use half_spin, the mean
+       over the step, and spin, predicted with the last torque. All functions are of second order
+       under torques. Tests: free rotation against elliptic functions, order, tops. --- */
 
-/* The rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
+/* Returns the rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
 DEM_INLINE dem_quat demi_quat_exp(dem_vec3 v) {
     const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
-    /* cos and half of sin x/x; products with constants, which quotients would not become */
+    /* cos and half of sin x/x, as products: compilers do not turn divisions into products */
     const dem_real c = 1 + x*(DEM_R(-1.0/2) + x*(DEM_R(1.0/24) + x*(DEM_R(-1.0/720) +
         x*(DEM_R(1.0/40320) + x*(DEM_R(-1.0/3628800) + x*DEM_R(1.0/479001600))))));
     const dem_real s = DEM_R(0.5) + x*(DEM_R(-1.0/12) + x*(DEM_R(1.0/240) + x*(DEM_R(-1.0/10080) +
         x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
     return dem_quat_make(c, s*v.x, s*v.y, s*v.z);
 }
-/* As demi_quat_unit, for what is nearly one, in kernels. */
+/* Normalises a quaternion that is nearly a unit one; cheaper than demi_quat_unit, for kernels. */
 DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
     const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
     return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
 }
-/* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a
-   third order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little
-   every step. Here the torque is in the kick alone, and the flight is that of a free body: Taylor's
-   series of w to third order, w' = I^-1 (I w x w), give its mean and its end,
-       mean = w + h w'/2 + h^2 w''/6 + h^3 w'''/24,   end = w + h w' + h^2 w''/2 + h^3 w'''/6;
-   q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
-   puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight:
-   order 3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
-   (docs/shapes.md). I, inv: principal moments, their inverses; answers the mean, in the body's
-   frame. */
+/* Free rotation by SPIRAL [SPI24], modified to conserve angular momentum. The original advances w
+   from one half step to the next by a third-order Runge-Kutta step that includes the torque, and q
+   by q exp(dt w/2); both lose some L in every step. Here the torque acts in the kick only, and the
+   body rotates freely in between. Taylor series of w to third order, with w' = I^-1 (I w x w), give
+   its mean and its end,
+       mean = w + h w'/2 + h^2 w''/6 + h^3 w'''/24,   end = w + h w' + h^2 w''/2 + h^3 w'''/6.
+   q is rotated by the mean and the first term of the Magnus expansion, h (w x end)/12, and then by
+   the small rotation that makes I end parallel to R^T L. This removes two of the three error
+   components of q and keeps L and |q| exact. Free rotation is of order 3 in q. At |w| h = 0.1 the
+   error is 10 times smaller than that of the original, and the energy drift 9 times
+   (docs/shapes.md). I, inv: principal moments and their inverses. Returns the mean spin in the body
+   frame, rad/s. */
 DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                        dem_real h) {
     const dem_vec3 m = dem_quat_unrotate(*q, L);
@@ -264,9 +271,9 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     *q = demi_quat_again(dem_quat_multiply(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
-/* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
-   about their axis): half an Euler step for q at the middle, w there from L, a whole step with
-   that. */
+/* Free rotation by [FIN92]. Half an Euler step gives q in the middle of the step; L and that q give
+   w there; a whole step with that w gives q at the end. [RUB15] eq 17 to 21 uses it with w instead
+   of L, which is the same for spheroids that do not spin about their axis. */
 static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                     dem_real h) {
     const dem_quat start = *q;
@@ -283,8 +290,8 @@ static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec
                                       start.z + by.z));
     return dem_quat_unrotate(start, dem_quat_rotate(mid, w));
 }
-/* NO_SQUISH's splitting [DLM97]: free rotation about x, y, z, y, x in turn, each exact; symplectic,
-   so that energy swings and does not drift. */
+/* Free rotation by the splitting of NO_SQUISH [DLM97]: exact rotations about x, y, z, y, x in turn.
+   It is symplectic: the energy oscillates and does not drift. */
 static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                       dem_real h) {
     static const int order[5] = {0, 1, 2, 1, 0};
@@ -317,21 +324,22 @@ static const demi_rotation_row demi_rotation_rows[] = {         /* in the order 
     {"NO_SQUISH", demi_flight_splitting},
 };
 enum { DEMI_ROTATIONS = (int)(sizeof demi_rotation_rows/sizeof *demi_rotation_rows) };
-/* Spin of a body with angular momentum L. */
+/* Returns the spin of a body with angular momentum L, world frame, rad/s. */
 DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
     const dem_vec3 m = dem_quat_unrotate(q, L);
     return dem_quat_rotate(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
 }
 
-/* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
+/* A tile of rotating bodies, as a structure of arrays that compilers can vectorise: orientations,
+   angular momenta, torques, principal moments with moment_arm, and results. */
 typedef struct demi_turning {
     dem_real q[4][DEMI_ROOM], L[3][DEMI_ROOM], T[3][DEMI_ROOM], I[4][DEMI_ROOM];
     dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
-    dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the moment_arm's end */
+    dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the end of moment_arm */
     dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
 } demi_turning;
-/* One body of the tile: kicks L by T kick, flies for dt, and says what a law will see, with L + T
-   after, and how fast it was. */
+/* Body l of a tile: kicks L by T kick, rotates freely for dt, and predicts spin with L + T after.
+   Also stores the squares of its speed and change of speed. */
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
                                  dem_real after) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
@@ -353,7 +361,7 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     t->half[0][l] = half.x; t->half[1][l] = half.y; t->half[2][l] = half.z;
     t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
 }
-/* The common one, without a question inside, so that it becomes vectors. */
+/* The default scheme for a whole tile, without a branch inside, so that it is vectorised. */
 DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real kick, dem_real dt,
                                             dem_real after) {
     int l, q;
@@ -370,10 +378,11 @@ static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem
     else for (l = 0; l < count; l++)
         demi_turning_fly(t, l, (int)w->desc.rotation, kick, dt, after);
 }
-/* How long bodies turn: a step, as springs do it; one in halves, kicked in between, as impulses do;
-   the half to where their contacts are found. */
+/* How bodies rotate: over a whole step, with springs; over two halves with a kick in between, with
+   impulses; over half a step without a kick, for contact detection with impulses (demi_ahead). */
 enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
-/* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
+/* Rotates the listed bodies other than spheres, at most a tile. Unless `domain` is null, it
+   receives the largest speeds of rotation and their changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
     const dem_real dt = w->clock.dt;
@@ -381,14 +390,14 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     int l, e;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     dem_real turn = 0, speed = 0, rate = 0, check = 0;
-    for (l = 0; l < full; l++) {                /* groups filled up with the last one */
+    for (l = 0; l < full; l++) {                /* padded with copies of the last one */
         size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
         DEMI_ONE_BY_ONE(i);
         for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
         for (e = 0; e < 4; e++) t.I[e][l] = w->bodies.moment[i + (size_t)e];
         for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.angular[i + (size_t)e];
         for (e = 0; e < 3; e++) t.T[e][l] = w->bodies.torque[i + (size_t)e];
-        if (how == DEMI_TURN_HALVES && !w->bodies.went[i/4])    /* as they move */
+        if (how == DEMI_TURN_HALVES && !w->bodies.went[i/4])    /* as in demi_move_midpoint */
             for (e = 0; e < 3; e++) { t.L[e][l] += t.T[e][l]*dt; t.T[e][l] = 0; }
     }
     if (how == DEMI_TURN_STEP) demi_turning_all(w, &t, full, dt, dt, dt/2);
@@ -429,7 +438,7 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
     domain->check += (double)check;
 }
-/* The same for spheres, whose spins L has: exp(w dt/2) q, w of the world's frame. */
+/* The same for spheres: q becomes exp(w dt/2) q, with the spin w in the world frame stored in L. */
 DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
     int l, k;
     for (k = 0; k < count; k += DEMI_LANES) {
@@ -442,6 +451,7 @@ DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real 
         }
     }
 }
+/* Rotates the listed spheres, at most a tile. */
 static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
     const dem_real *now = w->bodies.spin, *mean = w->bodies.half_spin;
     const dem_real dt = how == DEMI_TURN_STEP ? w->clock.dt : w->clock.dt/2;
@@ -462,8 +472,8 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
-/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres: over a step;
-   without a domain half a step ahead. */
+/* Advances the orientations of bodies begin .. end - 1, and the spins of those that are not
+   spheres, by a step; by half a step, for contact detection, if `domain` is null. */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
     const int how = !domain ? DEMI_TURN_AHEAD
         : demi_response_is(w, DEMI_MIDWAY) ? DEMI_TURN_HALVES : DEMI_TURN_STEP;
@@ -484,7 +494,8 @@ static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int e
     if (count) demi_orient_some(w, domain, who, count, how);
     if (ball_count) demi_orient_balls(w, balls, ball_count, how);
 }
-/* Spins at the full step, from angular momentum at the half step and the torque of now. */
+/* Computes spins at the full step from the angular momentum at the half step and the present
+   torque. */
 static void demi_orient_finish(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick;
     int i;
@@ -500,11 +511,13 @@ static void demi_orient_finish(dem_world *w, int begin, int end) {
 
 typedef struct demi_integrator_row {
     const char *name;
+    /* a step of bodies begin .. end - 1; turning: 1 if spins are integrated */
     void (*advance)(dem_world *w, int begin, int end, int turning);
-    void (*finish)(dem_world *w, int begin, int end);
+    void (*finish)(dem_world *w, int begin, int end);       /* second half kick, if any */
     int order;
-    int backward;                  /* it needs last_pos, the places of one step ago */
-    int predicts;                  /* laws see velocities that the step's forces still change */
+    int backward;                  /* 1: needs last_pos, the positions of the last step */
+    int predicts;                  /* 1: contact laws use velocities that the forces of the step
+                                      still change */
 } demi_integrator_row;
 static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
     {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, 1},
@@ -514,7 +527,8 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
-/* The midpoint rule, whose velocities are finished at once, is a response's own. */
+/* Returns the scheme in force: the midpoint rule with impulses, otherwise that of
+   desc.integrator. */
 static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
     static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
                                                  demi_finish_nothing, 2, 1, 0};
@@ -522,14 +536,15 @@ static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
         : demi_integrator_rows + w->desc.integrator;
 }
 
+/* Completes the step of one domain's bodies, see demi_finish. */
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
     demi_integrator_of(w)->finish(w, w->domains[d].begin, w->domains[d].end);
     if (w->bodies.shaped) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
-/* Completes the half kick that a step leaves open: velocities are then those of the present time.
-   */
+/* Performs the second half kick that a step leaves open. Velocities then belong to the present
+   time. */
 static void demi_finish(dem_world *w) {
     if (w->stage.synced) return;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);

@@ -288,7 +288,7 @@ static void demi_block_invert(double *m, double sign, const dem_real *least) {
             f[6*j + i] = j > i ? sum*f[7*i] : 1/sqrt(DEMI_MAX(sum, least ? (double)least[i]
                                                                         : DBL_MIN));
         }
-    for (i = 0; i < 6; i++) {                   /* inverse of the factor f, whose diagonal is inverted already */
+    for (i = 0; i < 6; i++) {                   /* of f; its diagonal is inverted already */
         inv[7*i] = f[7*i];
         for (j = i + 1; j < 6; j++) {
             double sum = 0;
