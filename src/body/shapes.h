@@ -1,9 +1,9 @@
 /* ---------------------------------------------------------------------------------------------
    >>shapes
    Ellipsoids and rigid clusters of spheres: mass properties, support heights, contact of two
-   ellipsoids. A shape is stored in its principal frame about its centre of mass, per unit of mass
-   and scale. A body has a position, a quaternion and the radius of its bounding sphere, which gives
-   its scale. Uses no material and no law.
+   ellipsoids (narrow phase). A shape is stored in its principal frame about its centre of mass, per
+   unit of mass and scale. A body has a position, a quaternion and the radius of its bounding
+   sphere, which determines its scale. Owns w->shapes; uses no material and no law.
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle) {
     const dem_vec3 e = demi_unit(axis);
@@ -18,28 +18,28 @@ static dem_quat demi_quat_conjugate(dem_quat q) { return dem_quat_make(q.w, -q.x
 static int demi_quat_finite(dem_quat q) {
     return demi_finite(q.w) && demi_finite(q.x) && demi_finite(q.y) && demi_finite(q.z);
 }
-/* The largest of its components. */
+/* Returns the largest magnitude of a component. */
 static double demi_quat_most(dem_quat q) {
     const double a = fabs((double)q.w), b = fabs((double)q.x), c = fabs((double)q.y);
     const double d = fabs((double)q.z), ab = DEMI_MAX(a, b), cd = DEMI_MAX(c, d);
     return DEMI_MAX(ab, cd);
 }
-/* Made a unit one; not for zero. */
+/* Returns q normalised; q must not be 0. */
 static dem_quat demi_quat_unit(dem_quat q) {
     const double most = demi_quat_most(q);      /* first: squares may be too large or small */
     const double w = (double)q.w/most, x = (double)q.x/most, y = (double)q.y/most;
     const double z = (double)q.z/most, l = sqrt(w*w + x*x + y*y + z*z);
     return dem_quat_make((dem_real)(w/l), (dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
-/* A rotation as a matrix, in double precision. */
+/* Computes the matrix of a rotation, 3 x 3 by rows, in double precision. */
 static void demi_rotation_of(dem_quat q, double *R) {
     const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
     R[0] = 1 - 2*(y*y + z*z); R[1] = 2*(x*y - w*z);     R[2] = 2*(x*z + w*y);
     R[3] = 2*(x*y + w*z);     R[4] = 1 - 2*(x*x + z*z); R[5] = 2*(y*z - w*x);
     R[6] = 2*(x*z - w*y);     R[7] = 2*(y*z + w*x);     R[8] = 1 - 2*(x*x + y*y);
 }
-/* Of the rotation whose matrix has these columns (Shepperd): the largest component comes first, so
-   that nothing small is divided by. */
+/* Returns the quaternion of a rotation matrix (Shepperd). The largest component is computed first,
+   so that no small number is a divisor. */
 static dem_quat demi_quat_of(double R[3][3]) {
     const double t = R[0][0] + R[1][1] + R[2][2];
     double q[4];
@@ -63,8 +63,8 @@ static dem_quat demi_quat_of(double R[3][3]) {
 
 /* --- mass properties --- */
 
-/* Eigenvalues of a symmetric matrix, on its diagonal afterwards, and eigenvectors, as columns of E,
-   by Jacobi's rotations. E is a rotation. */
+/* Diagonalises a symmetric matrix by Jacobi rotations: its diagonal receives the eigenvalues, the
+   columns of E the eigenvectors. E is a rotation. */
 static void demi_jacobi3(double M[3][3], double E[3][3]) {
     int i, j, k, sweep;
     for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) E[i][j] = i == j;
@@ -99,24 +99,24 @@ static void demi_jacobi3(double M[3][3], double E[3][3]) {
     }
 }
 
-/* Parts of a body: the spheres of a cluster, or the one it is. */
+/* A part of a body: a sphere of a cluster, a piece of a union, or the whole body. */
 typedef struct demi_part {
     int kind;                      /* DEMI_BALL, ... */
-    dem_real radius;               /* m, of the bounding sphere: a ball's own */
-    dem_vec3 centre;               /* m, from the body's */
-    dem_vec3 axes;                 /* m, of all but balls: lengths as its kind has them */
-    dem_quat q;                    /* of all but balls */
-    const demi_shape *shape;       /* of all but balls; its lengths times scale */
+    dem_real radius;               /* m, of the bounding sphere; of a sphere: its own */
+    dem_vec3 centre;               /* m, from the body's centre */
+    dem_vec3 axes;                 /* m, not of spheres: lengths with a meaning for each kind */
+    dem_quat q;                    /* orientation, not of spheres */
+    const demi_shape *shape;       /* not of spheres; multiply its lengths by scale */
     dem_real scale;
 } demi_part;
-/* What a kind of part tells of itself, and how two keep apart; what touches stands in >>meets. */
+/* Properties of a kind of part, and the gap between two. Contacts are in >>meets. */
 typedef struct demi_shape_row {
     const char *name;
     dem_real (*support)(const demi_shape *s, dem_vec3 n);     /* m, how far along n (unit) */
     dem_real (*thin)(const demi_part *p);               /* m, smallest radius */
     double (*equal)(const demi_part *p);                /* m, radius of the sphere of its volume */
-    double (*curve)(const demi_part *p, double h);      /* m, of curvature where its height is h */
-    dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes of what files show */
+    double (*curve)(const demi_part *p, double h);      /* m, radius of curvature at height h */
+    dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes drawn in output files */
     dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
 } demi_shape_row;
 #define DEMI_SHAPE_DECLARE(KIND, NAME, WORD, GAP, TOUCH) \
@@ -132,13 +132,12 @@ DEMI_SHAPES(DEMI_SHAPE_DECLARE)
      demi_##NAME##_drawn, GAP},
 static const demi_shape_row demi_shape_rows[] = {DEMI_SHAPES(DEMI_SHAPE_ROW)};
 static int demi_shape_kind(const demi_shape *shape) { return shape ? shape->kind : DEMI_BALL; }
-/* "a sphere", "an ellipsoid". */
+/* Returns the "n" of the article in "an ellipsoid", or "". */
 static const char *demi_an(const char *name) { return strchr("aeiou", name[0]) ? "n" : ""; }
 
-/* Volume, first and second moments of matter about the origin: 1, x y z, xx yy zz xy xz yz. */
+/* Volume integrals over a body, about the origin: of 1, x y z, xx yy zz xy xz yz. */
 typedef struct demi_moments { double one, x[3], xx[6]; } demi_moments;
-/* Adds matter of volume v about c; own: its mean square extent along an axis, about its own
-   centre. */
+/* Adds a piece of volume v with its centre at c. own: m2, its mean square extent along an axis. */
 static void demi_moments_add(demi_moments *m, double v, const double *c, double own) {
     int k;
     m->one += v;
@@ -150,9 +149,9 @@ static void demi_moments_add(demi_moments *m, double v, const double *c, double 
     m->xx[4] += v*c[0]*c[2];
     m->xx[5] += v*c[1]*c[2];
 }
-/* The union of spheres by rays along x through the middles of rays x rays squares of their outline:
-   along a ray the union of intervals is exact. 512 rays: a few 1e-6 for three spheres. room: two
-   doubles per sphere. */
+/* Adds the union of a cluster's spheres, so that overlaps count once: by rays along x through the
+   centres of rays x rays cells of their outline. Along a ray the union of intervals is exact. With
+   512 rays the error is a few 1e-6 for three spheres. room: two doubles per sphere. */
 static void demi_moments_union(const demi_shape *shape, int rays, double *room, demi_moments *m) {
     double lo[2], hi[2], step[2];
     int i, j, k, e, n;
@@ -170,7 +169,7 @@ static void demi_moments_union(const demi_shape *shape, int rays, double *room, 
             double c[3], from, to;
             c[1] = lo[0] + (j + 0.5)*step[0];
             c[2] = lo[1] + (k + 0.5)*step[1];
-            for (i = n = 0; i < shape->count; i++) {     /* intervals, sorted as they come */
+            for (i = n = 0; i < shape->count; i++) {     /* intervals, insertion sort */
                 const double y = c[1] - (double)shape->parts[4*i + 1];
                 const double z = c[2] - (double)shape->parts[4*i + 2];
                 const double r = (double)shape->parts[4*i + 3], h = r*r - y*y - z*z;
@@ -197,7 +196,7 @@ static void demi_moments_union(const demi_shape *shape, int rays, double *room, 
         }
 }
 
-/* Turns moments into the shape's volume, centre, principal frame and moments per mass. */
+/* Computes a shape's volume, centre of mass, principal frame and moments of inertia per mass. */
 static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
     double M[3][3], E[3][3], c[3], trace, I[6];
     int i, k;
@@ -209,8 +208,8 @@ static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
     I[3] -= c[0]*c[1]; I[4] -= c[0]*c[2]; I[5] -= c[1]*c[2];
     M[0][0] = I[0]; M[1][1] = I[1]; M[2][2] = I[2];
     M[0][1] = M[1][0] = I[3]; M[0][2] = M[2][0] = I[4]; M[1][2] = M[2][1] = I[5];
-    trace = I[0] + I[1] + I[2];                 /* spread of matter -> moments of inertia */
-    for (i = 0; i < 3; i++)                     /* round-off is no reason to turn the frame */
+    trace = I[0] + I[1] + I[2];                 /* second moments -> moments of inertia */
+    for (i = 0; i < 3; i++)                     /* round-off must not rotate the frame */
         for (k = 0; k < 3; k++) if (i != k && fabs(M[i][k]) < 1e-12*trace) M[i][k] = 0;
     demi_jacobi3(M, E);
     shape->inertia = demi_v((dem_real)(trace - M[0][0]), (dem_real)(trace - M[1][1]),
@@ -218,9 +217,10 @@ static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
     shape->frame = demi_quat_of(E);
 }
 
-/* What the search and the time step want to know of a shape: how far it reaches, how far from the
-   centre a contact's force may pass, its smallest radius, and how light and blunt it may seem in a
-   contact: mass 1/g over (l/h)^2 at worst, g = n.K n of its own half. */
+/* Sets the bounds of a cluster for contact detection and the time step: bounding radius, largest
+   lever arm of a contact force, smallest and largest radius of curvature (thin, blunt) and smallest
+   effective mass over mass (light): 1/g over (l/h)^2, with g = n.K n of this body alone, l the
+   radius of equal volume and h the support height. */
 static void demi_cluster_bounds(demi_shape *shape) {
     const dem_vec3 I = shape->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
@@ -236,6 +236,7 @@ static void demi_cluster_bounds(demi_shape *shape) {
     }
     shape->light = 1/(1 + (double)shape->moment_arm*(double)shape->moment_arm/least);
 }
+/* The same for an ellipsoid. */
 static void demi_ellipsoid_bounds(demi_shape *shape) {
     const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
                          (double)shape->inertia.z};
@@ -257,16 +258,16 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
         }
 }
 
-/* Takes over a prepared shape (its array included) or frees it. */
+/* Frees the arrays of a shape. */
 static void demi_shape_free(dem_world *w, demi_shape *shape) {
     demi_free(w, shape->parts);
     demi_free(w, shape->piece);
     demi_free(w, shape->hull);
     demi_free(w, shape->rim);
 }
-/* Do parts of these two kinds know each other? (>>meets) */
+/* True if contacts between parts of these two kinds are available (>>meets). */
 static int demi_meet_known(int kind, int other);
-/* 1 with a sentence when a shape that is to be added does not know another, its like or spheres. */
+/* Returns 1 with an error message if contacts of a new kind with some shape are not available. */
 static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
     int i, other;
     for (i = -1; i <= w->shape_count; i++) {
@@ -281,6 +282,7 @@ static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
     }
     return 0;
 }
+/* Adds a prepared shape to the world and takes over its arrays; frees them if that fails. */
 static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *shape) {
     dem_shape id = demi_no_shape;
     if (demi_shapes_strange(w, call, shape->kind)) { demi_shape_free(w, shape); return id; }
@@ -289,14 +291,14 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
         demi_no_memory(w, call);
         return id;
     }
-    if (!(shape->equal > 0))                    /* a polygon's is not that of its volume */
+    if (!(shape->equal > 0))                    /* polygons have set theirs */
         shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
     w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
     id.id = w->shape_count;
     return id;
 }
-/* 1 with a sentence where bodies are flat: shapes are of three dimensions. */
+/* Returns 1 with an error message in a planar world, which has no shapes of three dimensions. */
 static int demi_shape_planar(dem_world *w, const char *call) {
     if (!w->desc.planar) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar and holds only discs and polygons; "
@@ -326,7 +328,7 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     return demi_shape_adopt(w, "dem_shape_ellipsoid_add", &shape);
 }
 
-/* Do no two spheres overlap? Then there is nothing to count twice. */
+/* True if no two spheres of a cluster overlap, so that no volume counts twice. */
 static int demi_cluster_apart(const demi_shape *shape) {
     int i, j;
     for (i = 0; i < shape->count; i++)
@@ -337,8 +339,8 @@ static int demi_cluster_apart(const demi_shape *shape) {
         }
     return 1;
 }
-/* Moments of a cluster, by the way its desc asks for. 0 when memory ran out. ([MIL] gives its
-   tetrahedra the inertia of a sphere, and updates spins without the gyroscopic part.) */
+/* Computes the moments of a cluster as its desc requires. Returns 0 if memory ran out. ([MIL] gives
+   its tetrahedra the inertia of a sphere, and updates spins without the gyroscopic term.) */
 static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
                                 demi_moments *m) {
     int i, k;
@@ -369,7 +371,7 @@ static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, cons
         return 1;
     }
 }
-/* 0 with a sentence when the desc is not right. */
+/* Returns 0 with an error message if the desc of a cluster is not allowed. */
 static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
     const char *call = "dem_shape_cluster_add";
     const dem_real *I = desc->inertia;
@@ -406,7 +408,7 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
               (double)I[2]);
     return 0;
 }
-/* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
+/* Returns 1 with an error message if the rays are so far apart that they may miss a sphere. */
 static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
                                dem_real least) {
     const int rays = desc->rays > 0 ? desc->rays : 512;
@@ -441,7 +443,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     shape.count = desc->count;
     shape.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)shape.count, sizeof(dem_real));
     if (!shape.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
-    /* a frame may be far off */
+    /* relative to the first sphere, for precision */
     if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
     for (i = 0; i < shape.count; i++) {
         demi_put(shape.parts + 4*i, demi_sub(demi_at(desc->positions + 3*i), about));
@@ -471,7 +473,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
 }
 
-/* Index of a shape, or -1 with a sentence. */
+/* Returns the index of a shape, or -1 with an error message. */
 static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
     if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
@@ -479,7 +481,7 @@ static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
               (int)shape.id, w->shape_count);
     return -1;
 }
-/* Semi-axes of the ellipsoid that has its moments, m. */
+/* Returns the semi-axes, m, of the ellipsoid with the same moments of inertia. */
 static dem_vec3 demi_shape_alike(const demi_shape *s) {
     const dem_vec3 I = s->inertia;
     if (s->kind == DEMI_ELLIPSOID) return s->axes;
@@ -514,7 +516,7 @@ DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* n
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
 }
-/* Of a shape: per mass and scale, once and for all; of a sphere or disc: the textbook's. */
+/* Principal moments: precomputed per mass and scale for shapes, analytic for spheres and discs. */
 static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
     const demi_shape *shape = demi_shape_of(w, body);
     const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
@@ -526,7 +528,7 @@ static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2,
     one = (dem_real)(w->desc.planar ? m*r*r/2 : 0.4*m*r*r);
     return demi_v(one, one, one);
 }
-/* Angular momentum of a body, of its spin at the full step; kg m2/s. */
+/* Returns the angular momentum of a body, from its spin at the full step, world frame, kg m2/s. */
 static dem_vec3 demi_angular_of(const dem_world *w, int body) {
     const dem_vec3 I = demi_moments_of(w, body), spin = demi_at(w->bodies.spin + 4*body);
     dem_quat q;
@@ -536,7 +538,7 @@ static dem_vec3 demi_angular_of(const dem_world *w, int body) {
     own = dem_quat_unrotate(q, spin);
     return dem_quat_rotate(q, demi_v(I.x*own.x, I.y*own.y, I.z*own.z));
 }
-/* How far a body reaches from its centre in direction n (unit), m. */
+/* Returns the support height of a body in direction n (unit): its extent from its centre, m. */
 static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     const demi_shape *shape = demi_shape_of(w, body);
     dem_real scale, far = -1;
@@ -560,15 +562,15 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     return scale*far;
 }
 
-/* --- where two ellipsoids meet. Perram and Wertheim's function [PW85] of two ellipsoids
+/* --- contact of two ellipsoids. Perram and Wertheim's function [PW85] of two ellipsoids
          (x - xA).QA^-1 (x - xA) <= 1, Q = R diag(a^2, b^2, c^2) R^T, r = xB - xA, 0 < l < 1:
              K = (1 - l) QA + l QB,  s = K^-1 r,  f(l) = l (1 - l) r.s
-       has one maximum, W0^2: scaled by W0 the two touch in xA + (1 - l) QA s, with the normal
+       has one maximum, W0^2. Scaled by W0 the two touch at xA + (1 - l) QA s, with the normal
        s/|s|. There fA = (1 - l)^2 s.QA s and fB = l^2 s.QB s are equal. We solve ln(fA/fB)/2 = 0 by
        Newton's method, with slope -C ((1 - l)/fA + l/fB), C = s.QA K^-1 QB s, kept in a bracket.
-       Any f(l) > 1 shows that the two are apart. No inverse of Q appears: needles and discs are
-       safe. Shrinking both by W until they part [RUB15] 3.2 ends at this point and normal exactly,
-       and its line V2 V3 has the direction QA K^-1 QB s. Checked by the test "quartic and
+       Any f(l) > 1 shows that the two are apart. No inverse of Q appears, so needles and discs are
+       safe. The method of [RUB15] 3.2, shrinking both by W until they separate, ends at exactly
+       this point and normal; its line V2 V3 has the direction QA K^-1 QB s. Test: "quartic and
        eigenvectors of [RUB15] converge to the same contact". --- */
 typedef struct demi_meet {
     double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
@@ -585,7 +587,7 @@ static void demi_sym_times(const double *Q, const double *x, double *out) {  /* 
 static double demi_dot3(const double *a, const double *b) {
     return a[0]*b[0] + a[1]*b[1] + a[2]*b[2];
 }
-/* Q of an ellipsoid. */
+/* Computes Q of an ellipsoid, m2: xx yy zz xy xz yz. */
 static void demi_ellipsoid_matrix(dem_quat q, dem_vec3 axes, double *Q) {
     const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
     const double A = (double)axes.x*(double)axes.x, B = (double)axes.y*(double)axes.y;
@@ -604,7 +606,7 @@ static void demi_ball_matrix(dem_real r, double *Q) {
     Q[0] = Q[1] = Q[2] = (double)r*(double)r;
     Q[3] = Q[4] = Q[5] = 0;
 }
-/* Where to begin: exact for spheres and for ellipsoids that are alike and parallel. */
+/* Returns an initial lambda: exact for spheres and for equal, parallel ellipsoids. */
 static double demi_meet_start(const double *A, const double *B, const double *r) {
     double t[3], ha, hb;
     demi_sym_times(A, r, t);
@@ -613,9 +615,9 @@ static double demi_meet_start(const double *A, const double *B, const double *r)
     hb = sqrt(demi_dot3(r, t));
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
 }
-/* The last step is so small that s may follow it along ds/dl = K^-1 (QA - QB) s = (s - v)/(1 - l),
-   v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more
-   would add is of the order of the step squared. */
+/* Takes the last step without another evaluation: s follows ds/dl = K^-1 (QA - QB) s =
+   (s - v)/(1 - l), v = K^-1 QB s, and f its series to second order, f' = fA - fB, f'' = -2 C. The
+   error is of the order of the step squared. */
 static void demi_meet_finish(const double *A, double C, double step, demi_meet *m) {
     const double rate = step/(1 - m->l);
     int k;
@@ -625,13 +627,11 @@ static void demi_meet_finish(const double *A, double C, double step, demi_meet *
     m->fa = m->fb = m->f;
     demi_sym_times(A, m->s, m->a);
 }
-/* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where
-   f(l) exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100),
-   and as cheap as it gets; docs/shapes.md has the numbers. */
+/* Tolerance for |fA - fB|/(fA + fB). It costs no more than a larger one. Normals are accurate to
+   1e-10 at an aspect ratio of 2, and to 4e-6 at worst, at 100. */
 #define DEMI_MEET_NEAR 1e-4
-/* Newton's method on ln(fa/fb), kept between lo and hi: where both are alike, the ellipsoids,
-   scaled by their root, touch at one point. Ends early with f > enough: then they are apart,
-   whatever the rest would say. */
+/* Finds the maximum of f from m->l on, by Newton's method on ln(fA/fB) within the bracket lo, hi,
+   until fA and fB agree to `near`. Ends early once f > enough: the two are then apart. */
 static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
                             double near, demi_meet *m) {
     double lo = 0, hi = 1, l = m->l;
@@ -668,7 +668,7 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         if (!(l > lo && l < hi)) l = (lo + hi)/2;
     }
 }
-/* Heights along the normal, and its length undone. */
+/* Computes the unit normal and the support heights of both ellipsoids along it, m. */
 static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double *hb) {
     const double l = sqrt(demi_dot3(m->s, m->s));
     int k;
@@ -676,8 +676,8 @@ static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double 
     *ha = sqrt(m->fa)/((1 - m->l)*l);
     *hb = sqrt(m->fb)/(m->l*l);
 }
-/* [RUB15] 3.2: the piece of the line through the contact along V2 V3 that lies in both: it leaves A
-   at the larger root of (x + t d).QA^-1 (x + t d) = 1 and enters B at the smaller one of B's. */
+/* Returns the overlap of [RUB15] 3.2, m: the length of the line V2 V3 inside both ellipsoids. It
+   leaves A at the larger root of (x + t d).QA^-1 (x + t d) = 1, and enters B at the smaller one. */
 static double demi_meet_chord(const demi_meet *m, const double *A) {
     double d[3], u[3], ds, dv, du, out, in;
     int k;
@@ -705,7 +705,7 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     demi_ellipsoid_matrix(qa, a->semi_axes, A);
     demi_ellipsoid_matrix(qb, b->semi_axes, B);
-    if (!(demi_dot3(r, r) > 0)) {               /* centres coincide: any direction is as good */
+    if (!(demi_dot3(r, r) > 0)) {               /* centres coincide: take any direction */
         r[2] = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
     }
     m.l = lambda > 0 && lambda < 1 ? (double)lambda : demi_meet_start(A, B, r);
@@ -728,11 +728,12 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
 
 /* --- parts of bodies, and how far apart they are --- */
 
+/* Returns the number of parts of a body; 1 for a sphere. */
 static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
 }
-/* Part k as the body is turned now, worked out from its quaternion. */
+/* Returns part k of a body in its present orientation, computed from its quaternion. */
 static demi_part demi_part_of(const dem_world *w, int body, int k) {
     const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
@@ -759,11 +760,11 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     }
     return p;
 }
-/* The spheres of a cluster, as they are turned now: rows of centre and radius. */
+/* Returns the rotated spheres of a cluster: rows of centre (from the body's) and radius, m. */
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-/* Spheres of one cluster after it has turned: once a step, not once a contact. */
+/* Rotates the spheres of one cluster to its present orientation, once a step for all contacts. */
 static void demi_centres_rotate(dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
@@ -775,7 +776,7 @@ static void demi_centres_rotate(dem_world *w, int body) {
         sphere[3] = shape->parts[4*k + 3]*scale;
     }
 }
-/* Lays all of them. 0 when memory ran out. */
+/* Computes the rotated spheres of all clusters. Returns 0 if memory ran out. */
 static int demi_centres_lay(dem_world *w) {
     int32_t *start;
     int i, n = 0;
@@ -797,7 +798,7 @@ static void demi_part_matrix(const demi_part *p, double *Q) {
     if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
     else demi_ellipsoid_matrix(p->q, p->axes, Q);
 }
-/* --- what a kind of part tells of itself (DEMI_SHAPES) --- */
+/* --- properties of spheres and ellipsoids (DEMI_SHAPES) --- */
 
 static dem_real demi_ball_support(const demi_shape *s, dem_vec3 n) { (void)n; return s->radius; }
 static dem_real demi_ball_thin(const demi_part *p) { return p->radius; }
@@ -815,23 +816,22 @@ static dem_real demi_ellipsoid_thin(const demi_part *p) {
 static double demi_ellipsoid_equal(const demi_part *p) {
     return demi_pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
 }
-/* Gauss's: a b c/h^2. */
+/* Gaussian radius of curvature, a b c/h^2. */
 static double demi_ellipsoid_curve(const demi_part *p, double h) {
     return (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
 }
 static dem_vec3 demi_ellipsoid_drawn(const demi_part *p) { return p->axes; }
-/* By the table of kinds. */
 static dem_real demi_part_thin(const demi_part *p) { return demi_shape_rows[p->kind].thin(p); }
 static double demi_part_equal(const demi_part *p) { return demi_shape_rows[p->kind].equal(p); }
-/* The radius that a contact's stiffness is worked out with. A stiffness that changes as the two
-   roll would make or lose energy (Hertz: 1 % a collision at aspect ratio 3): where energy is to be
-   conserved it is that of equal volume. */
+/* Returns the radius for the stiffness of a contact, m. A stiffness that changes while the two roll
+   would create or lose energy (Hertz: 1 % per collision at aspect ratio 3), so the conservative
+   overlap uses the radius of equal volume. */
 static double demi_part_round(const dem_world *w, const demi_part *p, double h) {
     return w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE ? demi_part_equal(p)
         : demi_shape_rows[p->kind].curve(p, h);
 }
 
-/* Part k of a body as demi_part_of has it, from the centres that are turned already. */
+/* The same as demi_part_of, but takes spheres of clusters from the rotated centres. */
 DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
     const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
@@ -852,7 +852,7 @@ static dem_real demi_balls_gap(const demi_part *p, const demi_part *q, dem_vec3 
     (void)enough;
     return demi_length(gap) - p->radius - q->radius;
 }
-/* Two ellipsoids, or one and a sphere. */
+/* Returns the gap, m, of two ellipsoids, or of an ellipsoid and a sphere. */
 static dem_real demi_ellipsoids_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                     dem_real enough) {
     double A[6], B[6], r[3], n[3], ha, hb;
@@ -866,13 +866,13 @@ static dem_real demi_ellipsoids_gap(const demi_part *p, const demi_part *q, dem_
     demi_meet_heights(&m, n, &ha, &hb);
     return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
 }
-/* A lower bound of the distance between two parts, gap = from centre to centre; -`enough` where the
-   centres coincide. */
+/* Returns a lower bound of the distance between two parts, m; gap leads from centre to centre. May
+   return -`enough` if the centres coincide. */
 static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                dem_real enough) {
     return demi_shape_rows[DEMI_MAX(p->kind, q->kind)].gap(p, q, gap, enough);
 }
-/* The same for two bodies; shift leads from b to the image of it that is nearest to a. */
+/* The same for two bodies; shift leads from b to its image nearest to a. */
 static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real *shift,
                                 dem_real enough) {
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
