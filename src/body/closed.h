@@ -1,26 +1,31 @@
 /* ---------------------------------------------------------------------------------------------
    >>closed
-   Which side of a mesh is inside? Vertices at the same position are one vertex; of equal triangles
-   at most one counts. Two triangles that share an edge with no third must run along it in opposite
-   directions. This fixes the orientation of every triangle of a shell (the triangles that such
-   edges join) relative to its first, whatever their order of corners. A body is bounded by shells
-   without open edges. An outer shell faces out. A shell within a shell is a cavity if it was
-   written to face the opposite way of the shell around it; if not, the mesh is refused.
+   Orientation of closed meshes: finds which side of a mesh is inside. Vertices at the same position
+   are one vertex, and of equal triangles at most one counts. Two triangles that share an edge with
+   no third must run along it in opposite directions. This fixes the orientation of every triangle
+   of a shell (the triangles that such edges join) relative to its first, whatever their order of
+   corners. A body is bounded by shells without open edges. An outer shell faces out. A shell within
+   a shell is a cavity if it was written to face the opposite way of the shell around it; otherwise
+   the mesh is an error. Works on a demi_closed of its own; changes neither world nor mesh.
    Tests: tests/file/test_decompose.c.
    --------------------------------------------------------------------------------------------- */
+/* Largest number of shells; corners that are tested for being inside another shell. */
 enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };
+/* The analysis of a mesh. */
 typedef struct demi_closed {
     const dem_mesh *mesh;
-    int32_t *corner;               /* triangles x 3: the first vertex at that place */
+    int32_t *corner;               /* triangles x 3: the first vertex at that position */
     int32_t *edge;                 /* triangles x 3: the first triangle side that is this edge */
-    int32_t *parent;               /* of a triangle: nearer to the one that represents its shell */
-    unsigned char *turned;         /* against the parent */
-    signed char *sign;             /* 1; -1: to be turned round; 0: does not count */
+    int32_t *parent;               /* of a triangle: the next one towards the root of its shell */
+    unsigned char *turned;         /* 1: it faces the other way than its parent */
+    signed char *sign;             /* 1; -1: its corners must be reversed; 0: does not count */
+    /* edges with one triangle, with more than two; duplicate triangles; reversed triangles; edges
+       of a one-sided shell; shells */
     int open, crowded, duplicates, flipped, twisted, shells;
 } demi_closed;
 
-/* For every key of `width` bytes the index of the first equal one: count int32, to be
-   freed; null without memory. Open addressing, in a table that is at most half full. */
+/* Returns for each key of `width` bytes the index of the first equal key: count int32, which the
+   caller frees; null if memory ran out. Hashing with open addressing, table at most half full. */
 static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, size_t width) {
     const char *key = (const char *)keys;
     size_t i, slots = 16;
@@ -47,7 +52,8 @@ static void demi_closed_free(dem_world *w, demi_closed *c) {
     demi_free(w, c->turned);
     demi_free(w, c->sign);
 }
-/* The triangle that represents the shell; *turned: does triangle i face the other way? */
+/* Returns the triangle that represents the shell of triangle i (union-find). *turned is 1 if
+   triangle i faces the other way than that. */
 static int demi_closed_shell(demi_closed *c, int i, int *turned) {
     for (*turned = 0; c->parent[i] != i; i = c->parent[i]) {
         const int up = c->parent[i];
@@ -57,11 +63,11 @@ static int demi_closed_shell(demi_closed *c, int i, int *turned) {
     }
     return i;
 }
-/* Does side k of triangle i run from the lower to the higher corner? 1 or -1. */
+/* Returns 1 if a triangle side runs from the lower to the higher vertex, otherwise -1. */
 static int demi_closed_way(const demi_closed *c, size_t side) {
     return c->corner[side] < c->corner[side - side%3 + (side + 1)%3] ? 1 : -1;
 }
-/* Vertices at one place made one, a zero with a sign like any zero. 0: no memory. */
+/* Unites vertices at the same position; -0 is equal to 0. Returns 0 if memory ran out. */
 static int demi_closed_weld(dem_world *w, demi_closed *c) {
     const size_t n = (size_t)c->mesh->vertex_count;
     dem_real *place = (dem_real *)demi_alloc(w, 3*n, sizeof *place);
@@ -75,8 +81,9 @@ static int demi_closed_weld(dem_world *w, demi_closed *c) {
     demi_free(w, first);
     return first != 0;
 }
-/* Of triangles with the same corners one counts, of those that face the way of most; none, where as
-   many face each way: an inner wall. Nor does a triangle with a corner twice. 0: no memory. */
+/* Lets one of several triangles with the same corners count: one that faces the way of the
+   majority. None counts if equally many face each way (an inner wall), nor does a triangle that has
+   a corner twice. Returns 0 if memory ran out. */
 static int demi_closed_equals(dem_world *w, demi_closed *c) {
     const int n = c->mesh->triangle_count;
     int32_t *key = (int32_t *)demi_alloc(w, 3*(size_t)n, sizeof *key), *first = 0, *most;
@@ -90,7 +97,7 @@ static int demi_closed_equals(dem_world *w, demi_closed *c) {
                                    (a < b) + (b < d) + (d < a) == 2 ? 1 : -1);
     }
     if (key) first = demi_first_equal(w, key, (size_t)n, 3*sizeof *key);
-    most = key;                                 /* its keys are not needed any more */
+    most = key;                                 /* keys are no longer needed: reuse the memory */
     if (first) memset(most, 0, (size_t)n*sizeof *most);
     for (i = 0; first && i < n; i++) {
         most[first[i]] += c->sign[i];
@@ -99,14 +106,15 @@ static int demi_closed_equals(dem_world *w, demi_closed *c) {
     for (i = 0; first && i < n; i++) {
         const int32_t sum = most[first[i]];
         if (c->sign[i]*sum <= 0) { c->sign[i] = 0; continue; }
-        most[first[i]] = 0;                     /* no other of them */
+        most[first[i]] = 0;                     /* the others do not count */
         c->sign[i] = 1;
     }
     demi_free(w, key);
     demi_free(w, first);
     return first != 0;
 }
-/* Edges: how many triangles each has, and shells made of those that have two. 0: no memory. */
+/* Counts the triangles at each edge, and joins triangles into shells across edges that have two.
+   Returns 0 if memory ran out. */
 static int demi_closed_join(dem_world *w, demi_closed *c) {
     const size_t sides = 3*(size_t)c->mesh->triangle_count;
     int32_t *key = (int32_t *)demi_alloc(w, 2*sides, sizeof *key), *all = key, *live;
@@ -147,7 +155,8 @@ static int demi_closed_join(dem_world *w, demi_closed *c) {
     demi_free(w, key);
     return 1;
 }
-/* Finds shells, and what is wrong with them. 0: no memory; the caller frees in any case. */
+/* Analyses a mesh: finds its shells and defects. Returns 0 if memory ran out; the caller must call
+   demi_closed_free in any case. */
 static int demi_closed_find(dem_world *w, const dem_mesh *mesh, demi_closed *c) {
     const int n = mesh->triangle_count;
     int32_t *turned;
@@ -171,7 +180,7 @@ static int demi_closed_find(dem_world *w, const dem_mesh *mesh, demi_closed *c) 
     for (i = 0; i < n; i++) {
         const int shell = demi_closed_shell(c, i, &t);
         if (!c->sign[i]) continue;
-        t ^= 2*turned[2*shell] > turned[2*shell + 1];   /* most face the way they were written */
+        t ^= 2*turned[2*shell] > turned[2*shell + 1];   /* the majority keeps its orientation */
         c->flipped += t;
         c->sign[i] = (signed char)(t ? -1 : 1);
         c->shells += shell == i;
@@ -186,7 +195,7 @@ static void demi_mesh_triangle(const dem_mesh *mesh, int triangle, demi_d3 *corn
     int k;
     for (k = 0; k < 3; k++) corner[k] = demi_mesh_corner(mesh, triangle, k);
 }
-/* Shells that are to be a body, outward ones with a positive volume. */
+/* The shells that bound a body. Volumes are positive for shells that face out. */
 typedef struct demi_shells {
     int count;
     int32_t *order, *start;        /* triangles by shell; count + 1 */
@@ -202,8 +211,8 @@ static void demi_shells_free(dem_world *w, demi_shells *s) {
     demi_free(w, s->around);
     demi_free(w, s->depth);
 }
-/* Sides at which the triangles of a shell do not pair up, by shells as they are now: how many, and
-   the first. -1: no memory. */
+/* Returns the number of edges at which the triangles of a shell do not pair up, and the first such
+   side; -1 if memory ran out. */
 static int demi_closed_loose(dem_world *w, demi_closed *c, int *first_side) {
     const size_t sides = 3*(size_t)c->mesh->triangle_count;
     int32_t *key = (int32_t *)demi_alloc(w, 2*sides, sizeof *key), *first = 0;
@@ -223,7 +232,7 @@ static int demi_closed_loose(dem_world *w, demi_closed *c, int *first_side) {
     demi_free(w, first);
     return first ? loose : -1;
 }
-/* Triangles by shell, and their volumes. 0: no memory. */
+/* Sorts triangles by shell, and computes volumes and boxes. Returns 0 if memory ran out. */
 static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
     const int n = c->mesh->triangle_count;
     int32_t *number = (int32_t *)demi_alloc(w, (size_t)n, sizeof *number);
@@ -253,7 +262,7 @@ static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
         if (!c->sign[i]) continue;
         k = number[demi_closed_shell(c, i, &turned)];
         s->order[s->start[k + 1]++] = i;
-        o = demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0); /* near: round-off */
+        o = demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0); /* less round-off */
         demi_mesh_triangle(c->mesh, i, x);
         for (e = 0; e < 3; e++) {
             s->box[2*k] = demi_d3_lowest(s->box[2*k], x[e]);
@@ -265,8 +274,9 @@ static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
     demi_free(w, number);
     return 1;
 }
-/* How often a shell goes round a point: about 0 outside, 1 or -1 inside. Sum of the solid angles of
-   its triangles, each by tan(angle/2) = a.(b x c)/(abc + a.b c + b.c a + c.a b), over 4 pi. */
+/* Returns the winding number of a shell about a point: about 0 outside, 1 or -1 inside. It is the
+   sum of the solid angles of its triangles over 4 pi, each from
+   tan(angle/2) = a.(b x c)/(abc + a.b c + b.c a + c.a b). */
 static double demi_shells_winding(const demi_closed *c, const demi_shells *s, int shell,
                                   demi_d3 x) {
     double sum = 0;
@@ -285,7 +295,8 @@ static double demi_shells_winding(const demi_closed *c, const demi_shells *s, in
     }
     return sum/(4*DEMI_PI);
 }
-/* Is shell a inside shell b? By some of its corners, those off b's surface. -1: they cross. */
+/* Returns 1 if shell a is inside shell b, 0 if not, -1 if they cross. Tests up to DEMI_CLOSED_LOOKS
+   corners of a, and ignores those on the surface of b. */
 static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a, int b) {
     const int n = s->start[a + 1] - s->start[a], looks = DEMI_MIN(n, (int)DEMI_CLOSED_LOOKS);
     const demi_d3 lo = demi_d3_highest(s->box[2*a], s->box[2*b]);
@@ -301,8 +312,8 @@ static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a,
     }
     return in && out ? -1 : in > 0;
 }
-/* Which shells are inside which. 0, with an error message: two
-   cross, or one faces as that around it. */
+/* Finds which shells are inside which. Returns 0 with an error message if two cross, or if one
+   faces the same way as the shell around it. */
 static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
                             demi_shells *s) {
     demi_d3 x;
@@ -334,8 +345,9 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
     }
     return 1;
 }
-/* Gives each triangle the sign with which outer shells face out and cavities in. 0, with an
-   error message: the mesh does not bound a body. */
+/* Gives each triangle the sign with which its normal leads out of the body: outwards on outer
+   shells, into the hollow on cavities. Returns 0 with an error message if the mesh does not bound a
+   body. */
 static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     demi_shells s;
     demi_d3 x;

@@ -1,11 +1,13 @@
 /* ---------------------------------------------------------------------------------------------
    >>unions
-   Several shapes as one body, each of which touches by itself; and polygons of planar worlds:
-   prisms, of which a concave one is cut into convex pieces, ear by ear, that are joined again where
-   they stay convex. A piece is one of the world's shapes, placed.
+   Unions: several shapes as one rigid body, each with contacts of its own. A piece of a union is
+   one of the world's shapes with a position and an orientation. Also polygons of planar worlds,
+   which are prisms. A concave polygon is cut into triangles by ear clipping, and these are merged
+   into larger convex pieces. Adds shapes to w->shapes.
    --------------------------------------------------------------------------------------------- */
 
-/* Adds a piece's matter to moments; q: of its principal axes; c: its centre. */
+/* Adds a piece to the moments of a union; q: orientation of its principal axes; c: its centre, m.
+   */
 static void demi_moments_piece(demi_moments *m, const demi_shape *s, dem_quat q, dem_vec3 c) {
     const double I[3] = {(double)s->inertia.x, (double)s->inertia.y, (double)s->inertia.z};
     const double half = (I[0] + I[1] + I[2])/2, x[3] = {(double)c.x, (double)c.y, (double)c.z};
@@ -15,12 +17,14 @@ static void demi_moments_piece(demi_moments *m, const demi_shape *s, dem_quat q,
     demi_moments_add(m, s->volume, x, 0);
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++) {
-            const double spread = s->volume*(half - I[k]), *r = R + k;     /* column k */
+            /* second moment along axis k, which is column k of R */
+            const double spread = s->volume*(half - I[k]), *r = R + k;
             m->xx[i] += spread*r[3*i]*r[3*i];
             m->xx[3 + i] += spread*r[i == 2 ? 3 : 0]*r[i == 0 ? 3 : 6];
         }
 }
-/* As for clusters and polyhedra: a contact of a piece may pass as far off as the union reaches. */
+/* Sets the bounds of a union, see demi_cluster_bounds. The lever arm of a contact force may be as
+   long as the bounding radius. */
 static void demi_union_bounds(const dem_world *w, demi_shape *s) {
     const dem_vec3 I = s->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
@@ -44,7 +48,8 @@ static void demi_union_bounds(const dem_world *w, demi_shape *s) {
     s->moment_arm = s->radius;
     s->light /= 1 + (double)s->radius*(double)s->radius/least;
 }
-/* A union of shapes by their index, each with a place and an orientation; 0: no memory. */
+/* Builds a union of shapes, given by index, position and orientation (null: 0 and no rotation).
+   Returns 0 with an error message if memory ran out. */
 static int demi_union_make(dem_world *w, const char *call, int count, const int32_t *which,
                            const dem_real *positions, const dem_real *orientations,
                            demi_shape *out) {
@@ -120,18 +125,19 @@ DEM_API dem_shape dem_shape_union_add(dem_world *w, int count, const dem_shape *
 /* --- polygons, in planar worlds --- */
 
 enum { DEMI_POLYGON = DEM_POLYHEDRON_FACES - 2 };
-/* Convex pieces of a polygon: corners, by number. */
+/* A convex piece of a polygon: its corners, as indices of the polygon's. */
 typedef struct demi_cut_out { int count; int32_t corner[DEMI_POLYGON]; } demi_cut_out;
-/* Twice the area of a triangle, > 0 where it turns left. */
+/* Returns twice the area of triangle a, b, c; > 0 if it is counterclockwise. */
 static double demi_turn_of(const double *x, int a, int b, int c) {
     return (x[2*b] - x[2*a])*(x[2*c + 1] - x[2*a + 1]) - (x[2*b + 1] - x[2*a + 1])*
         (x[2*c] - x[2*a]);
 }
-/* Do the sides from a and from c cross, or touch? Not where they follow each other. */
+/* True if the sides that begin at corners a and c cross or touch. Sides that share a corner do
+   not. */
 static int demi_sides_cross(const double *x, int count, int a, int c) {
     const int b = (a + 1)%count, d = (c + 1)%count;
     if (a == c || b == c || d == a) return 0;
-    /* on one line */
+    /* both are on one line */
     if (!(fabs(demi_turn_of(x, a, b, c)) > 0) && !(fabs(demi_turn_of(x, a, b, d)) > 0)) {
         const int k = fabs(x[2*b] - x[2*a]) > fabs(x[2*b + 1] - x[2*a + 1]) ? 0 : 1;
         return DEMI_MAX(x[2*a + k], x[2*b + k]) >= DEMI_MIN(x[2*c + k], x[2*d + k]) &&
@@ -140,8 +146,8 @@ static int demi_sides_cross(const double *x, int count, int a, int c) {
     return demi_turn_of(x, a, b, c)*demi_turn_of(x, a, b, d) <= 0 &&
         demi_turn_of(x, c, d, a)*demi_turn_of(x, c, d, b) <= 0;
 }
-/* Cuts a polygon that turns left into triangles, ear by ear [ERI05]: how many; 0: no ear is left.
-   */
+/* Cuts a counterclockwise polygon into triangles by ear clipping [ERI05]. Returns their number, or
+   0 if round-off has left no ear. */
 static int demi_polygon_ears(const double *x, int count, demi_cut_out *out) {
     int32_t left[DEMI_POLYGON];
     int i, k, n = count, pieces = 0;
@@ -167,7 +173,7 @@ static int demi_polygon_ears(const double *x, int count, demi_cut_out *out) {
     }
     return pieces;
 }
-/* Makes one convex piece of two that share a side, if it is one. */
+/* Merges piece q into p if they share a side and the result is convex. Returns 1 if it does. */
 static int demi_pieces_join(const double *x, demi_cut_out *p, const demi_cut_out *q) {
     demi_cut_out all;
     int i, j, k;
@@ -187,7 +193,8 @@ static int demi_pieces_join(const double *x, demi_cut_out *p, const demi_cut_out
         }
     return 0;
 }
-/* Convex pieces of a polygon that turns left: how many; 0: round-off has spoilt it. */
+/* Cuts a counterclockwise polygon into convex pieces. Returns their number, or 0 if round-off
+   prevents it. */
 static int demi_polygon_cut(const double *x, int count, demi_cut_out *out) {
     int i, j, n = demi_polygon_ears(x, count, out);
     for (i = 0; i < n; i++)
@@ -195,11 +202,12 @@ static int demi_polygon_cut(const double *x, int count, demi_cut_out *out) {
             if (i == j || !demi_pieces_join(x, &out[i], &out[j])) continue;
             out[j] = out[--n];
             if (i == n) i = j;
-            j = -1;                             /* once more */
+            j = -1;                             /* try all others again */
         }
     return n;
 }
-/* Corners into x, turning left, and the area, m2; 0 with a sentence. */
+/* Copies the corners of a polygon to x, counterclockwise, and returns its area, m2; 0 with an error
+   message. */
 static double demi_polygon_read(dem_world *w, const char *call, int count, const dem_real *points,
                                 double *x) {
     double area = 0;
@@ -256,7 +264,7 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d corners cannot be cut into convex pieces: "
                   "some are too close to others or to sides; leave those out", call, count);
     first = w->shape_count;
-    high = 2*sqrt(area/DEMI_PI)/3;              /* half of its thickness */
+    high = 2*sqrt(area/DEMI_PI)/3;              /* m, half the thickness of the prisms */
     for (i = 0; i < pieces; i++) {
         dem_real corner[6*DEMI_POLYGON];
         double own = 0;
