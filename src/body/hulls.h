@@ -1,34 +1,40 @@
 /* ---------------------------------------------------------------------------------------------
    >>hulls
-   Convex polyhedra as shapes: the convex hull of points, its faces, and what follows from them.
-   The hull grows point by point, the farthest first, in triangles; those that lie in one plane are
-   then one face. Knows no contact: >>polyhedra. And copies of shapes.
+   Convex polyhedra as shapes: the convex hull of points, its faces, mass properties and bounds.
+   The hull grows point by point, the farthest first, as a set of triangles (quickhull). Adjacent
+   triangles in one plane are then merged to a face. Also copies shapes between worlds. Contacts of
+   polyhedra are in >>polyhedra.
    --------------------------------------------------------------------------------------------- */
 
-/* (4 pi/3)^(1/3): the edge of a cube over the radius of the sphere of its volume. */
+/* (4 pi/3)^(1/3): edge of a cube over the radius of the sphere of equal volume. */
 #define DEMI_POLYHEDRON_SCALE 1.6119919540164696
-/* A triangle of a hull under way. */
+/* A triangle of an unfinished hull. */
 typedef struct demi_hull_face {
-    int32_t corner[3], beside[3];  /* points, counterclockwise from outside; across k to k + 1 */
-    int32_t state, face;           /* 0: free, 1: of the hull, 2: seen by the point that comes */
+    /* points, counterclockwise from outside; triangles across the sides from corner k to k + 1 */
+    int32_t corner[3], beside[3];
+    /* 0: unused, 1: of the hull, 2: visible from the point being added; number of its face, or -1
+       */
+    int32_t state, face;
     demi_d3 n;                     /* unit, outward */
     double at;                     /* m: n.x of its plane */
 } demi_hull_face;
-/* Corners of a polyhedron of as many faces are 2 faces - 4 at most, its triangles 2 corners - 4;
-   room for those that come before those that they replace go. */
+/* A polyhedron has at most 2 faces - 4 corners, and 2 corners - 4 triangles. There is more room,
+   because new triangles are added before those that they replace are removed. */
 enum { DEMI_HULL_CORNERS = 2*DEM_POLYHEDRON_FACES - 4, DEMI_HULL_ROOM = 4*DEMI_HULL_CORNERS };
+/* An unfinished hull. */
 typedef struct demi_hull {
-    int count, used, corners;      /* points; triangles; points that are corners */
-    const demi_d3 *x;              /* count */
-    double near;                   /* m: what is nearer than that to a plane lies in it */
-    int32_t *first;                /* count: a new triangle by the first corner of its outer side */
+    int count, used, corners;      /* points; entries of faces; corners so far */
+    const demi_d3 *x;              /* m, count: the points */
+    double near;                   /* m: points nearer than this to a plane are in it */
+    int32_t *first;                /* count: new triangle, by the first corner of its outer side */
     demi_hull_face *faces;         /* DEMI_HULL_ROOM */
 } demi_hull;
 
+/* Returns the distance of a point from the plane of a triangle, m, > 0 outside. */
 static double demi_hull_above(const demi_hull *h, const demi_hull_face *f, int point) {
     return demi_d3_dot(f->n, h->x[point]) - f->at;
 }
-/* A new triangle; null: no room. */
+/* Adds a triangle and returns it, or null if there is no room. */
 static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
     demi_hull_face *f;
     int i;
@@ -43,8 +49,8 @@ static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
     f->face = -1;
     return f;
 }
-/* The point farthest from the line through a and b (from a, where they are one), or from the plane
-   through a, b and c where that is not one of the two; m. */
+/* Finds the point farthest from point a (if a = b = c), from the line through a and b (if c = a),
+   or from the plane through a, b and c. Returns its distance, m. */
 static double demi_hull_far(const demi_hull *h, int a, int b, int c, int *far) {
     demi_d3 u = demi_d3_unit(demi_d3_sub(h->x[b], h->x[a]));
     double most = 0;
@@ -58,7 +64,7 @@ static double demi_hull_far(const demi_hull *h, int a, int b, int c, int *far) {
     }
     return most;
 }
-/* The first four triangles. 0: all points lie in a plane. */
+/* Sets up the initial tetrahedron. Returns 0 if all points are in one plane. */
 static int demi_hull_begin(demi_hull *h) {
     static const int32_t beside[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     int p[4] = {0, 0, 0, 0}, i, k;
@@ -69,7 +75,7 @@ static int demi_hull_begin(demi_hull *h) {
         !(demi_hull_far(h, p[0], p[1], p[0], &p[2]) > h->near) ||
         !(demi_hull_far(h, p[0], p[1], p[2], &p[3]) > h->near)) return 0;
     demi_hull_new(h, p[0], p[1], p[2]);
-    if (demi_hull_above(h, h->faces, p[3]) > 0) {       /* the fourth lies below the first three */
+    if (demi_hull_above(h, h->faces, p[3]) > 0) {       /* must be inside the plane of the first */
         h->faces[0].state = 0;
         i = p[1]; p[1] = p[2]; p[2] = i;
         demi_hull_new(h, p[0], p[1], p[2]);
@@ -81,7 +87,8 @@ static int demi_hull_begin(demi_hull *h) {
     h->corners = 4;
     return 1;
 }
-/* The point farthest outside, and the triangle it is farthest from; -1: none is outside. */
+/* Returns the point farthest outside, and in *face the triangle from whose plane it is farthest; -1
+   if no point is outside. */
 static int demi_hull_next(const demi_hull *h, int *face) {
     double most = h->near;
     int i, k, next = -1;
@@ -92,8 +99,9 @@ static int demi_hull_next(const demi_hull *h, int *face) {
         }
     return next;
 }
-/* Takes a point in: triangles that it sees, one beside the other, give way to those that join it to
-   their rim. 0: there is no room, or round-off has left a rim that is not one loop. */
+/* Adds a point to the hull: replaces the connected triangles that are visible from it by triangles
+   from their rim to the point. Returns 0 if there is no room, or if round-off has left a rim that
+   is not one loop. */
 static int demi_hull_take(demi_hull *h, int point, int from) {
     int32_t seen[DEMI_HULL_ROOM];
     int i, k, count = 0, rim = 0;
@@ -137,15 +145,15 @@ static int demi_hull_take(demi_hull *h, int point, int from) {
     h->corners++;
     return rim > 2;
 }
-/* Is triangle k in the plane of f? */
+/* True if triangle k is in the plane of f. */
 static int demi_hull_flush(const demi_hull *h, const demi_hull_face *f, int k) {
     int e;
     for (e = 0; e < 3; e++)
         if (fabs(demi_hull_above(h, f, h->faces[k].corner[e])) > h->near) return 0;
     return demi_d3_dot(f->n, h->faces[k].n) > 0.5;
 }
-/* Numbers the faces: triangles in one plane, one beside the other, the largest first. Answers how
-   many there are. */
+/* Merges adjacent triangles in one plane to faces, beginning with the largest triangle, and numbers
+   them. Returns the number of faces. */
 static int demi_hull_faces(demi_hull *h) {
     int32_t row[DEMI_HULL_ROOM];
     int faces = 0, i, k, count;
@@ -173,7 +181,8 @@ static int demi_hull_faces(demi_hull *h) {
             }
     }
 }
-/* The corners of a face in their order, as point numbers. 0: its rim is not one loop. */
+/* Gives the corners of a face in their order, as point numbers. Returns their number, or 0 if the
+   rim is not one loop. */
 static int demi_hull_loop(const demi_hull *h, int face, int32_t *loop) {
     int i, k, sides = 0, begin = -1, count = 0;
     for (i = 0; i < h->used; i++)
@@ -187,7 +196,8 @@ static int demi_hull_loop(const demi_hull *h, int face, int32_t *loop) {
     for (i = 1; i < count; i++) if (loop[i] == begin) return 0;
     return k == begin && sides > 2 ? sides : 0;
 }
-/* Unit normal and height of a loop of corners (Newell). Answers twice its area. */
+/* Computes the unit normal of a loop of corners (Newell), and its distance from the origin, m.
+   Returns twice its area, m2. */
 static double demi_loop_plane(const demi_d3 *x, const int32_t *loop, int n, demi_d3 *normal,
                               double *high) {
     demi_d3 twice = demi_d(0, 0, 0);
@@ -198,7 +208,8 @@ static double demi_loop_plane(const demi_d3 *x, const int32_t *loop, int n, demi
     for (i = 0, *high = 0; i < n; i++) *high += demi_d3_dot(*normal, x[loop[i]])/n;
     return demi_d3_length(twice);
 }
-/* Is no point outside, and every corner of a face in its plane, but for some round-off? */
+/* True if no point is outside and every corner of a face is in its plane, up to 20 times h->near.
+   */
 static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
     const int32_t *loops = rim + faces + 1;
     int f, i;
@@ -213,9 +224,9 @@ static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
     }
     return 1;
 }
-/* The faces of the hull into rim (faces + 1 starts, then corners, as point numbers): how many; 0:
-   round-off has spoilt it; -1: points lie in a plane; more than DEM_POLYHEDRON_FACES: that many or
-   more. */
+/* Computes the convex hull. rim receives its faces: faces + 1 starts, then corners as point
+   numbers. Returns the number of faces; 0 if round-off has made it inconsistent; -1 if the points
+   are in one plane; more than DEM_POLYHEDRON_FACES if it has too many, without filling rim. */
 static int demi_hull_of(demi_hull *h, int32_t *rim) {
     int faces, face = 0, next, f, n = 0;
     if (!demi_hull_begin(h)) return -1;
@@ -237,7 +248,7 @@ static int demi_hull_of(demi_hull *h, int32_t *rim) {
 }
 /* Rows and columns of a symmetric tensor: xx yy zz xy xz yz. */
 static const int demi_sym_row[6] = {0, 1, 2, 0, 0, 1}, demi_sym_column[6] = {0, 1, 2, 1, 2, 2};
-/* Adds the tetrahedron of the origin and a triangle: exact moments. */
+/* Adds the exact moments of the tetrahedron of the origin and a triangle. */
 static void demi_moments_tetrahedron(demi_moments *m, demi_d3 x, demi_d3 y, demi_d3 z) {
     const double v = demi_d3_dot(x, demi_d3_cross(y, z))/6;
     double a[3], b[3], c[3], s[3];
@@ -253,6 +264,7 @@ static void demi_moments_tetrahedron(demi_moments *m, demi_d3 x, demi_d3 y, demi
         m->xx[k] += v*(s[p]*s[r] + a[p]*a[r] + b[p]*b[r] + c[p]*c[r])/20;
     }
 }
+/* Computes the volume integrals of a polyhedron. */
 static void demi_polyhedron_moments(const demi_d3 *x, const int32_t *rim, int faces,
                                     demi_moments *m) {
     const int32_t *loops = rim + faces + 1;
@@ -262,7 +274,7 @@ static void demi_polyhedron_moments(const demi_d3 *x, const int32_t *rim, int fa
         for (i = rim[f] + 1; i + 1 < rim[f + 1]; i++)
             demi_moments_tetrahedron(m, x[loops[rim[f]]], x[loops[i]], x[loops[i + 1]]);
 }
-/* Corners that are in use, numbered anew, into the principal frame; then the planes. */
+/* Writes the corners in use, renumbered, to a shape, in its principal frame; then its planes. */
 static void demi_polyhedron_lay(demi_shape *s, const demi_d3 *x, int32_t *number) {
     int32_t *loops = s->rim + s->faces + 1;
     demi_d3 corner[DEMI_HULL_CORNERS], n;
@@ -282,8 +294,9 @@ static void demi_polyhedron_lay(demi_shape *s, const demi_d3 *x, int32_t *number
         demi_d3_put(plane, demi_d3_over(n, plane[3]));
     }
 }
-/* Radii, arms, and how light it may seem: where a face lies on a plane the overlap grows with
-   slope^2 = area/(2 (4 pi/3)^(1/3) r h) for every m (>>polyhedra), and by turning with its arms. */
+/* Sets the bounds of a polyhedron, see demi_cluster_bounds. On a plane the overlap of a face grows by
+   `slope` per m of approach, slope^2 = area/(2 (4 pi/3)^(1/3) r h) (>>polyhedra). This and rotation
+   about the lever arm of the face reduce the effective mass. */
 static void demi_polyhedron_bounds(demi_shape *s) {
     const int32_t *loops = s->rim + s->faces + 1;
     const dem_vec3 I = s->inertia;
@@ -312,7 +325,9 @@ static void demi_polyhedron_bounds(demi_shape *s) {
         s->light = DEMI_MIN(s->light, 1/(DEMI_MAX(slope, 1)*(1 + arm/least)));
     }
 }
-/* The hull of points whose middle is the origin, m apart at most, as a shape: 0 with a sentence. */
+/* Makes the hull of points a shape. The box of the points must be centred at the origin; size: its
+   diagonal, m. The tolerance grows until the hull is consistent. Returns 0 with an error message.
+   */
 static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, double size,
                                 demi_shape *shape) {
     int32_t rim[7*DEM_POLYHEDRON_FACES];
@@ -353,7 +368,8 @@ static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, do
     demi_polyhedron_lay(shape, h->x, h->first);
     return 1;
 }
-/* The hull of points, complete but for being one of the world's shapes; 0 with a sentence. */
+/* Makes the hull of points a complete shape, without adding it to the world. Returns 0 with an
+   error message. */
 static int demi_polyhedron_of(dem_world *w, const char *call, int count, const dem_real *points,
                               demi_shape *shape) {
     dem_vec3 lo, hi, middle;
@@ -406,7 +422,7 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_re
     if (!demi_polyhedron_of(w, call, count, points, &shape)) return demi_no_shape;
     return demi_shape_adopt(w, call, &shape);
 }
-/* How far below the faces of a shape a place of its own frame is, m. */
+/* Returns the depth of a point, in the frame the shape was given in, below its faces, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
     const demi_d3 x = demi_d3_of(dem_quat_unrotate(s->frame, demi_sub(at, s->centre)));
     const double *a = s->hull;
@@ -416,7 +432,8 @@ static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
         least = DEMI_MIN(least, (1 - demi_d3_dot(demi_d3_at(a), x))*a[3]);
     return (dem_real)least;
 }
-/* 0 with a sentence where vertices are none, far off, or not there. */
+/* Returns 0 with an error message if there are no vertices or elements, if a coordinate is not
+   finite or too large, or if an element names a vertex that does not exist. */
 static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const dem_real *xyz,
                            int per_vertex, int elements, const int32_t *corners,
                            int per_element) {
@@ -445,8 +462,8 @@ static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const d
         }
     return 1;
 }
-/* The hull of a mesh that bounds a body, of those vertices that its triangles have. 0 with an error
-   message. */
+/* Makes the hull of a closed mesh a shape, from the vertices that its triangles use. Returns 0 with
+   an error message. */
 static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, demi_shape *shape) {
     const size_t count = (size_t)mesh->vertex_count;
     dem_real *points = (dem_real *)demi_alloc(w, 3*count, sizeof *points);
@@ -482,7 +499,7 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
     if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
                          mesh->triangles, 3)) return demi_no_shape;
     if (!demi_mesh_hull(w, call, mesh, &shape)) return demi_no_shape;
-    for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, sides' middles, triangles' */
+    for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, midpoints of sides, centroids */
         const int32_t *t = mesh->triangles + i/3*3;
         dem_vec3 x[3], at[3];
         for (k = 0; k < 3; k++) x[k] = demi_at(mesh->vertices + 3*t[(i + k)%3]);
@@ -511,7 +528,7 @@ static size_t demi_shape_hull_reals(const demi_shape *s) {
 static size_t demi_shape_rim_ints(const demi_shape *s) {
     return (size_t)s->faces + 1 + (size_t)s->rim[s->faces];
 }
-/* Copies of its arrays in another world; 0 when memory ran out. */
+/* Replaces the arrays of a shape by copies in another world. Returns 0 if memory ran out. */
 static int demi_shape_copy(dem_world *to, demi_shape *shape) {
     const demi_shape from = *shape;
     const size_t parts = 4*(size_t)from.count, pieces = (size_t)from.pieces;
@@ -540,7 +557,7 @@ static int demi_shape_copy(dem_world *to, demi_shape *shape) {
     return 0;
 }
 
-/* --- what it tells of itself (DEMI_SHAPES) --- */
+/* --- properties of polyhedra (DEMI_SHAPES) --- */
 
 static dem_real demi_polyhedron_support(const demi_shape *s, dem_vec3 n) {
     const demi_d3 e = demi_d3_of(n);
@@ -558,7 +575,7 @@ static double demi_polyhedron_curve(const demi_part *p, double h) {
     (void)h;
     return demi_polyhedron_equal(p);
 }
-/* The ellipsoid of its moments. */
+/* Returns the semi-axes of the ellipsoid with the same moments of inertia, m. */
 static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
     return demi_scale(demi_shape_alike(p->shape), p->scale);
 }
