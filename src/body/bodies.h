@@ -79,7 +79,7 @@ static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
     hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
     hi[2] = (double)w->desc.domain.hi.z;
 }
-/* Wraps positions into the periodic box. Only at a rebuild, when no list stores images. */
+/* Wraps positions into the periodic box. Allowed only at a rebuild, when no list stores images. */
 static void demi_wrap(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
@@ -118,8 +118,8 @@ static int demi_near_remembers(const dem_world *w, int d, int p) {
     }
     return 0;
 }
-/* Returns the pair after p in a domain's pruned neighbour list. Its pairs are p = 0 .. near_own -
-   1, then near_cross .. near_end - 1. */
+/* Returns the pair after p in a domain's pruned neighbour list. Its pairs are
+   p = 0 .. near_own - 1, then near_cross .. near_end - 1. */
 DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
     return p + 1 == domain->near_own ? domain->near_cross : p + 1;
 }
@@ -127,9 +127,9 @@ DEM_INLINE int demi_near_first(const demi_domain *domain) {
     return domain->near_own ? 0 : domain->near_cross;
 }
 
-/* Files the contact history of all pairs of spheres by slot. The row is the lower slot; partner is
-   the higher slot, or its complement if that was body a of the pair. Returns 0 if memory ran out.
-   */
+/* Files the contact history of all pairs of spheres by slot. The row is the lower slot. The
+   partner is the higher slot, or its complement if that was body a of the pair. Returns 0 if memory
+   ran out. */
 static int demi_carry_collect(dem_world *w) {
     const int stride = w->memory_stride;
     int d, p, e, k, total = 0, pass;

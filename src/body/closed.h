@@ -6,8 +6,8 @@
    of a shell (the triangles that such edges join) relative to its first, whatever their order of
    corners. A body is bounded by shells without open edges. An outer shell faces out. A shell within
    a shell is a cavity if it was written to face the opposite way of the shell around it; otherwise
-   the mesh is an error. Works on a demi_closed of its own; changes neither world nor mesh.
-   Tests: tests/file/test_decompose.c.
+   the mesh is rejected with an error message. Works on a demi_closed; changes neither the world nor
+   the mesh. Tests: tests/file/test_decompose.c.
    --------------------------------------------------------------------------------------------- */
 /* Largest number of shells; corners that are tested for being inside another shell. */
 enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };

@@ -12,8 +12,7 @@
 typedef struct demi_hull_face {
     /* points, counterclockwise from outside; triangles across the sides from corner k to k + 1 */
     int32_t corner[3], beside[3];
-    /* 0: unused, 1: of the hull, 2: visible from the point being added; number of its face, or -1
-       */
+    /* 0: unused, 1: of the hull, 2: visible from the point being added; its face, or -1 */
     int32_t state, face;
     demi_d3 n;                     /* unit, outward */
     double at;                     /* m: n.x of its plane */
@@ -208,8 +207,7 @@ static double demi_loop_plane(const demi_d3 *x, const int32_t *loop, int n, demi
     for (i = 0, *high = 0; i < n; i++) *high += demi_d3_dot(*normal, x[loop[i]])/n;
     return demi_d3_length(twice);
 }
-/* True if no point is outside and every corner of a face is in its plane, up to 20 times h->near.
-   */
+/* True if no point is outside and every corner of a face is in its plane, within 20 h->near. */
 static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
     const int32_t *loops = rim + faces + 1;
     int f, i;
@@ -294,9 +292,9 @@ static void demi_polyhedron_lay(demi_shape *s, const demi_d3 *x, int32_t *number
         demi_d3_put(plane, demi_d3_over(n, plane[3]));
     }
 }
-/* Sets the bounds of a polyhedron, see demi_cluster_bounds. On a plane the overlap of a face grows by
-   `slope` per m of approach, slope^2 = area/(2 (4 pi/3)^(1/3) r h) (>>polyhedra). This and rotation
-   about the lever arm of the face reduce the effective mass. */
+/* Sets the bounds of a polyhedron, see demi_cluster_bounds. On a plane the overlap of a face grows
+   by `slope` per m of approach, slope^2 = area/(2 (4 pi/3)^(1/3) r h) (>>polyhedra). This, and
+   rotation about the lever arm of the face reduce the effective mass. */
 static void demi_polyhedron_bounds(demi_shape *s) {
     const int32_t *loops = s->rim + s->faces + 1;
     const dem_vec3 I = s->inertia;
@@ -326,8 +324,8 @@ static void demi_polyhedron_bounds(demi_shape *s) {
     }
 }
 /* Makes the hull of points a shape. The box of the points must be centred at the origin; size: its
-   diagonal, m. The tolerance grows until the hull is consistent. Returns 0 with an error message.
-   */
+   diagonal, m. Increases the tolerance until the hull is consistent. Returns 0 with an error
+   message if it never is, or is flat or has too many faces. */
 static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, double size,
                                 demi_shape *shape) {
     int32_t rim[7*DEM_POLYHEDRON_FACES];

@@ -244,8 +244,8 @@ DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
    the small rotation that makes I end parallel to R^T L. This removes two of the three error
    components of q and keeps L and |q| exact. Free rotation is of order 3 in q. At |w| h = 0.1 the
    error is 10 times smaller than that of the original, and the energy drift 9 times
-   (docs/shapes.md). I, inv: principal moments and their inverses. Returns the mean spin in the body
-   frame, rad/s. */
+   (derivation: docs/theory_surfaces.md). I, inv: principal moments and their inverses. Returns the
+   mean spin in the body frame, rad/s. */
 DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                        dem_real h) {
     const dem_vec3 m = dem_quat_unrotate(*q, L);

@@ -218,9 +218,9 @@ static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
 }
 
 /* Sets the bounds of a cluster for contact detection and the time step: bounding radius, largest
-   lever arm of a contact force, smallest and largest radius of curvature (thin, blunt) and smallest
-   effective mass over mass (light): 1/g over (l/h)^2, with g = n.K n of this body alone, l the
-   radius of equal volume and h the support height. */
+   lever arm of a contact force, smallest radius (thin), radius of the flattest point (blunt), and
+   smallest effective mass over mass (light): 1/g over (l/h)^2, with g = n.K n of this body alone, l
+   the radius of equal volume and h the support height. */
 static void demi_cluster_bounds(demi_shape *shape) {
     const dem_vec3 I = shape->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));

@@ -6,8 +6,7 @@
    into larger convex pieces. Adds shapes to w->shapes.
    --------------------------------------------------------------------------------------------- */
 
-/* Adds a piece to the moments of a union; q: orientation of its principal axes; c: its centre, m.
-   */
+/* Adds a piece to the moments of a union. q: orientation of its principal axes; c: centre, m. */
 static void demi_moments_piece(demi_moments *m, const demi_shape *s, dem_quat q, dem_vec3 c) {
     const double I[3] = {(double)s->inertia.x, (double)s->inertia.y, (double)s->inertia.z};
     const double half = (I[0] + I[1] + I[2])/2, x[3] = {(double)c.x, (double)c.y, (double)c.z};

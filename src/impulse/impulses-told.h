@@ -148,7 +148,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
         } else domain->contacts += c->push > 0;
     }
 }
-/* Adds the contact forces to fixed bodies, so that they can be read and written. */
+/* Adds the contact forces to fixed bodies, for getters and output files. */
 static void demi_impulses_fixed(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
@@ -178,10 +178,11 @@ static double demi_sum_energy(const dem_world *w, int what) {
     for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
     return sum;
 }
+/* Largest number of rounds of demi_impulses_tame. */
+enum { DEMI_TAMINGS = 4 };
 /* Newton's restitution and friction together may add energy if the slip reverses. Halves the
    restitution of each impact that would do so; with `last` sets it to 0, which loses energy for any
    shape. Returns the number of such impacts. */
-enum { DEMI_TAMINGS = 4 };
 static int demi_impulses_tame(dem_world *w, int last) {
     demi_solver *s = &w->solver;
     int i, tamed = 0;

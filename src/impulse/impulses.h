@@ -156,8 +156,8 @@ typedef struct demi_rod {
 /* Node of the linear system of all joints: a movable body with joints, or a joint in force. */
 typedef struct demi_knot {
     int32_t mover, rod;            /* solver body or joint; the other is -1 */
-    int32_t rank, order;           /* its place in the order of elimination; of the node with the
-                                      index `rank`: the node that is eliminated at that place */
+    int32_t rank, order;           /* its position in the order of elimination; order of entry i
+                                      of the array: which node is eliminated at position i */
     int32_t first, count;          /* its column of the factor: entries of demi_solver.rows */
     int32_t group;                 /* a node of its group of connected nodes, at the end the root;
                                       the root has the values of the group: */

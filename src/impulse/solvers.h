@@ -115,8 +115,8 @@ DEM_INLINE void demi_sums_add(demi_run_sums *o, dem_real change2) {
     o->worst = DEMI_MAX(o->worst, change2);
     o->squares += change2;
 }
-/* Gives the contacts of run `index`, *begin to *end - 1, among the contacts s->first to s->last -
-   1: those of one colour, or all. */
+/* Gives the contacts of run `index`, *begin to *end - 1. Runs divide the contacts from s->first to
+   before s->last: those of one colour, or all. */
 static void demi_run_bounds(const demi_solver *s, int index, int *begin, int *end) {
     *begin = s->first + index*DEMI_SWEEP_RUN;
     *end = DEMI_MIN(*begin + DEMI_SWEEP_RUN, s->last);
@@ -176,6 +176,7 @@ static void demi_impulses_warm(dem_world *w, int index) {
 
 /* Bodies are prefetched this many contacts ahead, which saves a tenth of the time. */
 enum { DEMI_SOON = 8 };
+/* One Gauss-Seidel sweep over a run of contacts, for either cone and for spheres or any shapes. */
 #define DEMI_SEIDEL(NAME, CONVEX, SHAPED) \
     static void NAME(dem_world *w, int index) { \
         demi_solver *s = &w->solver; \
@@ -206,19 +207,22 @@ DEMI_SEIDEL(demi_seidel_shapes_convex, 1, 1)
 #undef DEMI_SEIDEL
 /* Result of a solver: number of sweeps; largest and rms residual of the last sweep, m/s. */
 typedef struct demi_solved { int sweeps; double worst, rms; } demi_solved;
+/* Sets the residuals of a result from the sums of a sweep. */
 static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums sums) {
     o->worst = sqrt((double)sums.worst);
     o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
 }
 /* True if the solution is not converged. With desc.tolerance: the largest residual exceeds it.
-   Otherwise: the rms residual exceeds 0.05 g dt + 1e-5 times the largest speed, or the largest
-   residual exceeds 30 times that. */
+   Otherwise: the rms residual exceeds 0.05 g dt + 1e-5 times the largest speed + 1e-12 m/s, or
+   the largest residual exceeds 30 times that. */
 static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
     const double enough = 0.05*kick + 1e-5*w->booked.speed_max + 1e-12;
     if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
     return o->rms > enough || o->worst > 30*enough;
 }
+/* Solves contacts and joints by Gauss-Seidel, in at most `most` sweeps; more if the energy guard of
+   joints requires them. */
 static demi_solved demi_solve_seidel(dem_world *w, int most) {
     const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
@@ -268,6 +272,7 @@ static void demi_vectors_apply(dem_world *w, int index) {
     for (demi_run_bounds(s, index, &i, &end); i < end; i++)
         demi_impulse_apply(s, s->contacts + i, s->vectors[i], shaped);
 }
+/* Solves by Jacobi's method in at most `most` sweeps. */
 static demi_solved demi_solve_jacobi(dem_world *w, int most) {
     demi_solver *s = &w->solver;
     demi_solved o = {0, 0, 0};
