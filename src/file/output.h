@@ -1,20 +1,26 @@
 /* ---------------------------------------------------------------------------------------------
    >>output
-   Files and calls on a schedule: dem_world_step looks here (demi_lookers) before the first of its
-   steps and after each. What each output has written is state (demi_written): a run that goes on
-   from a checkpoint writes what the run without a stop would have written, and of a CSV file the
-   lines of later times are taken out before the first is appended. Tests: tests/file/test_output.c.
+   Scheduled outputs: files that are written and functions that are called at regular intervals of
+   simulated time. dem_world_step calls demi_outputs_look, through the pointer in demi_lookers,
+   before its first step and after every step. This part owns the outputs in w->look.
+
+   The record of what each output has written (demi_written) is part of the state. A run that
+   continues from a checkpoint therefore writes the same files as a run without interruption. Before
+   it appends to a CSV file, it removes the lines of later times.
+   Tests: tests/file/test_output.c.
    --------------------------------------------------------------------------------------------- */
 static const char demi_output_columns[] = "steps bodies contacts kinetic rotational overlap_max";
 
-/* A copy of a text, for as long as the world. Null of none, or when memory ran out. */
+/* Returns a copy of a text that lives as long as the world. Null if `text` is null or memory ran
+   out. */
 static char *demi_text_copy(dem_world *w, const char *text) {
     const size_t size = text ? strlen(text) + 1 : 0;
     char *copy = size ? (char *)demi_hold(w, DEMI_SCENE, size, 1) : 0;
     if (copy) memcpy(copy, text, size);
     return copy;
 }
-/* The run of # nearest to the end of a path: where it begins, how long it is (0: there is none). */
+/* Returns where the last run of # in a path begins. *count receives its length, 0 if there is no #.
+   */
 static size_t demi_output_marks(const char *path, size_t *count) {
     size_t end = strlen(path), begin;
     while (end > 0 && path[end - 1] != '#') end--;
@@ -22,10 +28,11 @@ static size_t demi_output_marks(const char *path, size_t *count) {
     *count = end - begin;
     return begin;
 }
-/* What names the columns of a CSV file after the time. */
+/* Returns the names of the columns of a CSV file, without the time, separated by spaces. */
 static const char *demi_output_names(const dem_output_desc *d) {
     return d->columns ? d->columns : demi_output_columns;
 }
+/* Writes the first line of a CSV file to `heading`, of at least DEMI_CSV_LINE bytes. */
 static void demi_output_heading(const dem_output_desc *d, char *heading) {
     char *c;
     if (d->wall.id) { strcpy(heading, demi_loads_heading); return; }
@@ -33,11 +40,12 @@ static void demi_output_heading(const dem_output_desc *d, char *heading) {
     demi_names_copy(demi_output_names(d), heading + 5);
     for (c = heading; *c; c++) if (*c == ' ') *c = ',';
 }
-/* Takes the lines of a CSV file out that tell of `from` (s) and later, and one that was cut short.
-   A file with other columns is refused; one that is not there has none. */
+/* Truncates a CSV file before its first line that has a time of `from` (s) or later, cannot be read
+   as a number, or was cut short. Fails if the file has other columns. A file that does not exist is
+   no error. */
 static dem_result demi_csv_resume(dem_world *w, const char *path, const char *heading,
                                   double from) {
-    const char *call = "dem_world_step";        /* that is what failed, and is tried again */
+    const char *call = "dem_world_step";        /* the call that the user makes again */
     const size_t head = strlen(heading);
     char *data = 0, *line;
     size_t size = 0, keep;
@@ -73,8 +81,8 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     demi_free(w, data);
     return result;
 }
-/* A line of a CSV file: the first of a run begins the file anew, the first after a checkpoint was
-   read follows the last one that the checkpoint knows of. */
+/* Appends a line to a CSV file. The first line of a run replaces all lines of an older file. The
+   first line after a checkpoint was read follows the last line that the checkpoint knows of. */
 static dem_result demi_output_line(dem_world *w, const demi_output *o, const char *path) {
     const dem_output_desc *d = &o->desc;
     double value[DEM_OUTPUT_COLUMNS];
@@ -112,12 +120,14 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
-/* What writes a file of each kind, in the order of dem_output_kind; 0: see below. */
+/* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the two
+   kinds that demi_output_write handles itself. */
 static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
     0, dem_vtp_write, dem_xyz_write, dem_contacts_vtp_write, dem_checkpoint_write, 0,
     dem_surfaces_vtp_write};
 enum { DEMI_OUTPUTS = (int)(sizeof demi_output_writers/sizeof *demi_output_writers) };
-/* Output `number` of the world as it is. o: a copy, since a call may add outputs. */
+/* Writes output `number` of the present state, or calls the output's function. `o` must point to a
+   copy, because that function may add outputs and so move the array. */
 static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t number) {
     const dem_output_desc *d = &o->desc;
     size_t length = d->path ? strlen(d->path) : 0, marks = 0, at = 0;
@@ -141,15 +151,16 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     demi_free(w, path);
     return result;
 }
-/* Index of the first output whose id is not below this one. */
+/* Returns the index of the first output whose id is at least `id`, or the number of outputs. */
 static int demi_output_place(const dem_world *w, int32_t id) {
     int i;
     for (i = 0; i < w->look.output_count && w->look.outputs[i].id < id; i++) {}
     return i;
 }
-/* What is due at this step. What fails stops the run, and is tried again by the next one. An output
-   counts as written while it writes, so that a checkpoint knows of itself; where it has read one,
-   what is due then is looked for anew. */
+/* Writes every output that is due at this step. An output that fails stops the run, and the next
+   run tries it again. An output is recorded as written before it writes, so that a checkpoint
+   contains the record of its own output. If the function of an output reads a checkpoint, the loop
+   starts again with the time and the records of that checkpoint. */
 static dem_result demi_outputs_look(dem_world *w) {
     int i;
     for (i = 0; i < w->look.output_count; i++) {
@@ -180,7 +191,7 @@ static dem_result demi_outputs_look(dem_world *w) {
             i = -1;
             continue;
         }
-        i = demi_output_place(w, o.id);         /* its function may have removed some */
+        i = demi_output_place(w, o.id);         /* its function may have removed outputs */
         if (i == w->look.output_count || w->look.outputs[i].id != o.id) i--;
         else if (result == DEM_OK) w->look.outputs[i].resumes = 0;
         else w->look.outputs[i].written = o.written;
@@ -188,7 +199,7 @@ static dem_result demi_outputs_look(dem_world *w) {
     }
     return DEM_OK;
 }
-/* An output of which nothing is known. */
+/* Resets the record of an output: nothing has been written yet. */
 static void demi_output_begin(demi_output *o) {
     const dem_output_desc *d = &o->desc;
     const int kind = (int)d->kind;
@@ -200,8 +211,9 @@ static void demi_output_begin(demi_output *o) {
     o->written.last = -1e300;
     o->resumes = 1;
 }
-/* A checkpoint has been read: each output goes on from the one of the file that has its kind, path
-   and times; else from one of its kind and path, at the next of its own times. */
+/* Called after a checkpoint was read. Each output continues the record in the checkpoint that has
+   the same kind, path, start and interval. If there is none, it continues a record of the same kind
+   and path, and its own start and interval determine when it writes next. */
 static void demi_outputs_again(dem_world *w) {
     const double now = w->clock.time, half = (double)w->clock.dt/2;
     int i, k, pass;
@@ -214,7 +226,7 @@ static void demi_outputs_again(dem_world *w) {
                 demi_written *there = &w->written[k];
                 if (there->what != o->written.what ||
                     (!pass && there->when != o->written.when)) continue;
-                there->what = 0;                /* taken */
+                there->what = 0;                /* continued by one output only */
                 o->resumes = 2;
                 o->written.last = there->last;
                 if (!pass) o->written.next = there->next;
@@ -224,7 +236,8 @@ static void demi_outputs_again(dem_world *w) {
             }
         }
 }
-/* One sentence on what is wrong with a desc; null: nothing. */
+/* Returns the part of an error message that says what is wrong with a desc, or null if nothing is.
+   */
 static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
     if ((int)d->kind < 0 || (int)d->kind >= DEMI_OUTPUTS)
         return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
