@@ -1,26 +1,32 @@
 /* ---------------------------------------------------------------------------------------------
    >>decompose
-   Spheres that stand for a closed mesh. A grid of points over its box tells inside from outside
-   (by crossings of lines along z); candidates are inside points, with radii about their distance
-   from the surface. Each sphere in turn is the candidate that leaves the fewest points wrong, in
-   the union but not in the mesh or the other way about; then each is taken out and chosen anew, as
-   long as that helps. Knows no world but for its memory.
+   Clusters: approximation of a closed mesh by overlapping spheres. A grid of points over the mesh's
+   bounding box samples inside and outside, by the parity of crossings of lines along z. Candidates
+   are spheres about inside points, with five radii from 0.9 to 1.3 times the distance from the
+   surface. Each sphere in turn is the candidate that leaves the fewest points wrong. A point is
+   wrong if it is in the union of spheres but not in the mesh, or in the mesh but not in the union.
+   Then each sphere is removed and chosen again, as long as this reduces the error, for at most
+   DEMI_GRAIN_SWEEPS sweeps. This part owns demi_mould. It uses a world only for memory and error
+   messages.
    --------------------------------------------------------------------------------------------- */
+/* Grid cells along the longest side of the mesh; largest number of candidate points; radii of each;
+   sweeps. */
 enum { DEMI_GRAIN_CELLS = 40, DEMI_GRAIN_PICKS = 1500, DEMI_GRAIN_SCALES = 5,
        DEMI_GRAIN_SWEEPS = 4 };
+/* The grid of points and the candidates. */
 typedef struct demi_mould {
     const dem_mesh *mesh;
-    const signed char *sign;       /* of its triangles (>>closed) */
-    int n[3], count;               /* points along each axis, all */
-    double lo[3], step;            /* m */
-    unsigned char *inside;
-    uint16_t *covered;             /* by how many spheres */
-    int32_t *pick;                 /* points that are candidates */
-    double *far;                   /* of those: distance from the surface, m */
-    int32_t *most;                 /* picks x scales: no gain can be above that, plus `slack` */
-    int picks, slack;              /* slack: points that were left by spheres taken out */
+    const signed char *sign;       /* orientation of each triangle; 0: not counted (>>closed) */
+    int n[3], count;               /* points along each axis; all points */
+    double lo[3], step;            /* m: lowest corner of the grid, distance of points */
+    unsigned char *inside;         /* of each point: 1 inside the mesh, 0 outside */
+    uint16_t *covered;             /* of each point: number of spheres that contain it */
+    int32_t *pick;                 /* candidates: numbers of their points */
+    double *far;                   /* candidates: distance from the surface, m */
+    int32_t *most;                 /* picks x scales: the gain of each is at most this + `slack` */
+    int picks, slack;              /* candidates; inside points that removals have uncovered */
 } demi_mould;
-/* How far x is from a triangle, squared ([ERI05] 5.1.5). */
+/* Returns the squared distance (m2) of point x from a triangle ([ERI05] 5.1.5). */
 static double demi_corner_distance(const demi_d3 *corner, demi_d3 x) {
     const demi_d3 n = demi_d3_normal(corner[0], corner[1], corner[2]);
     double best = 1e300, over;
@@ -37,6 +43,7 @@ static double demi_corner_distance(const demi_d3 *corner, demi_d3 x) {
     over = demi_d3_dot(demi_d3_sub(x, corner[0]), n);
     return over*over/demi_d3_square(n);
 }
+/* Returns the distance (m) of point x from the nearest triangle of a mesh. */
 static double demi_mesh_distance(const dem_mesh *mesh, demi_d3 x) {
     demi_d3 corner[3];
     double best = 1e300;
@@ -49,12 +56,13 @@ static double demi_mesh_distance(const dem_mesh *mesh, demi_d3 x) {
     }
     return sqrt(best);
 }
+/* Position of grid point i, m. */
 static void demi_mould_at(const demi_mould *m, int i, double *x) {
     x[0] = m->lo[0] + (i%m->n[0] + 0.5)*m->step;
     x[1] = m->lo[1] + (i/m->n[0]%m->n[1] + 0.5)*m->step;
     x[2] = m->lo[2] + (i/m->n[0]/m->n[1] + 0.5)*m->step;
 }
-/* Turns inside to outside, and back, for all points above a triangle. */
+/* Swaps inside and outside of all points above a triangle, in the direction of z. */
 static void demi_mould_cross(demi_mould *m, int triangle) {
     demi_d3 t[3], a, b, c;
     int from[2], to[2], i, j, k, e;
@@ -80,8 +88,10 @@ static void demi_mould_cross(demi_mould *m, int triangle) {
                     m->inside[i + m->n[0]*(j + m->n[1]*k)] ^= 1;
         }
 }
-/* By how many points more right than wrong a sphere would be; right: the former. Or puts it in (by
-   1) or out (-1). */
+/* With by = 0, returns the gain of adding a sphere of centre c and radius r (m): of the points that
+   only this sphere would cover, the number inside the mesh minus the number outside. *right (or
+   null) receives the number inside. With by = 1 or -1, adds the sphere to `covered` or removes it.
+   */
 static int demi_mould_gain(demi_mould *m, const double *c, double r, int by, int *right) {
     int from[3], to[3], i[3], e, good = 0, bad = 0;
     for (e = 0; e < 3; e++) {
@@ -106,7 +116,8 @@ static int demi_mould_gain(demi_mould *m, const double *c, double r, int by, int
     if (right) *right = good;
     return good - bad;
 }
-/* The best of all candidates, beside the spheres that are there. */
+/* Finds the candidate with the largest gain, given the spheres already placed. Writes its centre
+   and radius to `sphere` and returns the gain. */
 static int demi_mould_best(demi_mould *m, double *sphere) {
     static const double scale[DEMI_GRAIN_SCALES] = {1, 0.9, 1.08, 1.18, 1.3};
     int most = INT_MIN, i, k;
@@ -127,7 +138,8 @@ static int demi_mould_best(demi_mould *m, double *sphere) {
         }
     return most;
 }
-/* The grid and its candidates; 0: no memory. */
+/* Makes the grid for a mesh with this bounding box, and the candidates. Returns 0 if memory ran
+   out; the caller frees in any case. */
 static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 highest) {
     double most = 0, x[3], lo[3], hi[3];
     int i, e, inside = 0, seen = 0;
@@ -137,7 +149,8 @@ static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 
     m->step = most/(int)DEMI_GRAIN_CELLS;
     for (e = 0, m->count = 1; e < 3; e++) {
         m->n[e] = (int)ceil((hi[e] - lo[e])/m->step) + 6;
-        m->lo[e] = (lo[e] + hi[e])/2 - m->step*(m->n[e]/2.0 + 0.0123*(e + 1));     /* off corners */
+        /* shifted a little, to keep the lines of the grid off the vertices */
+        m->lo[e] = (lo[e] + hi[e])/2 - m->step*(m->n[e]/2.0 + 0.0123*(e + 1));
         m->count *= m->n[e];
     }
     m->inside = (unsigned char *)demi_alloc(w, (size_t)m->count, 1);
@@ -149,7 +162,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 
     for (i = 0; i < DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS; i++) m->most[i] = INT_MAX/2;
     for (i = 0; i < m->mesh->triangle_count; i++) if (m->sign[i]) demi_mould_cross(m, i);
     for (i = 0; i < m->count; i++) inside += m->inside[i];
-    for (i = 0; i < m->count; i++) {            /* every so many of those inside, the same number */
+    for (i = 0; i < m->count; i++) {            /* DEMI_GRAIN_PICKS inside points, evenly spread */
         const int64_t now = (int64_t)(seen + 1)*DEMI_GRAIN_PICKS;
         if (!m->inside[i]) continue;
         seen++;
@@ -168,7 +181,8 @@ static void demi_mould_free(dem_world *w, demi_mould *m) {
     demi_free(w, m->far);
     demi_free(w, m->most);
 }
-/* What a mesh is, and how well spheres (count x 4) fit it. Moments are exact. */
+/* Fills in volume, centre and inertia of a mesh, which are exact, and surface_error, the rms
+   distance of its surface from the union of spheres (count x 4: centre, radius). */
 static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, const double *sphere,
                                int count, dem_spheres_fit *fit) {
     double c[3], I[6], all = 0, square = 0;
@@ -199,7 +213,8 @@ static void demi_spheres_judge(const dem_mesh *mesh, const demi_moments *m, cons
     }
     fit->surface_error = (dem_real)sqrt(square/all);
 }
-/* Volume and second moments of what the spheres cover, by the grid, against those of the inside. */
+/* Fills in volume_error, inertia_error and `wrong`: compares the points that spheres cover with the
+   points inside the mesh. */
 static void demi_mould_judge(const demi_mould *m, dem_spheres_fit *fit) {
     demi_moments own, theirs;
     double x[3], worst = 0, spread[2][3];
@@ -223,7 +238,8 @@ static void demi_mould_judge(const demi_mould *m, dem_spheres_fit *fit) {
     fit->inertia_error = (dem_real)worst;
     fit->wrong = (dem_real)((double)wrong/inside);
 }
-/* dem_mesh_spheres of a mesh whose triangles have these signs. */
+/* Does the work of dem_mesh_spheres, for checked arguments. sign: the orientation of each triangle
+   (>>closed). */
 static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_mesh *mesh,
                                     const signed char *sign, int count, dem_real *positions,
                                     dem_real *radii, dem_spheres_fit *fit) {

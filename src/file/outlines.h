@@ -1,25 +1,29 @@
 /* ---------------------------------------------------------------------------------------------
    >>outlines
-   Faces of many corners, cut into triangles that keep the face's winding. The face is seen along
-   its normal (Newell's: the sum over its edges). A convex one becomes a fan from its first corner;
-   any other is cut ear by ear: an ear is a corner whose triangle lies in the face. Holes bridged by
-   an edge there and back, corners on a line and doubled corners are allowed.
-   n corners give n - 2 triangles, always: what is doubled becomes a triangle of no area.
+   Triangulation of polygonal faces by ear clipping. The triangles keep the winding of the face. The
+   face's normal is Newell's (a sum of cross products over its edges), and the corners are projected
+   along the coordinate axis that is nearest to it. A convex face becomes a fan from its first
+   corner. From any other face, ears are cut off one by one: an ear is a corner whose triangle lies
+   inside the face. Holes that are bridged by an edge there and back, collinear corners and doubled
+   corners are allowed. n corners always give n - 2 triangles; a doubled corner gives a triangle
+   without area. This part owns demi_outline and needs a world only for memory.
    ---------------------------------------------------------------------------------------------- */
-/* Corners of a face that is not convex, at most: each edge is held against each. Cells along a side
-   of the grid that finds the corners near an ear. */
+/* DEMI_OUTLINE_MOST: largest number of corners of a face that is not convex; every edge is tested
+   against every other. DEMI_OUTLINE_CELLS: cells along a side of the square grid that finds the
+   corners near an ear. */
 enum { DEMI_OUTLINE_MOST = 10000, DEMI_OUTLINE_CELLS = 32 };
+/* The face under work. Corners are numbered 0 to count - 1 in the order of the outline. */
 typedef struct demi_outline {
     int count;
-    int32_t *corner;               /* vertices of the mesh, in order */
-    int32_t *next, *prev;          /* the ring of corners; next -1: cut off */
-    int32_t *beside;               /* the next corner in the same cell, -1: none */
-    int32_t first[DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS];
-    double *xy;                    /* count x 2, counterclockwise, m, from the first corner */
-    double lo[2], cell;            /* m */
-    double near;                   /* m2: twice an area that is not larger counts as none */
-    double work;                   /* corners and cells that may still be looked at */
-    int bent, crossed;             /* not flat; an edge crosses another, or it has no area */
+    int32_t *corner;               /* index of each corner's vertex in the mesh */
+    int32_t *next, *prev;          /* ring of the corners that are left; next is -1 once cut off */
+    int32_t *beside;               /* next corner in the same cell of the grid; -1: none */
+    int32_t first[DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS];  /* first corner in each cell; -1: none */
+    double *xy;                    /* count x 2, m: projected, counterclockwise, corner 0 at 0 */
+    double lo[2], cell;            /* m: lowest corner of the grid, size of a cell */
+    double near;                   /* m2: a triangle with twice this area or less has none */
+    double work;                   /* corners and cells that may still be visited */
+    int bent, crossed;             /* 1: not flat; 1: an edge crosses another, or it has no area */
 } demi_outline;
 static void demi_outline_free(dem_world *w, demi_outline *o) {
     demi_free(w, o->corner);
@@ -28,7 +32,7 @@ static void demi_outline_free(dem_world *w, demi_outline *o) {
     demi_free(w, o->beside);
     demi_free(w, o->xy);
 }
-/* Room for one more corner; 0: no memory. */
+/* Makes room for one more corner. Returns 0 if memory ran out. */
 static int demi_outline_grow(dem_world *w, demi_outline *o) {
     const size_t n = (size_t)o->count + 1;
     return demi_grow(w, DEMI_LOOSE, &o->corner, sizeof *o->corner, n) &&
@@ -37,15 +41,17 @@ static int demi_outline_grow(dem_world *w, demi_outline *o) {
         demi_grow(w, DEMI_LOOSE, &o->beside, sizeof *o->beside, n) &&
         demi_grow(w, DEMI_LOOSE, &o->xy, sizeof *o->xy, 2*n);
 }
-/* Twice the area of a triangle of three corners, positive if it turns left. */
+/* Returns twice the signed area of the triangle a, b, c (m2), positive if counterclockwise. */
 static double demi_outline_turn(const demi_outline *o, int a, int b, int c) {
     return demi_turn_of(o->xy, a, b, c);
 }
+/* True if two corners have the same projected position. */
 static int demi_outline_same(const demi_outline *o, int a, int b) {
     return !(o->xy[2*a] < o->xy[2*b] || o->xy[2*a] > o->xy[2*b] ||
              o->xy[2*a + 1] < o->xy[2*b + 1] || o->xy[2*a + 1] > o->xy[2*b + 1]);
 }
-/* The corners as seen along the normal, and whether they lie in a plane. */
+/* Projects the corners to `xy` and links them to a ring. Sets `crossed` if the face has no area,
+   and `bent` if a corner is farther from the mean plane than 1e-3 of the face's largest extent. */
 static void demi_outline_lay(demi_outline *o, const dem_real *vertices) {
     const demi_d3 first = demi_d3_of(demi_at(vertices + 3*o->corner[0]));
     demi_d3 n = demi_d(0, 0, 0), mean = n, lo = n, hi = n;
@@ -79,7 +85,8 @@ static void demi_outline_lay(demi_outline *o, const dem_real *vertices) {
     }
     if (!o->crossed) o->bent = far > 1e-3*size*length;
 }
-/* 1 if it turns left at each corner, and round once: a pentagram turns left too. */
+/* True if the outline turns left at every corner and goes round once. A pentagram turns left at
+   every corner, too, but goes round twice. */
 static int demi_outline_convex(const demi_outline *o) {
     int i, turns = 0;
     double last = 0;
@@ -91,7 +98,7 @@ static int demi_outline_convex(const demi_outline *o) {
     }
     return turns <= 2;
 }
-/* 1 if two edges cross at a point that is a corner of neither. */
+/* True if two edges cross at a point that is a corner of neither. */
 static int demi_outline_crosses(const demi_outline *o) {
     int i, j;
     for (i = 0; i < o->count; i++)
@@ -104,12 +111,12 @@ static int demi_outline_crosses(const demi_outline *o) {
         }
     return 0;
 }
-/* The cell of a coordinate. */
+/* Returns the number of the cell along an axis that contains coordinate x (m), at most the last. */
 static int demi_outline_cell(const demi_outline *o, double x, int axis) {
     const double at = (x - o->lo[axis])/o->cell;
     return at > 0 ? (int)DEMI_MIN(at, DEMI_OUTLINE_CELLS - 1) : 0;
 }
-/* All corners into their cells. */
+/* Sets up the grid and enters all corners in their cells. */
 static void demi_outline_sort(demi_outline *o) {
     double size = 0;
     int i, k;
@@ -130,8 +137,9 @@ static void demi_outline_sort(demi_outline *o) {
         *first = i;
     }
 }
-/* 1 if corner q keeps corner i from being cut off: it lies in the triangle, nearer to its sides
-   than margin (m2) does not count; or it is where i is, and the outline leads through it there. */
+/* True if corner q prevents corner i from being cut off. It does if it lies inside the triangle of
+   i, which means that twice the area it spans with each side is above `margin` (m2). It also does
+   if it coincides with i and an edge of the outline leads from there into the triangle. */
 static int demi_outline_blocks(const demi_outline *o, int q, int i, double margin) {
     const int a = o->prev[i], b = o->next[i], out[2] = {o->prev[q], o->next[q]};
     int k;
@@ -144,8 +152,9 @@ static int demi_outline_blocks(const demi_outline *o, int q, int i, double margi
             demi_outline_turn(o, i, b, out[k]) > o->near) return 1;
     return 0;
 }
-/* 1 if corner i can be cut off. Patience 0: its triangle has an area, and no other corner lies in
-   it or on its sides; 1: none lies inside, and it may have no area; 2: always. */
+/* True if corner i may be cut off. With patience 0 its triangle must have an area, and no other
+   corner may lie inside or on its sides. With patience 1 it may have no area, and no corner may lie
+   inside. With patience 2 every corner may be cut off. A doubled corner always may. */
 static int demi_outline_ear(demi_outline *o, int i, int patience) {
     const int corner[3] = {o->prev[i], i, o->next[i]};
     const double margin = patience ? o->near : -o->near;
@@ -169,7 +178,8 @@ static int demi_outline_ear(demi_outline *o, int i, int patience) {
         }
     return 1;
 }
-/* The face's count - 2 triangles, to `out`. 0: it is not convex and has too many corners. */
+/* Writes the count - 2 triangles of the face to `out`, three vertices of the mesh each. Sets `bent`
+   and `crossed`. Returns 0 if the face is not convex and has too many corners. */
 static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *out) {
     int i, left = o->count, idle = 0, patience = 0;
     o->bent = o->crossed = 0;
@@ -200,7 +210,7 @@ static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *
             i = o->next[i];
             if (++idle >= left) { idle = 0; patience++; }
         }
-        if (o->work < 0) patience = 2;          /* no outline that is whole comes to this */
+        if (o->work < 0) patience = 2;          /* no sound outline takes this much work */
     }
     return 1;
 }
