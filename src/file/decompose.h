@@ -162,7 +162,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 
     for (i = 0; i < DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS; i++) m->most[i] = INT_MAX/2;
     for (i = 0; i < m->mesh->triangle_count; i++) if (m->sign[i]) demi_mould_cross(m, i);
     for (i = 0; i < m->count; i++) inside += m->inside[i];
-    for (i = 0; i < m->count; i++) {            /* DEMI_GRAIN_PICKS inside points, evenly spread */
+    for (i = 0; i < m->count; i++) {            /* at most DEMI_GRAIN_PICKS of them, evenly */
         const int64_t now = (int64_t)(seen + 1)*DEMI_GRAIN_PICKS;
         if (!m->inside[i]) continue;
         seen++;

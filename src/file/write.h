@@ -1,24 +1,30 @@
 /* ---------------------------------------------------------------------------------------------
    >>write
-   demi_out_open creates a file of a name that nobody has, path.XXXXXXXX.tmp; demi_out_close renames
-   it to path when all went well and removes it otherwise, so what is under path is whole. A
-   symbolic link stays: the file it leads to is the one replaced. Pipes and terminals are refused; a
-   device such as /dev/null is written to as it is. Write errors stick to the FILE and are looked at
-   once, on closing. Text has decimal points whatever the locale says.
+   Output files: VTP, legacy VTK, extended XYZ and CSV. This part owns demi_out, the file being
+   written. It reads the world and does not change its state.
+
+   Files are replaced as a whole. demi_out_open creates a file of an unused name,
+   path.XXXXXXXX.tmp. demi_out_close renames it to `path` if everything was written, and removes it
+   otherwise, so that a file at `path` is always complete. If `path` is a symbolic link, the link
+   stays and the file that it points to is replaced. Pipes and terminals are errors. A device such
+   as /dev/null is written to directly. The FILE records write errors, and demi_out_close checks
+   them once. Numbers have a decimal point in every locale.
    --------------------------------------------------------------------------------------------- */
 
+/* A file being written. */
 typedef struct demi_out {
     dem_world *world;
-    const char *call, *path;
-    char *place;                /* path, or where it leads when it is a link                      */
+    const char *call, *path;    /* for error messages: the public function; the path it was given */
+    char *place;                /* the file that is replaced: path, or the target of that link    */
     char *temporary;            /* place.XXXXXXXX.tmp; null: place itself is written to           */
     size_t room;                /* bytes of each of the two                                       */
     FILE *file;
 } demi_out;
 
-/* Where a symbolic link leads; 0: path is none. C has no word for links: on Unix we ask readlink by
-   its name in the C library, without the header, whose names would then stand in every program.
-   Elsewhere a link is replaced by a file. */
+/* Writes the target of a symbolic link to `to`, without a zero at its end, and returns its length;
+   -1 if `path` is not a link. ISO C has no function for this. On Unix, this is readlink of the C
+   library, declared under another name instead of including its header, which would add its names
+   to every program. Elsewhere a link is replaced by a file. */
 #if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
     !defined(__CYGWIN__)
 long demi_readlink(const char *path, char *to, size_t size) __asm__("readlink");
@@ -30,9 +36,10 @@ static long demi_readlink(const char *path, char *to, size_t size) {
     return -1;
 }
 #endif
-enum { DEMI_LINK = 1024, DEMI_LINKS = 16 };   /* bytes of a link's target; links on the way */
-enum { DEMI_SUFFIX = 14 };                      /* bytes of .XXXXXXXX.tmp and the 0 */
-/* Replaces place by what it leads to when it is a link. 0: too long, or in a circle. */
+enum { DEMI_LINK = 1024, DEMI_LINKS = 16 };   /* most bytes of a link's target; most links */
+enum { DEMI_SUFFIX = 14 };                      /* bytes of .XXXXXXXX.tmp and the zero */
+/* Replaces `place` by its target as long as it is a link. Returns 0 if a target is too long or the
+   chain of links is: links may form a circle. */
 static int demi_link_follow(char *place, size_t room) {
     char to[DEMI_LINK];
     int i;
@@ -52,8 +59,9 @@ static void demi_out_free(demi_out *o) {
     demi_free(o->world, o->place);
     demi_free(o->world, o->temporary);
 }
-/* Creates a file of a name that nobody has or can guess. C11's "x" refuses a name that is taken,
-   also by a link; a library that does not know it is asked first whether the name is. */
+/* Creates a file of an unused name that cannot be guessed. Mode "x" of C11 fails if the name
+   exists, also as a link. Where the C library does not know this mode, we first test whether the
+   name exists. Returns null if no file could be created. */
 static FILE *demi_out_create(demi_out *o) {
     uint64_t random = (uint64_t)time(0) ^ (uint64_t)(uintptr_t)o << 20 ^ (uint64_t)clock() << 40 ^
         (uint64_t)(uintptr_t)o->temporary ^ (uint64_t)(1e9*fmod(demi_clock(), 1e6));
@@ -72,8 +80,9 @@ static FILE *demi_out_create(demi_out *o) {
     }
     return file;
 }
-/* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
-   to replace a file (Windows), the old one is removed first; a folder of that name never is. */
+/* Closes a file and frees `o`. Renames the file to its place if everything was written; otherwise
+   removes it and returns DEM_ERROR_FILE. Where rename cannot replace a file (Windows), the old file
+   is removed first; a folder of that name never is. */
 static dem_result demi_out_close(demi_out *o) {
     int whole = o->file && fflush(o->file) == 0 && !ferror(o->file), cause = errno;
     if (o->file && fclose(o->file) != 0 && whole) {
@@ -95,15 +104,15 @@ static dem_result demi_out_close(demi_out *o) {
     return whole ? DEM_OK : DEM_ERROR_FILE;
 }
 
-/* Ends a file that is not to be: what was there stays. */
+/* Abandons a file: removes it and frees `o`. An existing file at `path` stays. */
 static void demi_out_drop(demi_out *o) {
     fclose(o->file);
     if (o->temporary) remove(o->temporary);
     demi_out_free(o);
 }
-/* Is an open file of this size a device, which must not be replaced by a file? C has no word for
-   devices. They have their places in /dev (but for /dev/shm, which holds files); elsewhere a device
-   seems empty and yet can be read from, or has no place beyond its end to go to. */
+/* True if an open file of this size (bytes) is a device, which a file must not replace. ISO C has
+   no function for this. Everything in /dev except /dev/shm counts as a device. Elsewhere a device
+   has size 0, but can be read from or does not allow a seek beyond its end. */
 static int demi_is_device(const char *place, FILE *file, size_t size) {
     int reads;
     if (!strncmp(place, "/dev/", 5) && strncmp(place, "/dev/shm/", 9)) return 1;
@@ -113,7 +122,7 @@ static int demi_is_device(const char *place, FILE *file, size_t size) {
     return reads || fseek(file, 1, SEEK_SET) != 0 || ftell(file) != 1 ||
         fseek(file, 0, SEEK_SET) != 0;
 }
-/* Begins a file under a temporary name. If this fails there is nothing to close. */
+/* Opens a file under a temporary name. After a failure there is nothing to close. */
 static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
     size_t length;
     FILE *there;
@@ -133,7 +142,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
                          call);
     }
     memcpy(o->place, path, length + 1);
-    there = fopen(path, "r+b");                 /* of a pipe: does not wait for its other end */
+    there = fopen(path, "r+b");                 /* does not wait for the other end of a pipe */
     size = there ? demi_file_size(there) : 0;
     if (size == DEMI_ENDLESS) {
         fclose(there);
@@ -159,7 +168,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     return o->file ? DEM_OK : demi_out_close(o);
 }
 
-/* One binary number of at most 8 bytes, turned round if asked. */
+/* Writes one binary number of at most 8 bytes; turn: with its bytes in reverse order. */
 static void demi_out_number(demi_out *o, const void *number, size_t size, int turn) {
     unsigned char bytes[8];
     size_t i;
@@ -167,14 +176,14 @@ static void demi_out_number(demi_out *o, const void *number, size_t size, int tu
     fwrite(bytes, 1, size, o->file);
 }
 
-/* An array in a picture: count rows of `components` numbers. Without data it is the row of numbers
-   first, first + stride, ... */
+/* An array of a VTP or VTK file: `count` rows of `components` numbers. Without data, the rows are
+   the integers first, first + stride, and so on. */
 typedef struct demi_column {
-    const char *section, *name; /* section: of a VTP file                                         */
+    const char *section, *name; /* section: the XML element of a VTP file that holds the array    */
     char type;                  /* r dem_real, i int32, u uint32                                  */
-    int components, count;      /* numbers in a row, rows                                        */
-    int stride, first;          /* numbers from row to row; to the first                         */
-    const void *data;
+    int components, count;      /* numbers in a row; rows                                         */
+    int stride, first;          /* in numbers: from row to row; to the first row                  */
+    const void *data;           /* or null                                                        */
 } demi_column;
 
 static size_t demi_column_size(const demi_column *c) { /* bytes of one number */
@@ -185,7 +194,7 @@ static uint64_t demi_column_bytes(const demi_column *c) {
     return (uint64_t)c->count*(uint64_t)c->components*demi_column_size(c);
 }
 
-/* A column without data counts: first, first + stride, and so on. */
+/* Writes the numbers of an array in binary form, row by row. */
 static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     const char *data = (const char *)c->data;
     size_t size = demi_column_size(c);
@@ -205,21 +214,22 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
 
 enum { DEMI_GRAIN_COLUMNS = 10 + DEM_BODY_REALS };
 
-/* What is drawn of the bodies: the arrays as they are or, where there are clusters and ellipsoids,
-   one row for each part, in arrays of its own. */
+/* The rows that are written for the bodies. If no body has an orientation, these are the world's
+   arrays. Otherwise there is one row for each part, such as a member sphere of a cluster. */
 typedef struct demi_drawing {
-    int count;
-    const dem_real *pos, *vel, *spin;              /* count x 4 */
-    const dem_real *orient, *axes;                 /* count x 4; null: no orientations */
-    const uint32_t *slots;
+    int count;                                     /* rows */
+    const dem_real *pos, *vel, *spin;              /* count x 4: m and radius; m/s; rad/s */
+    const dem_real *orient, *axes;                 /* count x 4; m; null: no orientations */
+    const uint32_t *slots;                         /* of the body */
     const int32_t *materials;
-    const dem_real *reals;                         /* count x real_count */
+    const dem_real *reals;                         /* count x real_count: user-defined numbers */
     int real_count;
-    char names[DEM_BODY_REALS][24];
-    dem_real *own;                                 /* count x 20, and reals */
-    int32_t *own_ids;                              /* count x 2 */
+    char names[DEM_BODY_REALS][24];                /* of these numbers */
+    dem_real *own;                                 /* rows of parts: count x 20, then reals */
+    int32_t *own_ids;                              /* rows of parts: slots, then materials */
 } demi_drawing;
-/* 0 when memory ran out. */
+/* Fills in a drawing of all bodies, with positions wrapped into a periodic domain. Returns 0 if
+   memory ran out; the caller frees in any case. */
 static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     const dem_real *places = demi_wrapped(w);
     dem_real *row;
@@ -277,14 +287,15 @@ static void demi_drawing_free(dem_world *w, demi_drawing *g) {
     demi_free(w, g->own);
     demi_free(w, g->own_ids);
 }
+/* Frees a drawing for which memory ran out, and returns the error. */
 static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
     demi_drawing_free(w, g);
     return demi_fail(w, DEM_ERROR_MEMORY, "%s: not enough memory for the %d parts of the bodies; "
                      "free some", call, g->count);
 }
 
-/* What is told of grains; the last two make a cell of every point, so that it is drawn. */
-/* Answers how many columns there are; the last two hold no data. */
+/* Lists the arrays that are written for grains, and returns their number. The last two hold no
+   data: they make each point a cell, without which viewers do not draw it. */
 static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
     const demi_column all[] = {
         {"Points",    "position",     'r', 3, g->count, 4, 0, g->pos},
@@ -309,8 +320,9 @@ static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
     return known + k + 2;
 }
 
-/* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
-   array after its size in bytes. The first column holds the points. */
+/* Writes a file in the XML format of VTK. The XML tree describes the arrays. Their numbers follow
+   in binary form, in the byte order of the machine, each array after its size in bytes. The first
+   column holds the points; verts, lines and polys are the numbers of such cells. */
 static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
                            const demi_column *column, int columns, int verts, int lines,
                            int polys) {
@@ -363,13 +375,15 @@ DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     return result;
 }
 
-/* Contacts as lines: first counted, then laid down. */
+/* Contacts as line segments. A first pass with room 0 counts them; a second fills the arrays. */
 typedef struct demi_lines {
     const dem_world *w;
-    int count, room, stride;
-    dem_real *ends, *force, *overlap, *memory;     /* x 6, x 3, x 1, x stride */
-    int32_t *wall;
+    int count, room, stride;                       /* found; allocated; reals of history */
+    dem_real *ends, *force, *overlap, *memory;     /* x 6, m; x 3, N; x 1, m; x stride */
+    int32_t *wall;                                 /* id; 0: a contact of two bodies */
 } demi_lines;
+/* Adds a contact: a segment from the centre of a to that of b, or to the contact point on a wall.
+   */
 static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *user) {
     demi_lines *l = (demi_lines *)user;
     const demi_periods p = demi_periods_of(l->w);
@@ -383,7 +397,7 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     if (!c->wall && dem_body_get(l->w, c->b, &b) == DEM_OK) to = b.position;
     demi_put(end, a.position);
     demi_put(end + 3, to);
-    for (k = 0; k < 3; k++)                     /* the image of b that is near */
+    for (k = 0; k < 3; k++)                     /* the periodic image of b nearest to a */
         end[3 + k] = end[k] + demi_image(end[3 + k] - end[k], p.half[k], p.period[k]);
     demi_put(l->force + 3*(size_t)n, c->force);
     l->overlap[n] = c->overlap;
@@ -437,7 +451,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     return result;
 }
 
-/* Legacy VTK, in its binary form: numbers are big-endian. */
+/* Legacy VTK in its binary form, in which numbers are big-endian. */
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     if (demi_null_write(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
     demi_column column[DEMI_GRAIN_COLUMNS];
@@ -480,8 +494,9 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     return demi_out_close(&o);
 }
 
-/* Extended XYZ. Species, which ASE wants to be chemical elements, tell the material: H is 1, He 2,
-   and so on. A domain becomes the lattice; an axis without extent gets 1 m. */
+/* Extended XYZ. The species is the material: H is 1, He is 2, and so on to Gd, 64, because ASE
+   accepts only chemical elements. A domain becomes the lattice, with 1 m along an axis without
+   extent. */
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     if (demi_null_write(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
     static const char elements[] =
@@ -524,7 +539,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
             const dem_real *row = (k < 4 ? g.pos : g.vel) + 4*(size_t)i;
             fprintf(o.file, " %s", demi_format_real(text[0], (double)row[k < 4 ? k : k - 4], 9));
         }
-        for (k = 0; k < 7 && g.orient; k++) {   /* x y z w, then the axes */
+        for (k = 0; k < 7 && g.orient; k++) {   /* x y z w, then the semi-axes */
             const dem_real *row = (k < 4 ? g.orient : g.axes) + 4*(size_t)i;
             fprintf(o.file, " %s", demi_format_real(text[0],
                     (double)row[k < 4 ? (k + 1)%4 : k - 4], 9));
@@ -540,16 +555,17 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
 
 /* ---- bodies as surfaces ---- */
 
-/* A round part has its poles and rings of points between them. */
+/* A sphere or ellipsoid is drawn with two poles and rings of points between them. */
 enum { DEMI_ROUND_RINGS = 7, DEMI_ROUND_SIDES = 16,
        DEMI_ROUND_POINTS = 2 + DEMI_ROUND_RINGS*DEMI_ROUND_SIDES };
-/* Polygons under way; without arrays they are only counted. */
+/* The polygons of all bodies. A first pass without arrays counts; a second fills the arrays. */
 typedef struct demi_surfaces {
-    int64_t points, polygons, links;
+    int64_t points, polygons, links;               /* links: corners of all polygons */
     dem_real *place, *velocity;    /* points x 3: m, m/s */
-    int32_t *body;                 /* points: index */
-    int32_t *link, *end;           /* links: points; polygons: where each ends among them */
+    int32_t *body;                 /* points: index of the body */
+    int32_t *link, *end;           /* links: the point; polygons: end of each among the links */
 } demi_surfaces;
+/* Adds a point at `arm` (m) from the body's centre. */
 static void demi_surface_point(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
                                dem_vec3 arm) {
     if (s->place) {
@@ -560,6 +576,7 @@ static void demi_surface_point(demi_surfaces *s, const dem_world *w, int body, d
     }
     s->points++;
 }
+/* Adds a polygon; corners are counted from point `first`. */
 static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t *corners,
                                  int count) {
     int k;
@@ -570,7 +587,7 @@ static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t 
     s->links += count;
     s->polygons++;
 }
-/* An ellipsoid, its first point a pole. */
+/* Adds a sphere or an ellipsoid. Its first and last points are the poles. */
 static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
                                const demi_part *p) {
     const dem_vec3 a = demi_shape_rows[p->kind].drawn(p);
@@ -599,6 +616,7 @@ static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, d
             demi_surface_polygon(s, first, c, i && i < DEMI_ROUND_RINGS ? 4 : 3);
         }
 }
+/* Adds a convex polyhedron by its faces. */
 static void demi_surface_hull(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
                               const demi_part *p) {
     const demi_shape *shape = p->shape;
@@ -614,7 +632,7 @@ static void demi_surface_hull(demi_surfaces *s, const dem_world *w, int body, de
     for (i = 0; i < shape->faces; i++)
         demi_surface_polygon(s, first, loops + shape->rim[i], shape->rim[i + 1] - shape->rim[i]);
 }
-/* All of them. */
+/* Adds the parts of all bodies. */
 static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
     const dem_real *places = demi_wrapped(w);
     int i, k;
@@ -626,7 +644,9 @@ static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
             else demi_surface_round(s, w, i, demi_at(places + 4*i), &p);
         }
 }
-/* With arrays for all of it: what is told of a body stands at each of its points. 0: no memory. */
+/* Allocates arrays for the elements counted and sets their numbers to 0. Data of a body are
+   repeated at each of its points: `told` holds slots, then materials. Returns 0 if memory ran out
+   or there are too many elements. */
 static int demi_surfaces_room(dem_world *w, demi_surfaces *s, dem_real **reals, int32_t **told) {
     const size_t points = (size_t)s->points + 1, n = (size_t)w->bodies.real_count;
     if (s->points >= DEMI_ELEMENTS_MAX || s->links >= DEMI_ELEMENTS_MAX) return 0;
@@ -691,9 +711,9 @@ DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
     return result;
 }
 
-/* ---- walls and loads out ---- */
+/* ---- walls and their loads ---- */
 
-/* A surface of revolution, as demi_wall_draw has it. */
+/* Adds a surface of revolution; arguments as for demi_wall_draw. */
 static void demi_rings_draw(const demi_wall *wall, int64_t *points, int64_t *triangles,
                             dem_real *place, int32_t *corners, int32_t *id) {
     const int64_t base = *points, first = *triangles;
@@ -714,8 +734,9 @@ static void demi_rings_draw(const demi_wall *wall, int64_t *points, int64_t *tri
         id[first + k] = wall->id;
     }
 }
-/* Adds wall i as it lies now: its points (those of a profile at z[0], then at z[1]) and triangles
-   (a segment a b, with A B above it, becomes a b B and a B A). Without arrays it only counts. */
+/* Adds wall i in its present pose: points (of a profile at z[0], then at z[1]) and triangles (a
+   segment a b, with A B above it, becomes a b B and a B A). Without arrays it only counts. Walls
+   without triangles or segments add nothing. */
 static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t *points,
                            int64_t *triangles, dem_real *place, int32_t *corners, int32_t *id) {
     const demi_wall *wall = w->walls + i;
@@ -768,7 +789,7 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g m and z1 is %g "
                          "m, but z0 must be below z1 to extrude a profile between them; change "
                          "them", (double)z0, (double)z1);
-    room[0] = 3*(size_t)points + 1; /* never nothing */
+    room[0] = 3*(size_t)points + 1;     /* never 0 */
     room[1] = (size_t)triangles + 1;
     if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
         place = (dem_real *)demi_alloc(world, room[0], sizeof(dem_real));
@@ -795,9 +816,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
     return result;
 }
 
-/* Appends a line to a CSV file, its heading before when the file is new or empty. Appending cannot
-   go by way of a temporary name. Instead the line goes out in one piece, and after one that was cut
-   short (a full disk, a killed run) a new line is begun. */
+/* Appends a line to a CSV file, and before it the heading if the file is new or empty. There is no
+   temporary file here. Instead, the line is written in one piece. If the last line of the file was
+   cut short (by a full disk or a killed run), the new one begins on a line of its own. */
 enum { DEMI_CSV_LINE = 1200 };
 static dem_result demi_csv_append(dem_world *w, const char *call, const char *path,
                                   const char *heading, const char *line) {
@@ -806,7 +827,7 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     FILE *file;
     if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
     errno = 0;
-    file = fopen(path, "r+b");                  /* of a pipe: does not wait, and is refused */
+    file = fopen(path, "r+b");                  /* does not wait for a pipe, which is an error */
     whole = !file || demi_file_size(file) != DEMI_ENDLESS;
     if (file) fclose(file);
     file = whole ? fopen(path, "a+b") : 0;
@@ -814,7 +835,7 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     if (whole && ftell(file) > 0) {
         whole = fseek(file, -1, SEEK_END) == 0;
         last = whole ? fgetc(file) : last;
-        whole = whole && fseek(file, 0, SEEK_END) == 0; /* C wants a seek between read and write */
+        whole = whole && fseek(file, 0, SEEK_END) == 0; /* C requires it between read and write */
         n = snprintf(text, sizeof text, "%s", last == '\n' ? "" : "\n");
     } else n = snprintf(text, sizeof text, "%s\n", heading);
     n += snprintf(text + n, sizeof text - (size_t)n, "%s\n", line);
@@ -826,7 +847,7 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
                      "exists, may be written to and has room", call, path,
                      cause ? strerror(cause) : "unknown cause");
 }
-/* The time and so many values, as a line. */
+/* Writes the time (s) and `count` values to `line`, of DEMI_CSV_LINE bytes, without a line end. */
 static void demi_csv_line(char *line, double time, const double *value, int count) {
     char number[32];
     int i, n = snprintf(line, DEMI_CSV_LINE, "%s", demi_format_real(number, time, 12));
@@ -836,7 +857,7 @@ static void demi_csv_line(char *line, double time, const double *value, int coun
 }
 static const char demi_loads_heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts";
 enum { DEMI_LOADS = 9 };
-/* What that heading names, the time left out. */
+/* Writes the DEMI_LOADS values of that heading that follow the time. */
 static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wall, double *value) {
     dem_wall_loads c;
     if (dem_wall_loads_get(w, wall, &c) != DEM_OK)
