@@ -1,29 +1,38 @@
 /* ---------------------------------------------------------------------------------------------
    >>checkpoint
-   Everything that decides the next step, in one visit that both writes and reads, so that the two
-   cannot differ. The file: magic, version, size of dem_real, byte order, counts; the fields of each
-   part of the scene (desc, materials, pairs, shapes, walls, fields, feeds, outlets); numbers,
-   domains, bodies, lists, contacts; check sum of all before it.
+   Checkpoints: binary files with the complete state, from which a run continues bit for bit. The
+   same functions (demi_visit_...) write and read the state, so that the two cannot differ. This
+   part owns demi_stream and the file format, and reads the whole world.
 
-   What hangs on the list of candidates (laws in force, reals of memory per contact, coefficients
-   that dem_pair_set has outdated) is stored and not worked out anew: the scene may have changed
-   since the list was made. Of a list that no longer fits the bodies only the counts are stored, by
-   which the next one is chosen.
+   A file consists of
+       head      magic, version, size of dem_real, byte order, digest of the layout, sizes, counts
+       scene     the fields of desc, materials, pairs, shapes, walls, fields, feeds, outlets
+       state     numbers, domains, bodies, joints, neighbour lists, contacts, walls, fields, feeds,
+                 outlets, outputs
+       checksum  of everything before it
+
+   Some values are computed when the candidate list is built: the laws in force, the length of the
+   contact history, and coefficients that dem_pair_set has since made out of date. The file contains
+   them, because the scene may have changed since then and computing them again could give other
+   values. If the list no longer fits the bodies, only its counts are stored: the next rebuild
+   depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
 enum { DEMI_CHECKPOINT_VERSION = 14 };
 
-/* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
-   counts bytes. Hashes them where the sum is not 0 at the beginning. */
+/* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
+   three are null, the visit only counts bytes. */
 typedef struct demi_stream {
     FILE *file;
     char *to;
     const char *from;
-    uint64_t sum;
-    size_t size, left;
-    int cut;                         /* more was to be read than there was */
+    uint64_t sum;                    /* hash of the bytes visited; 0 at the beginning: no hash */
+    size_t size, left;               /* bytes visited; bytes that may still be read at `from` */
+    int cut;                         /* 1: a read went beyond the last byte */
 } demi_stream;
 
+/* Writes `size` bytes of data, or reads them into data, as the stream says. A read beyond the end
+   sets data to zeros. */
 static void demi_visit(demi_stream *s, void *data, size_t size) {
     s->size += size;
     if (!size) return;
@@ -44,13 +53,14 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
 }
 #define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
 
-/* --- the scene: what a file and the world that reads it must have in common. A row for each field
-       that decides what a run does: a field of a desc that has none is free (threads, allocator,
-       allow_large_dt, what functions are handed). The file holds their values, so that a refusal
-       can name the field and both. --- */
+/* --- the scene: what a checkpoint and the world that reads it must have in common. It consists of
+       the fields that influence a run. Fields whose row is marked DEMI_FREE may differ (threads,
+       allocator, allow_large_dt, user pointers). The file holds the values, so that an error
+       message can name the field and both values. --- */
 
-enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes in the file, of one row */
-/* What a shape is, not what was worked out from it; pieces field by field: no padding. */
+enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes of the largest field in the file */
+/* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
+   member by member, because the struct has padding. */
 static uint64_t demi_digest_spheres(const void *item) {
     const demi_shape *s = (const demi_shape *)item;
     return demi_hash(DEMI_HASH_START, s->parts, 4*(size_t)s->count*sizeof(dem_real));
@@ -80,9 +90,9 @@ static const demi_field_row demi_shape_fields[] = {
     DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
     DEMI_ROW_DIGEST("pieces", demi_digest_pieces), DEMI_ROW_END};
 
-/* The parts of a scene. */
+/* A part of a scene: a kind of items, each a struct with these rows. */
 typedef struct demi_scene_part {
-    const char *name, *many;
+    const char *name, *many;         /* for error messages: of one item; of all */
     const demi_field_row *rows;
 } demi_scene_part;
 enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
@@ -95,7 +105,8 @@ static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
     {" of field", "fields", demi_field_rows},
     {" of feed", "feeds", demi_feed_rows},
     {" of outlet", "outlets", demi_outlet_rows}};
-/* How many there are of each part, in the order of the rows. */
+/* Writes the number of items of each part, in the order of demi_scene_parts. Walls that were
+   removed count. */
 static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[0] = 1;
     counts[1] = w->material_count;
@@ -106,7 +117,7 @@ static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[6] = w->feed_count;
     counts[7] = w->outlet_count;
 }
-/* What the rows of part number i are of. */
+/* Returns item i of a part: the struct that the part's rows describe. */
 static const void *demi_scene_item(const dem_world *w, int part, int i) {
     const int n = w->material_count;
     switch (part) {
@@ -120,7 +131,7 @@ static const void *demi_scene_item(const dem_world *w, int part, int i) {
     default: return &demi_outlet_at(w, i)->desc;
     }
 }
-/* What a field is, as the file has it: r->size bytes. */
+/* Writes the value of a field to `out` in the form of the file, r->size bytes. */
 static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
     const char *at = (const char *)item + r->offset, *text;
     memset(out, 0, r->size);
@@ -136,7 +147,7 @@ static void demi_row_value(const demi_field_row *r, const void *item, void *out)
         if (text) strncpy((char *)out, text, r->size - 1);
     } else memcpy(out, at, r->size);
 }
-/* Writes the scene, or counts or hashes its bytes. */
+/* Writes the scene, or counts or hashes its bytes, as the stream says. */
 static void demi_visit_scene(const dem_world *w, demi_stream *s) {
     int32_t counts[DEMI_PARTS];
     char value[DEMI_ROW_MOST];
@@ -151,7 +162,7 @@ static void demi_visit_scene(const dem_world *w, demi_stream *s) {
                 demi_visit(s, value, r->size);
             }
 }
-/* All of a scene in one number: do two processes hold the same one? */
+/* Returns a digest of the scene. Processes compare it to check that they hold the same one. */
 static uint64_t demi_scene_digest(const dem_world *w) {
     int32_t counts[DEMI_PARTS];
     demi_stream s = {0, 0, 0, DEMI_HASH_START, 0, 0, 0};
@@ -163,7 +174,8 @@ static uint64_t demi_scene_digest(const dem_world *w) {
 
 /* --- the state, visited in the order in which it is checked --- */
 
-/* Numbers that are not arrays. */
+/* Visits all numbers that are not in arrays. Written records of outputs are those of the present
+   outputs. */
 static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
@@ -180,7 +192,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
 }
-/* By the table: what a row declares as state is in the file, and nothing else. */
+/* Visits the arrays of bodies that demi_body_arrays declares as state. */
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -189,7 +201,8 @@ static void demi_visit_bodies(dem_world *w, demi_stream *s) {
         if (a->what && demi_has(w, a)) demi_visit(s, demi_data(w, a), n*demi_item(w, a));
     }
 }
-/* Near pairs of one domain; their candidates are counted from the domain's first. */
+/* Visits the pruned neighbour list of domain d. The file counts a pair's candidate (k) from the
+   first candidate of the domain. */
 static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t from = (size_t)d*(size_t)w->near.stride, r = sizeof(dem_real);
@@ -197,7 +210,7 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     int p, e, l;
     demi_visit(s, w->near.a + from, 4*all);
     demi_visit(s, w->near.b + from, 4*all);
-    for (l = 0; l < 4; l++) {                   /* between these lie entries that nobody uses */
+    for (l = 0; l < 4; l++) {                   /* four stretches, with unused entries between */
         const int begin = l == 0 ? 0 : l == 1 ? domain->near_cross
             : l == 2 ? domain->near_shaped : domain->near_shaped_cross;
         const int end = l == 0 ? domain->near_own : l == 1 ? domain->near_end
@@ -206,7 +219,7 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
             const int32_t first = d*(l & 1 ? w->cross.stride : w->own.stride);
             int32_t k = s->from ? 0 : w->near.k[from + (size_t)p] - first;
             demi_visit(s, &k, sizeof k);
-            if (s->from) w->near.k[from + (size_t)p] = k;      /* `first` is added when checked */
+            if (s->from) w->near.k[from + (size_t)p] = k;      /* demi_near_check adds `first` */
         }
     }
     for (e = 0; e < w->memory_stride; e++)
@@ -216,7 +229,8 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
         demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
                    remembering*r);
 }
-/* Candidates, near pairs, wall candidates: of a list that fits the bodies. */
+/* Visits candidate pairs, pruned neighbour lists and candidates on walls, if the list fits the
+   bodies. */
 static void demi_visit_lists(dem_world *w, demi_stream *s) {
     const int n = w->effects.species_count;
     int d, i;
@@ -243,7 +257,8 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
                    3*walls*sizeof(dem_real));
     }
 }
-/* Contacts that last, with or without a list; memory on its way from one list to the next. */
+/* Visits persistent contacts, with or without a list, and the contact history of spheres that is
+   saved between two lists (demi_filed). */
 static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     int d;
     for (d = 0; d < w->domain_count; d++) {
@@ -258,12 +273,13 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     demi_visit(s, w->filed.memory,
                (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }
-/* Where walls are, what they bear, how they move; their geometry is the scene's. */
+/* Visits poses, loads, user-defined numbers and motions of walls. Their geometry belongs to the
+   scene. */
 static void demi_visit_walls(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        dem_motion *m = &wall->motion;          /* all but pointers: they are the reader's own */
+        dem_motion *m = &wall->motion;          /* pointers stay those of the reading world */
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
@@ -276,7 +292,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         DEMI_VISIT(s, m->ramp);
     }
 }
-/* Fields, feeds, outlets. */
+/* Visits the sums of fields and the states of feeds and outlets. */
 static void demi_visit_measured(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->field_count; i++) {
@@ -296,18 +312,18 @@ static void demi_visit_measured(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
-/* Joints: they come and go with bodies, and so are state. */
+/* Visits joints. They are state and not scene, because they appear and disappear with bodies. */
 static void demi_visit_joints(dem_world *w, demi_stream *s) {
     if (w->joint_count)
         demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
 }
-/* What outputs have written. */
+/* Visits the records of what outputs have written. */
 static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->written_count; i++)
         demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
 }
-/* Everything, in the one order that writing and reading share. */
+/* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_numbers(w, s);
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
@@ -322,15 +338,17 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
 
 /* --- writing --- */
 
+/* The beginning of a file. */
 typedef struct demi_checkpoint_head {
     char magic[8];
-    uint32_t version, real_size, byte_order, int_size;
-    uint64_t body_size;             /* bytes that follow the head, without the check sum */
-    int32_t parts[DEMI_PARTS];      /* of the scene: how many; their rows follow */
+    uint32_t version, real_size, byte_order, int_size;    /* int_size: demi_checkpoint_layout */
+    uint64_t body_size;             /* bytes that follow the head, without the checksum */
+    int32_t parts[DEMI_PARTS];      /* demi_scene_counts; the scene follows the head */
 } demi_checkpoint_head;
 
-/* Of structs that are saved whole, of what scenes are compared by and of what bodies keep: tells
-   files of another dem.h, or of domains of another length. */
+/* Returns a digest of the sizes of structs that are saved whole, of the rows of the scene and of
+   the arrays of bodies. It differs for another dem.h, another memory layout of the compiler and
+   another DEM_DOMAIN_BODIES. */
 static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
@@ -350,7 +368,8 @@ static uint32_t demi_checkpoint_layout(void) {
     }
     return (uint32_t)(h ^ h >> 32);
 }
-/* The first body whose state is not finite or out of the world; -1: none. */
+/* Returns the first body whose state is not finite or whose position is beyond DEMI_FARTHEST; -1 if
+   there is none. */
 static int demi_body_lost(const dem_world *w) {
     int i, k;
     size_t e;
@@ -382,7 +401,7 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
                          path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
-    if (w->stage.list_valid) w->filed.count = 0;      /* filed once, and taken up by the list */
+    if (w->stage.list_valid) w->filed.count = 0;      /* out of date: the list holds it now */
     if (!w->filed.count) w->filed.rows = w->filed.stride = 0;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
@@ -404,10 +423,10 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     return demi_out_close(&out);
 }
 
-/* --- reading: is it a checkpoint, whole, and of this scene? --- */
+/* --- reading: is the file a complete checkpoint of this scene? --- */
 
-/* Is it a checkpoint, whole, and of a program like this one? Nothing behind the head is looked at
-   before all of that is certain. */
+/* Checks that the data are a complete checkpoint, undamaged, and written by a program with the same
+   layout; copies the head to *head. Nothing behind the head is used before these checks succeed. */
 static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data,
                                         size_t size, demi_checkpoint_head *head) {
     const char *call = "dem_checkpoint_read";
@@ -444,7 +463,8 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
                          "the one that wrote it", call, path);
     return DEM_OK;
 }
-/* Element k of a value, as a sentence has it; digits: of reals. */
+/* Prints element k of a value in the form of the file, for an error message. digits: significant
+   digits of reals. */
 static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
                                  char *out, size_t size) {
     const char *word = r->words;
@@ -475,7 +495,8 @@ static void demi_row_print(const demi_field_row *r, const char *value, size_t k,
         snprintf(out, size, "%.*g", digits, (double)x);
     }
 }
-/* A field that is not the same in a file and in the world. */
+/* Fails with an error message that names a field and its values in the file (`there`) and in this
+   world (`here`). of: the item, such as " of wall 2". */
 static dem_result demi_row_differs(dem_world *w, const char *path, const demi_field_row *r,
                                    const char *there, const char *here, const char *of) {
     static const char *const axes[] = {".x", ".y", ".z", ".lo.x", ".lo.y", ".lo.z", ".hi.x",
@@ -502,8 +523,8 @@ static dem_result demi_row_differs(dem_world *w, const char *path, const demi_fi
                      "written with %s%s %s%s, this world has %s; %s", path, r->name, which, a, of,
                      b, advice);
 }
-/* Is the scene of the file that of the world? A wall that the file's world had removed may still
-   stand here: reading removes it, in the twin. */
+/* Compares the scene of the file with that of the world, and fails if they differ. The file may
+   describe a wall as removed that still exists here: it is then removed in the twin. */
 static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const char *path,
                                         demi_stream *s, const int32_t *parts) {
     int32_t counts[DEMI_PARTS];
@@ -537,7 +558,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                                          (int)w->walls[i].id);
                 }
                 if (gone && r == demi_wall_rows + 1) {
-                    dem_wall last;                      /* ids go on from the later of the two */
+                    dem_wall last;                      /* later ids continue from the larger one */
                     memcpy(&last.id, there, sizeof last.id);
                     if (last.id < 1 || demi_wall_place(last) != i)
                         return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: the "

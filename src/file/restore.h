@@ -1,13 +1,16 @@
 /* ---------------------------------------------------------------------------------------------
    >>restore
-   Reading a checkpoint fills a twin, an empty world of the same scene. A check sum only tells that
-   a file is as it was written, not that what was written makes sense: so every count is checked
-   before room is made for it, and every index and length before anything follows it. When all is
-   right the twin's state takes the place of the world's; until then the world is as it was.
+   Reading checkpoints, and copying a world. The state is read into a twin, an empty world with the
+   same scene. If everything is valid, the twin's state replaces that of the world; until then the
+   world does not change. Trials and the report of effects run on twins, too (demi_twin_in_state).
+
+   A matching checksum only shows that a file is as it was written, not that its contents are
+   possible. Therefore every count is checked before memory is allocated for it, and every index
+   and length before it is used. This part owns demi_reader and writes all of the state.
    --------------------------------------------------------------------------------------------- */
 
-/* Copies of walls, fields, feeds and outlets, the domains: what state is read into. 0 when memory
-   ran out. */
+/* Gives the twin its domains and its copies of walls, fields, feeds and outlets, into which state
+   is read. Returns 0 if memory ran out. */
 static int demi_twin_parts(dem_world *t, const dem_world *w) {
     int i;
     t->domains = (demi_domain *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
@@ -21,7 +24,7 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->wall_count = w->wall_count;
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
-    t->bodies.zoned = w->bodies.zoned;          /* room comes with the bodies' */
+    t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
     if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
     for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
     for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
@@ -34,8 +37,8 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     }
     return 1;
 }
-/* An empty world of the scene of w: it has walls, fields, feeds and outlets of its own, but looks
-   at w's materials, shapes and geometry. Null when memory ran out. */
+/* Returns an empty world with the scene of w. It has its own walls, fields, feeds and outlets, and
+   shares w's pairs of materials, shapes and geometry of walls. Null if memory ran out. */
 static dem_world *demi_twin_make(dem_world *w) {
     dem_world *t = (dem_world *)demi_alloc(w, 1, sizeof *t);
     if (!t) return 0;
@@ -57,10 +60,11 @@ static dem_world *demi_twin_make(dem_world *w) {
 }
 static void demi_twin_free(dem_world *w, dem_world *t) {
     demi_free_chain(t, DEMI_RUN);
-    demi_free_chain(t, DEMI_SCENE);             /* walls that it has made its own */
+    demi_free_chain(t, DEMI_SCENE);             /* geometry of walls that it has copied */
     demi_free(w, t);
 }
-/* The twin's state takes the place of the world's. */
+/* Replaces the world's state by the twin's and frees the twin. Error messages, outputs, replays and
+   the memory of the scene stay those of the world. */
 static void demi_twin_adopt(dem_world *w, dem_world *t) {
     size_t bytes;
     int i;
@@ -81,16 +85,18 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
     if (w->look.outputs_again) w->look.outputs_again(w);
 }
 
-/* --- reading: does what it says make sense? Each of these checks one part of the twin, right after
-       it was read, and answers 0 with a sentence when not --- */
+/* --- reading: are the values possible? Each of these functions checks one part of the twin, right
+       after it was read, and returns 0 with an error message if a value is not possible --- */
 
+/* A checkpoint being read. */
 typedef struct demi_reader {
-    dem_world *w, *t;
+    dem_world *w, *t;              /* the world; its twin */
     const char *path;
-    demi_stream s;
+    demi_stream s;                 /* what is left of the file */
 } demi_reader;
 
-/* The check sum is right and a number cannot be: says which. Answers 0. */
+/* Fails with the message that a value is impossible although the checksum is correct. which: the
+   index of its item, or -1. Returns 0. */
 static int demi_lie(const demi_reader *r, const char *what, long long which) {
     char number[32] = "";
     if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
@@ -99,14 +105,15 @@ static int demi_lie(const demi_reader *r, const char *what, long long which) {
               "use an older checkpoint", r->path, what, number);
     return 0;
 }
-/* Are so many items of `size` bytes left in the file? */
+/* True if the rest of the file can hold so many items of `size` bytes. */
 static int demi_left(const demi_reader *r, int64_t count, size_t size) {
     return count >= 0 && (uint64_t)count <= r->s.left/size;
 }
-/* Finite, and at least `least`. */
+/* True if x is finite and at least `least`. */
 static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
 
-/* Counts bound what is allocated and read next, so they come first. */
+/* Checks the numbers that are not in arrays. Counts come first: they determine what is allocated
+   and read next. */
 static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
@@ -165,7 +172,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "body counts", -1);
     return 1;
 }
-/* Counts of domain d; begins where the one before ended. */
+/* True if the counts of domain d are possible and, with a list, its bodies begin where those of the
+   domain before end. The caller reports an error. */
 static int demi_domain_check(const demi_reader *r, int d) {
     const dem_world *t = r->t;
     const demi_domain *o = &t->domains[d];
@@ -191,7 +199,8 @@ static int demi_domain_check(const demi_reader *r, int d) {
            o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
            o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross;
 }
-/* Bodies of all domains in a row; without a list, as much of it as the next one starts from. */
+/* Checks all domains. Without a list, it limits their bodies to those that exist: the next rebuild
+   starts from these limits. */
 static int demi_domains_check(const demi_reader *r) {
     dem_world *t = r->t;
     int d;
@@ -200,13 +209,14 @@ static int demi_domains_check(const demi_reader *r) {
         if (!demi_domain_check(r, d)) return demi_lie(r, "counts of domain", d);
         o->overflow = 0;
         if (t->stage.list_valid) continue;
-        /* of a list that is no more */
+        /* left from a list that no longer fits */
         o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->bodies.count);
         o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->bodies.count);
     }
     return 1;
 }
-/* Slots: those of bodies, and two chains of free ones that nothing else is in. */
+/* Checks that each body and its slot refer to each other, and that every other slot is in one of
+   the two chains of free slots, once. seen: slot_count zeros. */
 static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
     const dem_world *t = r->t;
     int i, chain, left = t->bodies.slot_count - t->bodies.count;
@@ -227,10 +237,11 @@ static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
     }
     return left == 0 ? 1 : demi_lie(r, "number of free slots", -1);
 }
+/* Returns the squared norm of a quaternion. */
 static dem_real demi_quat_size2(const dem_real *q) {
     return q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3];
 }
-/* Numbers of bodies that can be: finite, positive where they must be, of materials and shapes that
+/* Checks the state of all bodies: finite, positive where it must be, with materials and shapes that
    exist. */
 static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
@@ -258,8 +269,9 @@ static int demi_bodies_sane(const demi_reader *r) {
     }
     return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
-/* Near pairs p = begin .. end - 1 of domain d: entries of this list, ascending, all of spheres or
-   none; from here on counted in all domains. */
+/* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
+   be among the `count` candidates of this list, ascending; all pairs must be of two spheres
+   (shaped 0), or none (1). Then makes k the candidate's index in the list of all domains. */
 static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
                            int end, int shaped) {
     dem_world *t = r->t;
@@ -278,8 +290,9 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
     }
     return 1;
 }
-/* Every index in the lists: a pair stands where its lower body is, near pairs are candidates,
-   elements exist. After that steps may trust them. */
+/* Checks every index in the lists. A candidate pair must belong to the domain of its lower body,
+   pairs of the pruned list must be candidates, and walls and elements must exist. Steps use these
+   indices without further checks. */
 static int demi_lists_check(const demi_reader *r) {
     dem_world *t = r->t;
     int d, l, k;
@@ -311,7 +324,8 @@ static int demi_lists_check(const demi_reader *r) {
     }
     return 1;
 }
-/* Contacts that last: of bodies, or of slots while there is no list. */
+/* Checks persistent contacts, which refer to bodies by index, or by slot while there is no list,
+   and the contact history of spheres that is saved by slot. */
 static int demi_contacts_check(const demi_reader *r) {
     const dem_world *t = r->t;
     const int who = t->stage.list_valid ? t->bodies.count : t->bodies.slot_count;
@@ -340,7 +354,8 @@ static int demi_contacts_check(const demi_reader *r) {
     }
     return 1;
 }
-/* Poses turn and do not stretch; motions are of the kind that the scene has. */
+/* Checks walls: poses must be possible, and motions must be finite and of the kind that the scene
+   has. */
 static int demi_walls_check(const demi_reader *r) {
     int i;
     for (i = 0; i < r->t->wall_count; i++) {
@@ -355,7 +370,7 @@ static int demi_walls_check(const demi_reader *r) {
     }
     return 1;
 }
-/* What fields and feeds count cannot be more than they were given. */
+/* Checks fields and feeds. A feed with limits cannot have fed more grains than its desc allows. */
 static int demi_measured_check(const demi_reader *r) {
     int i, k;
     for (i = 0; i < r->t->field_count; i++)
@@ -372,7 +387,8 @@ static int demi_measured_check(const demi_reader *r) {
     return 1;
 }
 
-/* Joints are of kinds there are, on walls there are; bodies that are no more, ids tell. */
+/* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
+   id of a body that no longer exists names nothing. */
 static int demi_joints_check(const demi_reader *r) {
     int i;
     for (i = 0; i < r->t->joint_count; i++) {
@@ -396,7 +412,7 @@ static int demi_joints_check(const demi_reader *r) {
     return 1;
 }
 
-/* Numbers of outputs are whole. */
+/* Checks the records of outputs: numbers must be within their range and times finite. */
 static int demi_outputs_check(const demi_reader *r) {
     int i;
     for (i = 0; i < r->t->written_count; i++) {
@@ -407,21 +423,22 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
-/* --- reading: room, and what follows from the rest --- */
+/* --- reading: memory, and values that follow from the state --- */
 
-/* Bodies get their room as if they were added. */
+/* Allocates the arrays of bodies as if the bodies were added. Returns 0 if memory ran out. */
 static int demi_twin_bodies_room(dem_world *t) {
     const int orienting = t->bodies.orienting, count = t->bodies.count,
         slots = t->bodies.slot_count;
     int ok;
-    /* nothing to keep yet */
+    /* there are no elements yet that growing must preserve */
     t->bodies.orienting = t->bodies.count = t->bodies.slot_count = 0;
     ok = demi_bodies_reserve(t, (size_t)slots) && (!orienting || demi_orient_begin(t));
     t->bodies.count = count;
     t->bodies.slot_count = slots;
     return ok;
 }
-/* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
+/* Allocates the lists. Each domain gets as many entries as the largest domain needs, and at least
+   as many as a rebuild would allocate. Returns 0 if memory ran out. */
 static int demi_twin_lists_room(dem_world *t) {
     int most[5] = {0, 0, 0, 0, 0}, crowd[DEMI_DOMAINS], d, k;
     const int each = t->domain_count ? t->bodies.count/t->domain_count : 0;
@@ -457,7 +474,8 @@ static int demi_twin_lists_room(dem_world *t) {
             demi_wall_lists_reserve(t, most[3]) &&
             demi_quiet_reserve(t, t->bodies.count));
 }
-/* What follows from the rest, and is not stored. 0 when memory ran out. */
+/* Computes everything that follows from the state and is not stored. Returns 0 if memory ran out.
+   */
 static int demi_twin_follow(dem_world *t) {
     const demi_periods p = demi_periods_of(t);
     int d, k, l;
@@ -495,7 +513,8 @@ static int demi_twin_follow(dem_world *t) {
     return 1;
 }
 
-/* Fills the twin from the rest of the file. A memory error has no sentence yet. */
+/* Reads the state into the twin, in the order of demi_visit_state, and checks it. If it returns
+   DEM_ERROR_MEMORY, the caller provides the error message. *seen is for the caller to free. */
 static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     dem_world *t = r->t;
     demi_stream *s = &r->s;
@@ -523,7 +542,7 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
         !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
-/* Reads a checkpoint from memory. */
+/* Reads a checkpoint of `size` bytes in memory into the world. */
 static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const char *data,
                                         size_t size) {
     demi_checkpoint_head head;
@@ -548,8 +567,8 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     demi_twin_free(w, r.t);
     return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
 }
-/* What a checkpoint would hold, in memory: the same visit, so that a copy has what a restart has.
-   Null when that ran out. */
+/* Returns the state as a checkpoint would store it, so that a copy equals a restart. *size receives
+   its length in bytes. The caller frees it. Null if memory ran out. */
 static char *demi_state_keep(dem_world *w, size_t *size) {
     dem_world look = *w;
     demi_stream s = {0, 0, 0, 0, 0, 0, 0};
@@ -563,8 +582,9 @@ static char *demi_state_keep(dem_world *w, size_t *size) {
     if (bytes) demi_visit_state(&look, &s);
     return bytes;
 }
-/* A world in that state, to be tried out: it looks at the shapes and the geometry of walls of w,
-   whose facets must have been weighed, and has all else for itself. Null when memory ran out. */
+/* Returns a copy of w in the state that demi_state_keep has stored, for trials. It shares w's
+   shapes and geometry of walls, for which w->facets_valid must hold, and owns everything else. Null
+   if the state cannot be restored. */
 static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t size) {
     demi_reader r;
     unsigned char *seen = 0;
