@@ -1,38 +1,43 @@
 /* ---------------------------------------------------------------------------------------------
    >>read
-   Files in. A file is loaded whole and goes to the parser that also serves data in memory. Its
-   bytes are not to be trusted: nothing is read past the end, a count is held against the bytes
-   there before memory is taken for it, and errors name the line. Text is read by moving
-   (demi_text_line, demi_text_word) and looking at the present word (demi_text_is, _real, _corner).
-   OBJ and STL text have no counts, so they are gone through twice: to count, then to fill arrays of
-   the right size.
+   Input files: triangle meshes (STL, OBJ, the text format of [MIL]) and profiles. A file is loaded
+   completely and given to the parser that also serves data in memory. This part owns demi_text, a
+   text being read, which >>read-tables and >>read-grains use, too.
+
+   The contents are not trusted: nothing is read past the end, every count is compared with the
+   number of bytes before memory is allocated for it, and error messages name the line. A parser
+   moves through the text with demi_text_line and demi_text_word, and reads the current word with
+   demi_text_is, demi_text_real and demi_text_corner. OBJ and STL text contain no counts, so there
+   are two passes: the first counts, the second fills arrays of the right size.
    ---------------------------------------------------------------------------------------------- */
 #include <errno.h>
 
-#define DEMI_ELEMENTS_MAX 700000000 /* vertices, triangles: three times as many fit an int32      */
+/* Most vertices or triangles: three times as many fit an int32. */
+#define DEMI_ELEMENTS_MAX 700000000
 
-/* ---- text in ---- */
+/* ---- reading text ---- */
 
-/* A text being read, without a zero at its end, and what an error sentence needs. */
+/* A text being read, which does not end with a zero, and what error messages need. A copy of the
+   struct remembers a position. */
 typedef struct demi_text {
     dem_world *world;
-    const char *call, *name;    /* the public function; the file or data it reads                 */
-    const char *word;           /* the present word; null at the end of the text                  */
+    const char *call, *name;    /* for error messages: the public function; the file or data      */
+    const char *word;           /* the current word; null at the end of the text                  */
     size_t length;              /* of the word; 0 at the end of a line                            */
-    const char *at, *line_end;  /* what is left of the line                                       */
-    const char *next, *end;     /* what is left after it                                          */
-    const char *data;           /* where all of it begins                                         */
-    long line;                  /* counted from 1                                                 */
-    char half[24];              /* 0.5 in this locale: strtod wants its decimal point             */
-    const char *part;           /* of a mesh: only what is of this name; null: all                */
-    char *parts;                /* names that there are, DEMI_PARTS_MOST bytes                    */
-    int apart;                  /* now in another part                                            */
-    dem_mesh_health *health;    /* of a mesh: what reading finds, never null there                */
+    const char *at, *line_end;  /* the rest of the line                                           */
+    const char *next, *end;     /* the rest of the text, after this line                          */
+    const char *data;           /* beginning of the text                                          */
+    long line;                  /* number of the line, from 1; 0 before the first                 */
+    char half[24];              /* 0.5 as printed in this locale, for its decimal point           */
+    const char *part;           /* meshes: read the part of this name only; null: read all        */
+    char *parts;                /* meshes: names of the parts found, DEMI_PARTS_MOST bytes        */
+    int apart;                  /* STL: 1 within another part                                     */
+    dem_mesh_health *health;    /* meshes: receives defects found in reading, not null            */
 } demi_text;
 enum { DEMI_PARTS_MOST = 160 };
 
-/* A text at its beginning. Numbers in it have a point, whatever the locale says: `half` learns what
-   that puts between digits. */
+/* Returns a text at its beginning, behind a byte order mark. Numbers in files have a decimal point
+   in every locale, but strtod expects that of the locale: `half` stores it. */
 static demi_text demi_text_make(dem_world *w, const char *call, const char *name, const char *data,
                                 size_t size) {
     demi_text t;
@@ -43,13 +48,13 @@ static demi_text demi_text_make(dem_world *w, const char *call, const char *name
     t.name = !name ? "data" : length > 200 ? name + (length - 200) : name;
     t.data = data;
     t.end = data + size;
-    t.next = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? data + 3 : data; /* order mark */
+    t.next = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? data + 3 : data;
     t.at = t.line_end = t.next;
     if (snprintf(t.half, sizeof t.half, "%.1f", 0.5) < 3) memcpy(t.half, "0.5", 4);
     return t;
 }
 
-/* Moves to the next word of the line; 0 when there is none. */
+/* Moves to the next word of the line. Returns 0 if there is none. */
 static int demi_text_word(demi_text *t) {
     const char *p = t->at;
     while (p < t->line_end && (*p == ' ' || *p == '\t' || *p == '\v' || *p == '\f')) p++;
@@ -60,7 +65,8 @@ static int demi_text_word(demi_text *t) {
     return t->length > 0;
 }
 
-/* Moves to the first word of the next line that has one; 0 at the end. # begins a comment. */
+/* Moves to the first word of the next line that has words. # begins a comment. Returns 0 at the end
+   of the text. */
 static int demi_text_line(demi_text *t) {
     while (t->next < t->end) {
         const char *p = t->next, *comment;
@@ -79,7 +85,8 @@ static int demi_text_line(demi_text *t) {
     return 0;
 }
 
-/* Refuses the present word; `where` says what is allowed and what to do. */
+/* Fails with an error message about the current word. `where` says what is expected in its place
+   and what to do. */
 static dem_result demi_text_fail(const demi_text *t, const char *where) {
     char shown[44] = "'";
     size_t i, length = t->length < 40 ? t->length : 40;
@@ -96,7 +103,7 @@ static dem_result demi_text_memory(const demi_text *t) {
                      "free some, or simplify the mesh", t->call, t->name);
 }
 
-/* 1 if the present word is this one (given in lower case), in capitals or not. */
+/* True if the current word is this one, in upper or lower case. `word` is in lower case. */
 static int demi_text_is(const demi_text *t, const char *word) {
     size_t i;
     if (t->length != strlen(word)) return 0;
@@ -107,8 +114,9 @@ static int demi_text_is(const demi_text *t, const char *word) {
     return 1;
 }
 
-/* The present word as a coordinate: a decimal number with a point, no nan, inf or hexadecimal.
-   strtod rounds correctly, but needs a zero at the end and the locale's point: hence the copy. */
+/* Reads the current word as a coordinate: a decimal number with a point, within 1e15; nan, inf and
+   hexadecimal numbers are errors. strtod rounds correctly, but needs a copy that ends with a zero
+   and has the decimal point of the locale. */
 static dem_result demi_text_number(demi_text *t, double *value) {
     char copy[160], *end = copy;
     size_t i, n = 0, point = strlen(t->half) - 2;
@@ -129,7 +137,7 @@ static dem_result demi_text_number(demi_text *t, double *value) {
     if (bad || end != copy + n || number > DEMI_FARTHEST || number < -DEMI_FARTHEST)
         return demi_text_fail(t, "a coordinate is expected, a decimal number within +-1e15 (m); "
                               "correct it or export the file again");
-    *value = number == 0 ? 0 : number; /* -0 and 0 are one place */
+    *value = number == 0 ? 0 : number; /* -0 becomes 0: both are the same position */
     return DEM_OK;
 }
 static dem_result demi_text_real(demi_text *t, dem_real *value) {
@@ -139,7 +147,8 @@ static dem_result demi_text_real(demi_text *t, dem_real *value) {
     return result;
 }
 
-/* The first `length` bytes of the present word as a whole number of at most 9 digits. */
+/* Reads the first `length` bytes of the current word as an integer of at most 9 digits. Returns 0
+   if they are no such number. */
 static int demi_text_integer(const demi_text *t, size_t length, int32_t *value) {
     size_t i = length > 0 && (t->word[0] == '-' || t->word[0] == '+') ? 1 : 0;
     int32_t number = 0;
@@ -152,8 +161,9 @@ static int demi_text_integer(const demi_text *t, size_t length, int32_t *value) 
     return 1;
 }
 
-/* The present word as a corner from 1 to count, handed back from 0. In OBJ (back > 0) what follows
-   a slash is passed over, and -1 is the last of the `back` vertices read so far. */
+/* Reads the current word as the number of a vertex, from 1 to count; *corner counts from 0. In OBJ
+   (back > 0), text from a slash on is ignored, and -1 is the last of the `back` vertices read so
+   far. */
 static dem_result demi_text_corner(const demi_text *t, int count, int back, int32_t *corner) {
     char where[160];
     const char *slash = t->length && back > 0 ? (const char *)memchr(t->word, '/', t->length) : 0;
@@ -169,7 +179,7 @@ static dem_result demi_text_corner(const demi_text *t, int count, int back, int3
     return demi_text_fail(t, where);
 }
 
-/* ---- meshes and profiles in: width is 3 for triangles in space, 2 for segments in a plane ---- */
+/* ---- meshes and profiles: width is 3 for triangles in space, 2 for segments in a plane ---- */
 
 static void demi_mesh_free(dem_world *w, dem_mesh *mesh) {
     demi_free(w, mesh->vertices);
@@ -177,7 +187,8 @@ static void demi_mesh_free(dem_world *w, dem_mesh *mesh) {
     memset(mesh, 0, sizeof *mesh);
 }
 
-/* Arrays for counts that are known and backed by bytes. On failure the caller frees. */
+/* Allocates the arrays of a mesh. The counts must be checked against the size of the text. The
+   caller frees in any case. */
 static dem_result demi_mesh_allocate(const demi_text *t, dem_mesh *mesh, size_t width,
                                      size_t vertices, size_t elements) {
     if (vertices == 0 || elements == 0 || elements > DEMI_ELEMENTS_MAX ||
@@ -192,7 +203,8 @@ static dem_result demi_mesh_allocate(const demi_text *t, dem_mesh *mesh, size_t 
     return mesh->vertices && mesh->triangles ? DEM_OK : demi_text_memory(t);
 }
 
-/* [MIL] Fig 5.11: two counts, a line per vertex, a line of corners per element. */
+/* Reads the text format of [MIL] Fig 5.11: two counts, then one line for each vertex, then one line
+   of corners for each element. */
 static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
     int32_t count[2] = {0, 0};
     size_t i;
@@ -205,7 +217,7 @@ static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
             return demi_text_fail(t, "the numbers of vertices and elements are expected, from 1 to "
                                   "700000000 (or an STL or OBJ file); correct the first line");
     }
-    /* a line has two bytes at least, the last maybe one: memory stays in proportion to the file */
+    /* a line has at least two bytes, the last one byte: so memory is proportional to the file */
     if (2*((uint64_t)count[0] + (uint64_t)count[1]) > (uint64_t)(t->end - t->next) + 1)
         return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found counts %ld and %ld, "
                          "but only %.0f bytes follow; copy the file again or correct the counts",
@@ -227,8 +239,8 @@ static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
     return result;
 }
 
-/* Is what stands from here to there, without blanks at its ends, the name of the wanted part? Adds
-   it to the names that there are. */
+/* True if the text from `from` to `end`, without blanks at its ends, is the name of the part to be
+   read. Adds the name to t->parts. */
 static int demi_text_named(demi_text *t, const char *from, const char *end) {
     size_t size, have = strlen(t->parts);
     while (from < end && (*from == ' ' || *from == '\t')) from++;
@@ -238,8 +250,9 @@ static int demi_text_named(demi_text *t, const char *from, const char *end) {
         sprintf(t->parts + have, "%s%.*s", have ? ", " : "", (int)size, from);
     return size == strlen(t->part) && !memcmp(from, t->part, size);
 }
-/* OBJ, a line that begins with o or g: does it name the wanted part? A name may have blanks and a
-   # in it, or end where a comment begins; each word after g is a group. */
+/* True if a line of an OBJ file that begins with o or g names the part to be read. A name may
+   contain blanks and #, or end where a comment begins, so both are tried. After g, each word is a
+   group, too. */
 static int demi_obj_part(demi_text *t, int group) {
     const char *from = t->at;
     int is = 0, words = 0;
@@ -251,13 +264,13 @@ static int demi_obj_part(demi_text *t, int group) {
     return t->line_end < t->next && *t->line_end == '#' ? is | demi_text_named(t, from, t->next)
                                                          : is;
 }
-/* Moves to the next word of an OBJ face, which a \ at the end of a line carries on. */
+/* Moves to the next word of an OBJ face. A \ at the end of a line continues it on the next. */
 static int demi_obj_word(demi_text *t) {
     int more = demi_text_word(t);
     while (more && demi_text_is(t, "\\")) more = demi_text_line(t);
     return more;
 }
-/* A face: its corners, and its triangles to `out`. */
+/* Reads a face of an OBJ file and writes its triangles to `out`. `vertices`: read so far. */
 static dem_result demi_obj_face(demi_text *t, const dem_mesh *mesh, int vertices, demi_outline *o,
                                 int32_t *out) {
     dem_mesh_health *h = t->health;
@@ -278,10 +291,10 @@ static dem_result demi_obj_face(demi_text *t, const dem_mesh *mesh, int vertices
     h->crossed_faces += o->crossed;
     return DEM_OK;
 }
-/* OBJ: v and f lines, o and g where a part is wanted, the rest passed over. Faces belong to the
-   object named last and to each group of the last g. Without `fill` it counts and allocates; else
-   it goes through twice, for a face may precede its vertices. The text comes by value: each
-   pass starts afresh. */
+/* Reads OBJ: v and f lines, o and g lines if one part is to be read; other lines are ignored. Faces
+   belong to the object named last and to each group of the last g line. With fill = 0 it counts and
+   allocates. With fill = 1 it goes through the text twice, vertices first, because a face may
+   precede its vertices. */
 static dem_result demi_obj_pass(demi_text text, dem_mesh *mesh, int fill) {
     size_t vertices = 0, triangles = 0, axis;
     demi_outline outline;
@@ -300,7 +313,7 @@ static dem_result demi_obj_pass(demi_text text, dem_mesh *mesh, int fill) {
                     result = demi_text_real(&t, &mesh->vertices[3*vertices + axis]);
                 }
                 vertices++;
-            } else if (demi_text_is(&t, "f")) { /* its lines are gone through each time alike */
+            } else if (demi_text_is(&t, "f")) { /* a face may span lines: skip all its words */
                 const int wanted = faces && (!t.part || object || group);
                 int corners = 0;
                 if (fill && wanted) {
@@ -316,10 +329,10 @@ static dem_result demi_obj_pass(demi_text text, dem_mesh *mesh, int fill) {
     return fill ? result : demi_mesh_allocate(&text, mesh, 3, vertices, triangles);
 }
 
-/* STL as text: facet, three vertex lines, endfacet. Without `fill` it counts and allocates. */
+/* Reads STL as text: facet, three vertex lines, endfacet. With fill = 0 it counts and allocates. */
 static dem_result demi_stl_pass(demi_text t, dem_mesh *mesh, int fill) {
     size_t facets = 0, axis;
-    int corners = 3, ended = 0; /* of this facet, so far; whether `endsolid` came */
+    int corners = 3, ended = 0; /* corners of this facet so far; 1 after `endsolid` */
     t.apart = t.part != 0;
     while (demi_text_line(&t)) {
         int vertex = demi_text_is(&t, "vertex"), facet = demi_text_is(&t, "facet");
@@ -351,13 +364,15 @@ static dem_result demi_stl_pass(demi_text t, dem_mesh *mesh, int fill) {
                           "again");
 }
 
+/* Reads a little-endian uint32. */
 static uint32_t demi_little32(const char *data) {
     const unsigned char *b = (const unsigned char *)data;
     return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
-/* Binary STL: 80 bytes, the number of triangles, then 50 bytes for each: a normal, three corners,
-   two bytes; all little-endian, in single precision. */
+/* Binary STL has 80 bytes of any content, the number of triangles (uint32), and 50 bytes for each
+   triangle: a normal, three corners (12 floats) and two more bytes. All numbers are little-endian.
+   A file is recognised by its size. */
 static int demi_stl_binary_is(demi_text t) {
     const size_t size = (size_t)(t.end - t.data);
     return size >= 84 && size == 84 + 50*(uint64_t)demi_little32(t.data + 80);
@@ -382,7 +397,8 @@ static dem_result demi_stl_binary_pass(demi_text t, dem_mesh *mesh, int fill) {
     return DEM_OK;
 }
 
-/* STL has places where others have corners: merges those that are exactly equal. */
+/* Merges vertices that are exactly equal. Needed for STL, which gives the position of each corner
+   instead of the number of a vertex. */
 static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh) {
     size_t i, count = (size_t)mesh->vertex_count, unique = 0;
     int32_t *first = demi_first_equal(t->world, mesh->vertices, count, 3*sizeof(dem_real));
@@ -403,7 +419,7 @@ static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh) {
     return DEM_OK;
 }
 
-/* Writes a number with a decimal point in every locale; returns buffer (32 bytes). */
+/* Prints a number with a decimal point in every locale. Returns `buffer`, of at least 32 bytes. */
 static const char *demi_format_real(char *buffer, double value, int digits) {
     char raw[64];
     size_t i, n = 0;
@@ -416,7 +432,8 @@ static const char *demi_format_real(char *buffer, double value, int digits) {
     return buffer;
 }
 
-/* Box, slivers and a hint on units: what each triangle tells by itself. */
+/* Fills in the part of a mesh's health that each triangle gives separately: bounding box, number of
+   slivers and a hint on units. */
 static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
     double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, extent = 0;
     char number[32];
@@ -442,7 +459,7 @@ static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
             double x = side[0][b]*side[1][c] - side[0][c]*side[1][b];
             area += x*x;
         }
-        area = sqrt(area); /* of the parallelogram: height times longest side */
+        area = sqrt(area); /* of the parallelogram: the height times the longest side */
         health->slivers += !(area > 0 && area >= 1e-3*longest*longest);
     }
     health->box = dem_box_make((dem_real)lo[0], (dem_real)lo[1], (dem_real)lo[2], (dem_real)hi[0],
@@ -455,7 +472,8 @@ static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
                  "0.001" : "1000");
 }
 
-/* Edges, duplicates and winding: what triangles tell together (>>closed). */
+/* Fills in the part that depends on neighbouring triangles: edges, duplicates, winding (>>closed).
+   */
 static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
                                     dem_mesh_health *health) {
     demi_closed c;
@@ -470,14 +488,15 @@ static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
     return found ? DEM_OK : demi_text_memory(t);
 }
 
-/* Formats of meshes, a row each (>>add-format), in the order in which they are looked for: binary
-   STL comes first, as it too may begin with `solid`. A row: do contents look like it (it moves a
-   copy of the text); one of two passes, the first counts and allocates, the second fills; whether
-   corners come by place instead of by number, so that equal ones are made one; whether it may hold
-   bytes that are not text. What nothing looks like is two counts and lists, as profiles are. */
+/* >>add-format: formats of meshes, one row for each, in the order in which they are tried. Binary
+   STL comes first, because it may begin with `solid`, too. Contents that no row recognises must be
+   in the format of [MIL] (demi_lists_read), which is also that of profiles. */
 typedef struct demi_mesh_format {
-    int (*is)(demi_text t);
+    int (*is)(demi_text t);             /* true if the contents look like this format */
+    /* reads the text: with fill = 0 it counts and allocates, with fill = 1 it fills the arrays */
     dem_result (*pass)(demi_text t, dem_mesh *mesh, int fill);
+    /* by_place, 1: corners are positions, of which equal ones must be merged; binary, 1: the file
+       may contain bytes that are not text */
     int by_place, binary;
 } demi_mesh_format;
 static int demi_stl_is(demi_text t) {
@@ -497,14 +516,15 @@ static const demi_mesh_format demi_mesh_formats[] = {
     {demi_stl_is, demi_stl_pass, 1, 0},
     {demi_obj_is, demi_obj_pass, 0, 0},
 };
-static const demi_mesh_format *demi_mesh_format_of(demi_text t) {  /* null: lists */
+/* Returns the format of the contents, or null for that of [MIL]. */
+static const demi_mesh_format *demi_mesh_format_of(demi_text t) {
     size_t i;
     for (i = 0; i < sizeof demi_mesh_formats/sizeof *demi_mesh_formats; i++)
         if (demi_mesh_formats[i].is(t)) return &demi_mesh_formats[i];
     return 0;
 }
 
-/* Without vertices that no triangle has: those of other parts. */
+/* Removes vertices that no triangle uses: those of other parts. */
 static dem_result demi_mesh_compact(const demi_text *t, dem_mesh *mesh) {
     int32_t *to = (int32_t *)demi_alloc(t->world, (size_t)mesh->vertex_count, sizeof *to);
     int i, n = 0;
@@ -520,8 +540,9 @@ static dem_result demi_mesh_compact(const demi_text *t, dem_mesh *mesh) {
     demi_free(t->world, to);
     return DEM_OK;
 }
-/* Any bytes -> a mesh (width 3) or the segments of a profile (2), or a sentence and an empty mesh.
-   Contents tell formats apart. */
+/* Reads a mesh (width 3) or the segments of a profile (width 2) from memory. The contents identify
+   the format. part: name of the part to be read, or null. health: or null. An error leaves an empty
+   mesh. */
 static dem_result demi_parse(dem_world *w, const char *call, const char *name, const char *data,
                              size_t size, size_t width, const char *part, dem_mesh *mesh,
                              dem_mesh_health *health) {
@@ -567,14 +588,15 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
     return result;
 }
 
-/* Opens a file to be read. "r+b" does not wait for the other end of a pipe, "rb" would; but a file
-   that may not be written to is opened by the latter alone. */
+/* Opens a file for reading; null if it cannot. Mode "rb" would wait for the other end of a pipe,
+   "r+b" does not. Only "rb" opens a file without write permission. */
 static FILE *demi_open(const char *path) {
     FILE *file = fopen(path, "r+b");
     return file ? file : fopen(path, "rb");
 }
-/* Bytes of an open file, which is wound back to its begin. DEMI_ENDLESS: a pipe or a terminal,
-   which have no length; of a device it is 0. What a long cannot count is DEMI_ENDLESS - 1. */
+/* Returns the size of an open file in bytes and goes to its beginning. DEMI_ENDLESS: it is a pipe
+   or a terminal, which have no size. DEMI_ENDLESS - 1: the size does not fit a long. The size of a
+   device is 0. */
 #define DEMI_ENDLESS ((size_t)-1)
 static size_t demi_file_size(FILE *file) {
     const int known = fseek(file, 0, SEEK_END) == 0;
@@ -582,8 +604,9 @@ static size_t demi_file_size(FILE *file) {
     if (!known || fseek(file, 0, SEEK_SET) != 0) return DEMI_ENDLESS;
     return size < 0 ? DEMI_ENDLESS - 1 : (size_t)size;
 }
-/* Loads a file whole into bytes, which the caller frees, also after a failure. No more is read than
-   its length when it was opened: a device may have no end. */
+/* Loads a complete file to *bytes, which the caller frees, also after a failure. Stops with an
+   error if there is more than the file's size when it was opened, since a device may have no end.
+   */
 static dem_result demi_load(dem_world *w, const char *call, const char *path, char **bytes,
                             size_t *size) {
     FILE *file;
@@ -616,7 +639,7 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, ch
     return result;
 }
 
-/* demi_parse for a file. */
+/* Does what demi_parse does, for a file. */
 static dem_result demi_read(dem_world *w, const char *call, const char *path, size_t width,
                             const char *part, dem_mesh *mesh, dem_mesh_health *health) {
     char *bytes = 0;
@@ -678,7 +701,8 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
     return DEM_OK;
 }
-/* One part of a machine as a wall, which will have this id. */
+/* Makes one part of a mesh file into a wall that will have this id. The wall is not yet added to
+   the world. */
 static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
                                  const dem_wall_part *part, dem_wall id, demi_wall *wall) {
     dem_mesh mesh;
@@ -692,7 +716,8 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
     wall->pose = wall->ahead = wall->first = wall->home;
     return demi_motion_lay(w, id, &part->motion, wall, wall);
 }
-/* What can be refused is before the first wall is added: then nothing of the world has changed. */
+/* All checks come before the first wall is added, so that an error leaves the world as it was. If
+   memory runs out later, the walls added so far are removed. */
 DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_wall_part *parts, dem_wall *walls) {
     const char *call = "dem_wall_parts_add";
@@ -722,7 +747,7 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
         if (walls) walls[i] = wall;
     }
     memcpy(sentence, w->error, sizeof sentence);
-    for (i = count - 1; i >= 0; i--) {          /* out of memory: those before it go again */
+    for (i = count - 1; i >= 0; i--) {          /* after an error: removes those added so far */
         wall.id = made[i].id;
         if (wall.id && result != DEM_OK) demi_wall_leave(w, wall);
         if (walls && result != DEM_OK) walls[i] = demi_no_wall;
@@ -733,7 +758,8 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
     return demi_fail(w, result, "%s: %.440s", call, sentence);
 }
 
-/* What was read as a mesh of width 2, as a profile. */
+/* Turns a mesh of width 2 into a profile. Fails if a segment has the same corner twice; then it
+   frees the profile. */
 static dem_result demi_profile_take(dem_world *w, const char *call, const char *name,
                                     const dem_mesh *lists, dem_profile *profile) {
     int i;
