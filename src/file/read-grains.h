@@ -1,17 +1,20 @@
 /* ---------------------------------------------------------------------------------------------
    >>read-grains
-   Grains in: text with separators, XYZ, dumps of LAMMPS and LIGGGHTS are rows of columns; VTK and
-   VTP are arrays, in words or in bytes. What each is says >>read-tables. As in >>read nothing is
-   trusted: counts are held against the bytes there.
+   Reading grains from files of other programs. Text and CSV, extended XYZ, and dumps of LAMMPS and
+   LIGGGHTS have one line for each grain. VTK, VTP and VTU have one array for each quantity, as text
+   or as bytes. >>read-tables recognises quantities by name. This part fills dem_grains, and only
+   dem_grains_add adds bodies to a world. As in >>read, the contents are not trusted: counts are
+   compared with the number of bytes.
    Tests: tests/file/test_read_grains.c, tests/fuzz_grains.c.
    --------------------------------------------------------------------------------------------- */
 /* ---- rows ---- */
 
-/* Moves to the next cell of the line; 0 when there is none. Between cells is `between`, or blanks
-   where that is a blank. A cell may be quoted; # begins a comment outside quotes. */
+/* Moves to the next cell of the line. Returns 0 if there is none. `between` is the separator; a
+   blank stands for any number of blanks and tabs. A cell may be quoted. Outside quotes, # begins a
+   comment. */
 static int demi_cell(demi_text *t, char between) {
     const char *p = t->at, *end = t->next, *from;
-    if (!p) return 0;                           /* the last cell was that before */
+    if (!p) return 0;                           /* the cell before this one was the last */
     while (end > p && (end[-1] == '\n' || end[-1] == '\r')) end--;
     while (p < end && (*p == ' ' || (*p == '\t' && between != '\t'))) p++;
     from = p;
@@ -35,14 +38,14 @@ static int demi_cell(demi_text *t, char between) {
     }
     return between != ' ' || t->length > 0;
 }
-/* The beginning of the present line, blanks and all. */
+/* Returns the beginning of the current line, with its leading blanks. */
 static const char *demi_line_begin(const demi_text *t) {
     const char *line = t->word;
     while (line > t->data && line[-1] != '\n' && line[-1] != '\r') line--;
     return line;
 }
-/* What stands between the cells of a line: the first of ; tab , that is there, else blanks. One tab
-   alone may be a blank. */
+/* Returns the separator of a line: a semicolon if there is one, else a tab if there are at least
+   two, else a comma if there is one, else a blank. A single tab may be used as a blank. */
 static char demi_between(const char *line, const char *end) {
     const char *p;
     int tabs = 0, comma = 0, quoted = 0;
@@ -55,7 +58,8 @@ static char demi_between(const char *line, const char *end) {
     }
     return tabs > 1 ? '\t' : comma ? ',' : ' ';
 }
-/* The present cell as a number; a decimal comma where commas do not separate. */
+/* Reads the current cell as a number. It may have a decimal comma if semicolons or tabs separate
+   the cells. */
 static dem_result demi_cell_number(const demi_text *t, char between, double *value) {
     demi_text cell = *t;
     char copy[128];
@@ -68,14 +72,14 @@ static dem_result demi_cell_number(const demi_text *t, char between, double *val
     }
     return demi_text_number(&cell, value);
 }
-/* An unusable type is none: it was a name. */
+/* Ignores column k, a type that cannot be the number of a material, such as a name. */
 static void demi_layout_untype(const demi_text *t, demi_layout *l, dem_grains *g, int k) {
     l->what[k] = DEMI_COLUMN_OTHER;
     demi_free(t->world, g->materials);
     g->materials = 0;
     demi_grains_ignore(g, "type", 4);
 }
-/* The present line into row i of the grains. */
+/* Reads the current line into grain i. */
 static dem_result demi_grain_line(demi_text *t, demi_layout *l, char between, dem_grains *g,
                                   size_t i) {
     int k;
@@ -109,7 +113,8 @@ static dem_result demi_grain_line(demi_text *t, demi_layout *l, char between, de
                                   "tabs separate columns");
     return DEM_OK;
 }
-/* Lines to the end of the text, or `said` of them (-1: to the end), as grains. */
+/* Reads lines as grains: `said` lines, or with -1 all lines up to the end of the text. Counts the
+   remaining lines in g->lines_left. */
 static dem_result demi_grains_rows(demi_text *t, demi_layout *l, char between, double said,
                                    dem_grains *g) {
     demi_text at = *t;
@@ -132,8 +137,8 @@ static dem_result demi_grains_rows(demi_text *t, demi_layout *l, char between, d
     while (demi_text_line(&at)) g->lines_left++;
     return result;
 }
-/* The names in a line as columns, and whether they are names: of a place and a size. `between`: an
-   underscore in YADE's #format. */
+/* Fills in the layout from a line of column names. `between` is the separator, an underscore in the
+   #format comments of YADE. */
 static dem_result demi_layout_line(const demi_text *t, const char *line, char between,
                                    demi_layout *l, dem_grains *g) {
     demi_text at = *t;
@@ -147,8 +152,9 @@ static dem_result demi_layout_line(const demi_text *t, const char *line, char be
     }
     return result;
 }
-/* Comments at the beginning may name the columns: YADE's "#format x_y_z_r", "# x y z r". 1: they
-   do. `line` is the first that is no comment. */
+/* Fills in the layout from comments at the beginning, such as "#format x_y_z_r" (YADE) or
+   "# x y z r". *named receives 1 if one of them names a position and a radius or diameter. `line`
+   is the first line that is no comment. */
 static dem_result demi_layout_comment(const demi_text *t, const char *line, demi_layout *l,
                                       dem_grains *g, int *named) {
     const char *p = t->data, *end;
@@ -172,14 +178,14 @@ static dem_result demi_layout_comment(const demi_text *t, const char *line, demi
     if (!*named) { *l = none; g->ignored[0] = 0; }
     return DEM_OK;
 }
-/* Text with or without names. t: at its first line. */
+/* Reads text with or without column names. t: at its first line. */
 static dem_result demi_grains_text(demi_text *t, demi_layout *l, dem_grains *g) {
     const char *line = demi_line_begin(t);
     demi_text before, at;
     char between, said = 0;
     int named, k, cells = 0, numbers = 1;
     dem_result result;
-    if (t->length >= 4 && !memcmp(t->word, "sep=", 4)) {    /* a spreadsheet says what separates */
+    if (t->length >= 4 && !memcmp(t->word, "sep=", 4)) {    /* the separator of a spreadsheet */
         said = t->length > 4 ? t->word[4] : '\t';
         if (!demi_text_line(t)) return demi_text_fail(t, "grains are expected; is the file empty?");
         line = demi_line_begin(t);
@@ -206,12 +212,13 @@ static dem_result demi_grains_text(demi_text *t, demi_layout *l, dem_grains *g) 
         if (result == DEM_OK) result = demi_layout_add(t, l, g, "r", 1, 1);
         if (result == DEM_OK && cells == 7) result = demi_layout_add(t, l, g, "v", 1, 3);
     }
-    before.next = line;                         /* what was read is a grain already */
+    before.next = line;                         /* go back: this line is the first grain */
     before.line--;
     return result == DEM_OK ? demi_grains_rows(&before, l, between, -1, g) : result;
 }
-/* XYZ: a count, then a line that tells the columns: Properties=name:type:columns and so on, maybe
-   in quotes. t: at the count. */
+/* Reads extended XYZ: a line with the number of grains, then a line that describes the columns as
+   Properties=name:type:columns:name:type:columns and so on, possibly in quotes. t: at the number.
+   */
 static dem_result demi_grains_xyz(demi_text *t, double count, demi_layout *l, dem_grains *g) {
     static const char word[] = "Properties=";
     const size_t n = sizeof word - 1;
@@ -242,7 +249,8 @@ static dem_result demi_grains_xyz(demi_text *t, double count, demi_layout *l, de
     t->line++;
     return demi_grains_rows(t, l, ' ', count, g);
 }
-/* A dump of LAMMPS or LIGGGHTS: "ITEM: ..." lines, the last of a frame names the columns. */
+/* Reads the first frame of a dump of LAMMPS or LIGGGHTS. It has lines that begin with "ITEM:", and
+   the last of these names the columns. */
 static dem_result demi_grains_dump(demi_text *t, demi_layout *l, dem_grains *g) {
     int32_t count = -1;
     dem_result result;
@@ -263,13 +271,13 @@ static dem_result demi_grains_dump(demi_text *t, demi_layout *l, dem_grains *g) 
 
 /* ---- arrays ---- */
 
-/* Numbers of an array, one after the other: words of a text, or bytes. */
+/* A sequence of numbers, either words of a text or bytes. */
 typedef struct demi_numbers {
     demi_text *text;               /* null: bytes */
-    const unsigned char *at, *end;
-    int size, kind, big;           /* bytes of each; 'f', 'i' or 'u'; the first byte counts most */
+    const unsigned char *at, *end; /* of bytes: those that are left */
+    int size, kind, big;           /* bytes of a number; 'f', 'i' or 'u'; 1: big-endian */
 } demi_numbers;
-/* The type of an array, by its name in VTP or VTK; 0: none of these. */
+/* Sets size and kind from the name of a type in VTP or VTK. Returns 0 if the name is unknown. */
 static int demi_numbers_type(demi_numbers *in, const char *name, size_t length) {
     static const struct { const char *name; int size, kind; } types[] = {
         {"Float64", 8, 'f'}, {"Float32", 4, 'f'}, {"Int64", 8, 'i'}, {"UInt64", 8, 'u'},
@@ -287,11 +295,13 @@ static int demi_numbers_type(demi_numbers *in, const char *name, size_t length) 
         }
     return 0;
 }
-/* Are there as many? A word takes two bytes with what is before it. */
+/* True if `count` numbers can be left. A word takes at least two bytes, with the blank before it.
+   */
 static int demi_numbers_there(const demi_numbers *in, double count) {
     return in->text ? 2*count <= (double)(in->text->end - in->text->at) + 1
                     : count*in->size <= (double)(in->end - in->at);
 }
+/* Returns the number that is stored in `size` bytes at `at`. */
 static double demi_number_of(const unsigned char *at, int size, int kind, int big) {
     uint64_t bits = 0;
     uint32_t half;
@@ -308,7 +318,7 @@ static double demi_number_of(const unsigned char *at, int size, int kind, int bi
     if (kind == 'i' && size < 8 && bits >> (8*size - 1)) return (double)bits - ldexp(1, 8*size);
     return kind == 'i' && bits >> 63 ? -(double)(~bits + 1) : (double)bits;
 }
-/* The next of them; `used`: a number within limits. */
+/* Reads the next number. With used = 0 it is skipped; otherwise it must be within 1e15. */
 static dem_result demi_numbers_next(const demi_text *t, demi_numbers *in, int used,
                                     double *value) {
     if (in->text) {
@@ -322,7 +332,8 @@ static dem_result demi_numbers_next(const demi_text *t, demi_numbers *in, int us
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: found a number of %g in an array, must "
                      "be within +-1e15; write the file again", t->call, t->name, *value);
 }
-/* Reads an array of n x width numbers, or passes over it where nothing of it is used. */
+/* Reads an array of n x width numbers, and stores those of known quantities. With used = 0, or if
+   no quantity is known, it skips the array. */
 static dem_result demi_array_read(const demi_text *t, demi_numbers *in, demi_layout *l,
                                   dem_grains *g, const char *name, size_t length, size_t n,
                                   int width, int used) {
@@ -362,20 +373,20 @@ static dem_result demi_array_read(const demi_text *t, demi_numbers *in, demi_lay
     return result;
 }
 
-/* Legacy VTK under way. */
+/* A legacy VTK file being read. */
 typedef struct demi_vtk_in {
     demi_text *t;
     demi_layout *l;
     dem_grains *g;
-    int binary, at_points;         /* in bytes; arrays are those of points */
-    double points;                 /* -1: not known yet */
+    int binary, at_points;         /* 1: numbers are bytes; 1: the arrays now are those of points */
+    double points;                 /* their number; -1: not known yet */
 } demi_vtk_in;
-/* The present word as a count; -1: it is none. */
+/* Returns the current word as a count; -1 if it is none. */
 static double demi_vtk_count(demi_text *t) {
     int32_t count = -1;
     return t->length && demi_text_integer(t, t->length, &count) && count >= 0 ? count : -1;
 }
-/* An array of tuples x width numbers of a type, which begins after this line. */
+/* Reads an array of tuples x width numbers of a type, which begins after this line. */
 static dem_result demi_vtk_array(demi_vtk_in *v, const char *name, size_t length, double tuples,
                                  double width, const char *type, size_t type_length, int used) {
     demi_text *t = v->t;
@@ -391,16 +402,17 @@ static dem_result demi_vtk_array(demi_vtk_in *v, const char *name, size_t length
     in.big = 1;
     in.at = (const unsigned char *)t->next;
     in.end = (const unsigned char *)t->end;
-    if (in.text) t->at = t->line_end = t->next;     /* what is left is measured from there */
+    if (in.text) t->at = t->line_end = t->next;     /* demi_numbers_there measures from here */
     result = demi_array_read(t, &in, v->l, v->g, name, length, (size_t)tuples, (int)width, used);
     if (v->binary) t->next = (const char *)in.at;
-    else if (result == DEM_OK && demi_text_word(t)) {   /* more on the line: not passed over */
+    else if (result == DEM_OK && demi_text_word(t)) {   /* keep the rest of the last line */
         t->next = t->word;
         t->line--;
     }
     return result;
 }
-/* FIELD: arrays, each with a line of its name, width, tuples and type. */
+/* Reads the arrays of a FIELD section, each of which begins with a line of name, width, number of
+   tuples and type. */
 static dem_result demi_vtk_field(demi_vtk_in *v, double arrays) {
     dem_result result = DEM_OK;
     while (arrays > 0 && result == DEM_OK && demi_text_line(v->t)) {
@@ -421,8 +433,8 @@ static dem_result demi_vtk_field(demi_vtk_in *v, double arrays) {
     }
     return result;
 }
-/* A section that begins with the present word. Lines of numbers, METADATA and the like, which are
-   none, are passed over. */
+/* Reads the section that begins with the current word. A line that begins no such section, such as
+   METADATA or numbers, is skipped. */
 static dem_result demi_vtk_section(demi_vtk_in *v) {
     static const char *const cells[] = {"vertices", "lines", "polygons", "triangle_strips",
                                         "cells", "cell_types"};
@@ -460,11 +472,11 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
         }
         return demi_vtk_array(v, name, length, v->points, count, type, type_length, v->at_points);
     }
-    for (k = 0; v->binary && k < sizeof cells/sizeof *cells; k++) {     /* to pass over bytes */
+    for (k = 0; v->binary && k < sizeof cells/sizeof *cells; k++) {     /* skip bytes of cells */
         if (!demi_text_is(t, cells[k])) continue;
         demi_text_word(t);
         count = demi_vtk_count(t);
-        if (demi_text_word(t)) {                /* before 5.1 ints, since then two arrays */
+        if (demi_text_word(t)) {                /* ints; from format 5.1 on two arrays */
             demi_text look = *t;
             if (demi_text_line(&look) && demi_text_is(&look, "offsets")) {
                 const double corners = demi_vtk_count(t);
@@ -483,6 +495,7 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
     }
     return DEM_OK;
 }
+/* Reads grains from a legacy VTK file. t: at its beginning. */
 static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
     demi_vtk_in v;
     dem_result result = DEM_OK;
@@ -492,7 +505,7 @@ static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
     v.l = l;
     v.g = g;
     v.points = -1;
-    for (k = 0; k < 2; k++) {                   /* its version and title */
+    for (k = 0; k < 2; k++) {                   /* skip version and title */
         const char *end = (const char *)memchr(t->next, '\n', (size_t)(t->end - t->next));
         t->next = end ? end + 1 : t->end;
         t->line++;
@@ -507,7 +520,8 @@ static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
 
 /* ---- VTP and VTU ---- */
 
-/* What a tag's attribute says, from `tag` to `end`: where it begins; null when it has none. */
+/* Returns the value of an attribute of a tag, which reaches from `tag` to `end`; null if it has no
+   such attribute. *size receives the length of the value. */
 static const char *demi_attribute(const char *tag, const char *end, const char *name,
                                   size_t *size) {
     const size_t n = strlen(name);
@@ -522,18 +536,19 @@ static const char *demi_attribute(const char *tag, const char *end, const char *
     }
     return 0;
 }
-/* Does a tag, which ends before `end`, begin so? */
+/* True if a tag, which ends before `end`, begins with this text. */
 static int demi_tag_is(const char *tag, const char *end, const char *begin) {
     const size_t n = strlen(begin);
     return (size_t)(end - tag) >= n && !memcmp(tag, begin, n);
 }
+/* True if a tag has an attribute of this name and value. */
 static int demi_attribute_is(const char *tag, const char *end, const char *name,
                              const char *value) {
     size_t size = 0;
     const char *is = demi_attribute(tag, end, name, &size);
     return is && size == strlen(value) && !memcmp(is, value, size);
 }
-/* A whole number of at most 15 digits; -1: it is none. */
+/* Returns the value of an attribute, an integer of at most 15 digits; -1 if it is none. */
 static double demi_attribute_number(const char *tag, const char *end, const char *name) {
     size_t size = 0, i;
     const char *is = demi_attribute(tag, end, name, &size);
@@ -545,21 +560,23 @@ static double demi_attribute_number(const char *tag, const char *end, const char
     }
     return number;
 }
-/* A VTP file under way. */
+/* A VTP or VTU file being read. */
 typedef struct demi_vtp_in {
     const demi_text *t;
     demi_layout *l;
     dem_grains *g;
     const char *data, *end;        /* appended data, behind its underscore; null: there is none */
-    int raw, wide, big;            /* that is bytes, not base64; sizes take 8 bytes; byte order */
-    size_t points;
+    int raw, wide, big;            /* 1: these are bytes, not base64; sizes have 8 bytes, not 4;
+                                      big-endian */
+    size_t points;                 /* in the piece being read */
 } demi_vtp_in;
 static dem_result demi_vtp_fail(const demi_vtp_in *v, const char *what) {
     return demi_fail(v->t->world, DEM_ERROR_FORMAT, "%s: %s: %s; give a VTP file whose data is "
                      "ascii, base64 or raw and not compressed (ParaView: CompressorType None), or "
                      "a CSV file", v->t->call, v->t->name, what);
 }
-/* Base64 to bytes, up to what is none; how many. */
+/* Decodes base64 up to the first character that is neither base64 nor a blank. Returns the number
+   of bytes. */
 static size_t demi_base64(const char *from, const char *end, unsigned char *out) {
     static const char signs[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     uint32_t bits = 0;
@@ -577,7 +594,7 @@ static size_t demi_base64(const char *from, const char *end, unsigned char *out)
     }
     return n;
 }
-/* The array of a DataArray tag, which ends before `body`. */
+/* Reads the array of a DataArray tag, which ends before `body`: text, base64, or appended data. */
 static dem_result demi_vtp_array(const demi_vtp_in *v, const char *tag, const char *body,
                                  const char *name, size_t length, int width) {
     const int appended = demi_attribute_is(tag, body, "format", "appended");
@@ -609,7 +626,7 @@ static dem_result demi_vtp_array(const demi_vtp_in *v, const char *tag, const ch
         for (words.line = 1, from = words.data; from < body; from++) words.line += *from == '\n';
         words.line--;
         in.text = &words;
-    } else if (!appended || !v->raw) {          /* no more of it than the array takes */
+    } else if (!appended || !v->raw) {          /* decode no more than the array takes */
         const double most = ((double)n*in.size + (double)head + 3)*4/3;
         if (most > (double)(end - from) + 16)
             return demi_vtp_fail(v, "is cut short within an array");
@@ -636,7 +653,8 @@ static dem_result demi_vtp_array(const demi_vtp_in *v, const char *tag, const ch
     demi_free(v->t->world, bytes);
     return result;
 }
-/* The head of the file: order of bytes, compression, where appended data is. */
+/* Reads the VTKFile tag (byte order, size of sizes, compression, which is an error) and finds the
+   appended data. */
 static dem_result demi_vtp_head(demi_vtp_in *v, const char *tag, const char *end) {
     size_t size = 0;
     const char *word = demi_attribute(tag, end, "compressor", &size);
@@ -661,6 +679,7 @@ static dem_result demi_vtp_head(demi_vtp_in *v, const char *tag, const char *end
     }
     return DEM_OK;
 }
+/* Reads grains from a VTP or VTU file with at most one piece that has points. */
 static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains *g) {
     const char *p = t->data, *end, *name;
     demi_vtp_in v;
@@ -705,10 +724,11 @@ static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains
     return v.points ? demi_layout_check(t, l, g) : DEM_OK;
 }
 
-/* Any bytes -> grains, in the name of `call`. Contents tell formats apart. */
+/* Reads grains from memory. The contents identify the format. call: the public function, for error
+   messages. */
 static dem_result demi_grains_parse(dem_world *w, const char *call, const char *name,
                                     const char *data, size_t size, dem_grains *g) {
-    const int mark = size >= 3 && !memcmp(data, "\xEF\xBB\xBF", 3);     /* of byte order */
+    const int mark = size >= 3 && !memcmp(data, "\xEF\xBB\xBF", 3);     /* byte order mark */
     const int vtk = size >= 14 && !memcmp(data, "# vtk DataFile", 14);
     demi_text t = demi_text_make(w, call, name, data + 3*mark, size - 3*(size_t)mark);
     demi_layout layout;

@@ -1,11 +1,12 @@
 /* ---------------------------------------------------------------------------------------------
    >>read-tables
-   Grains in: what a column or an array of a file is, by its name, and where its numbers go. All
-   formats of >>read-grains use this. A name may carry quotes, a unit and a component (velocity:0,
-   vx, omega_y, Position.X); a quantity that is there twice counts the first time.
+   Reading grains: columns and arrays of a file are recognised by their names, and their numbers are
+   converted to SI units and stored. All formats of >>read-grains use this part, which owns
+   demi_layout and fills dem_grains. A name may have quotes, a unit and a component (velocity:0, vx,
+   omega_y, Position.X). If a quantity occurs twice, the first one is used.
    Tests: tests/file/test_read_grains.c, tests/fuzz_grains.c.
    --------------------------------------------------------------------------------------------- */
-/* Of this machine: formats say which order they want. */
+/* True if this machine stores the lowest byte of a number first. */
 static int demi_is_little_endian(void) {
     const uint16_t one = 1;
     unsigned char first;
@@ -13,16 +14,20 @@ static int demi_is_little_endian(void) {
     return first == 1;
 }
 
+/* The quantity in a column: position (from _X on), radius, diameter, velocity (from _V on), angular
+   velocity (from _W on), material, the same under the name of type, scaled position (an error if
+   there is no other), or one that is not used. */
 enum { DEMI_COLUMN_X, DEMI_COLUMN_R = 3, DEMI_COLUMN_D, DEMI_COLUMN_V, DEMI_COLUMN_W = 8,
        DEMI_COLUMN_MATERIAL = 11, DEMI_COLUMN_TYPE, DEMI_COLUMN_SCALED, DEMI_COLUMN_OTHER,
        DEMI_COLUMNS_MOST = 256 };
-/* What the columns of a file are. */
+/* The columns of a file. */
 typedef struct demi_layout {
-    int count, what[DEMI_COLUMNS_MOST];
+    int count, what[DEMI_COLUMNS_MOST];     /* columns; DEMI_COLUMN_... of each */
     double factor[DEMI_COLUMNS_MOST];       /* to SI units */
-    int has[DEMI_COLUMN_OTHER + 1];
+    int has[DEMI_COLUMN_OTHER + 1];         /* of each quantity: 1 if there is such a column */
 } demi_layout;
-/* What a file calls them, in lower case. Of width 3: with a component after it, or an array. */
+/* Names in files, in lower case. width 3: a vector, whose name either has a component at its end or
+   is that of an array of three components. */
 static const struct { const char *name; int what, width; } demi_column_names[] = {
     {"x", DEMI_COLUMN_X, 1}, {"y", DEMI_COLUMN_X + 1, 1}, {"z", DEMI_COLUMN_X + 2, 1},
     {"xu", DEMI_COLUMN_X, 1}, {"yu", DEMI_COLUMN_X + 1, 1}, {"zu", DEMI_COLUMN_X + 2, 1},
@@ -36,7 +41,7 @@ static const struct { const char *name; int what, width; } demi_column_names[] =
     {"angular velocity", DEMI_COLUMN_W, 3}, {"material", DEMI_COLUMN_MATERIAL, 1},
     {"type", DEMI_COLUMN_TYPE, 1}};
 
-/* The same for error messages, in the order of DEMI_COLUMN_X and so on. */
+/* Names for error messages, in the order of DEMI_COLUMN_X and so on. */
 static const char *const demi_quantity[] = {" (x)", " (y)", " (z)", " (r)", " (d)", " (vx)",
     " (vy)", " (vz)", " (wx)", " (wy)", " (wz)", " (material)", " (type)", " (xs)", ""};
 
@@ -48,7 +53,8 @@ static void demi_grains_free(dem_world *w, dem_grains *g) {
     demi_free(w, g->materials);
     memset(g, 0, sizeof *g);
 }
-/* The array for a quantity of n grains; 0: no memory. */
+/* Allocates the array for a quantity of n grains, if it does not exist. Returns 0 if memory ran
+   out. */
 static int demi_grains_hold(dem_world *w, dem_grains *g, int what, size_t n) {
     dem_real **reals = what < DEMI_COLUMN_R ? &g->positions : what < DEMI_COLUMN_V ? &g->radii :
         what < DEMI_COLUMN_W ? &g->velocities : &g->spins;
@@ -62,7 +68,8 @@ static int demi_grains_hold(dem_world *w, dem_grains *g, int what, size_t n) {
                                                  sizeof(dem_real));
     return *reals != 0;
 }
-/* A number of grain i, in SI units. 0, or what it should have been. */
+/* Stores a number of grain i, in SI units. Returns null, or for an error message what was expected
+   instead. */
 static const char *demi_grains_put(dem_grains *g, size_t i, int what, double value) {
     if (what < DEMI_COLUMN_R) g->positions[3*i + (size_t)what] = (dem_real)value;
     else if (what < DEMI_COLUMN_V) {
@@ -79,7 +86,7 @@ static const char *demi_grains_put(dem_grains *g, size_t i, int what, double val
     }
     return 0;
 }
-/* To SI units: 0 where a unit does not suit. */
+/* Returns the factor from a unit to SI units; 0 if the quantity does not have this unit. */
 static double demi_column_factor(const char *unit, int what) {
     static const struct { const char *name; double factor; } lengths[] = {
         {"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"um", 1e-6}, {"\xC2\xB5m", 1e-6}};
@@ -93,7 +100,8 @@ static double demi_column_factor(const char *unit, int what) {
     }
     return 0;
 }
-/* The component that a name ends with, after its stem: 0 to 2; -1: none. */
+/* Returns the component, 0 to 2, at the end of a name; -1 if there is none. rest: the name after
+   its stem. */
 static int demi_column_component(const char *rest) {
     static const char letters[] = "xyz", digits[] = "012";
     const int apart = *rest && strchr(":_.[- ", *rest) != 0;
@@ -105,8 +113,8 @@ static int demi_column_component(const char *rest) {
     in = apart ? strchr(digits, rest[0]) : 0;
     return in ? (int)(in - digits) : -1;
 }
-/* What a column of this name is; component c of `width` of an array. *factor: 0, a unit that does
-   not suit. */
+/* Returns the quantity (DEMI_COLUMN_...) of component c of an array of this name and width; a
+   column has width 1. *factor receives the factor to SI units, 0 if the unit does not suit. */
 static int demi_column_of(const char *name, size_t length, int c, int width, double *factor) {
     char stem[64], *unit, *end;
     size_t n = 0, k;
@@ -138,7 +146,7 @@ static int demi_column_of(const char *name, size_t length, int c, int width, dou
     }
     return DEMI_COLUMN_OTHER;
 }
-/* Lists the name of a column or array that is not used. */
+/* Adds the name of a column or array that is not used to g->ignored. */
 static void demi_grains_ignore(dem_grains *g, const char *name, size_t length) {
     const size_t have = strlen(g->ignored);
     while (length && (*name == '"' || *name == ' ')) { name++; length--; }
@@ -146,7 +154,7 @@ static void demi_grains_ignore(dem_grains *g, const char *name, size_t length) {
     if (length && have + length + 3 <= sizeof g->ignored)
         sprintf(g->ignored + have, "%s%.*s", have ? ", " : "", (int)length, name);
 }
-/* Adds a column, or the components of an array. */
+/* Adds a column (width 1) or the components of an array to the layout. */
 static dem_result demi_layout_add(const demi_text *t, demi_layout *l, dem_grains *g,
                                   const char *name, size_t length, int width) {
     int c, k, used = 0;
@@ -165,7 +173,7 @@ static dem_result demi_layout_add(const demi_text *t, demi_layout *l, dem_grains
                              "%.*s is not known, must be m, mm, cm or um, with /s for velocities, "
                              "rad/s for spins; use SI units", t->call, t->name, t->line,
                              (int)DEMI_MIN(length, 60), name);
-        for (k = 0; k < l->count && what == DEMI_COLUMN_MATERIAL; k++)      /* before a type */
+        for (k = 0; k < l->count && what == DEMI_COLUMN_MATERIAL; k++)  /* it replaces a type */
             if (l->what[k] == DEMI_COLUMN_TYPE) l->what[k] = DEMI_COLUMN_OTHER;
         l->has[what] = what < DEMI_COLUMN_OTHER;
         l->factor[l->count] = factor;
@@ -175,7 +183,7 @@ static dem_result demi_layout_add(const demi_text *t, demi_layout *l, dem_grains
     if (!used) demi_grains_ignore(g, name, length);
     return DEM_OK;
 }
-/* Are there positions and radii? */
+/* Fails unless there are x, y and a radius or diameter. */
 static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
                                     const dem_grains *g) {
     if (l->has[0] && l->has[1] && (l->has[DEMI_COLUMN_R] || l->has[DEMI_COLUMN_D])) return DEM_OK;
