@@ -1,56 +1,66 @@
 /* ---------------------------------------------------------------------------------------------
    >>replay
-   A film of a run in one HTML file: the viewer, then blocks <script type="dem/NAME">, one behind
-   the other, so that what has been written of a film that broke off can be looked at. NAME is head,
-   shape, wall, value (JSON, each before the first frame that needs it), frame (base64) and report.
+   Replays ("films" in names): recordings of a run in one HTML file. The file contains the viewer,
+   then blocks <script type="dem/NAME"> in the order in which they were written, so that an
+   incomplete file can be played, too. NAME is head, shape, wall or value (JSON, each before the
+   first frame that needs it), frame (base64) or report. This part owns dem_replay and the list
+   w->look.films. It reads the world; before a frame it completes the half kick that is due.
 
-   A frame tells only what has changed since the one before; all numbers are little-endian, counts
-   and slots are varints (7 bits a byte, lowest first, the top bit: more follows):
+   A frame contains only changes since the frame before. Numbers are little-endian. Counts, slots
+   and other integers are varints: 7 bits in each byte, lowest first; the top bit is set if another
+   byte follows. A frame consists of
        time           float64, s
-       walls          count; each: number, 0 (gone) or 1 and position, rotation w x y z (float32)
-       gone           count; each: slot
-       new            count; each: slot, material, shape, radius (float32, m); its place, speed,
-                      orientation and number begin at 0
-       each grain there is, by slot: a byte of flags; 2 bits for x, y, z: the change, in units of
-                      the resolution, takes 0, 1, 2, 4 bytes; 64: a byte, its speed, 128 + 8 log2
-                      of m/s (0: at rest); 128: another byte of flags and, 1: orientation, 4 bytes
-                      (three smallest components, 10 bits each, which is left out in the top two),
-                      2: a number of the user's, float32
-       values         count; each: number, float32
+       walls          count; for each: id, 0 (removed), or 1, position (m) and rotation w x y z (7
+                      float32)
+       gone           count; for each: slot
+       new            count; for each: slot, material, shape, radius (float32, m); its position,
+                      speed, orientation and number begin at 0
+       grains         for each grain, in the order of slots:
+           flags          one byte: 2 bits for each of x, y, z; 64; 128
+           position       change of x, y, z in units of the resolution; 0, 1, 2 or 4 bytes if the
+                          two bits are 0, 1, 2 or 3
+           speed          if flag 64: one byte, 128 + 8 log2 of the speed in m/s (0: at rest)
+           more flags     if flag 128: one byte
+           orientation    if 1 of the second byte: 4 bytes; the three smallest components with 10
+                          bits each, and in the top two bits the index of the one left out
+           number         if 2 of the second byte: float32, the number that grains are coloured by
+       values         count; for each: index, float32
 
-   Tested by tests/replay/test_replay.c, which reads films back, and tests/replay.sh in a browser.
+   Tests: tests/replay/test_replay.c reads replays back, tests/browser.sh plays them in a browser.
    --------------------------------------------------------------------------------------------- */
 
-/* Of a slot: what the film has told of it so far. */
+/* What the frames so far say about the body in a slot. */
 typedef struct demi_seen {
-    int32_t place[3];                /* in units of the resolution */
-    uint32_t generation, turn;
-    float own;
-    unsigned char speed, there;
+    int32_t place[3];                /* position in units of the resolution */
+    uint32_t generation, turn;       /* of the body; orientation as in the file */
+    float own;                       /* the user's number */
+    unsigned char speed, there;      /* as in the file; 1: there is a body */
 } demi_seen;
 struct dem_replay {
     dem_world *world;
     demi_out out;
     dem_replay_desc desc;
-    char title[200], number[64];     /* the desc's; number: empty where there is none */
-    int real;                        /* which number of desc.body_reals is shown, or -1 */
-    double resolution;               /* m; 0: no frame yet */
-    demi_seen *seen;                 /* x seen_count: slots */
-    float (*pose)[7];                /* x wall_count: as told */
-    int32_t *wall_told;              /* x wall_count: id of the wall last told of, 0: none */
-    unsigned char *bytes;            /* of the frame under way */
-    size_t size;
-    int seen_count, wall_count, shape_count, value_count, frames, failed;
-    char names[DEM_REPLAY_VALUES][64];
+    char title[200], number[64];     /* copies of the desc's; number: "" if there is none */
+    int real;                        /* index of that number in desc.body_reals, or -1 */
+    double resolution;               /* m, of positions; 0: no frame yet */
+    demi_seen *seen;                 /* x seen_count: one for each slot */
+    float (*pose)[7];                /* of each wall: the last pose written */
+    int32_t *wall_told;              /* of each place of a wall: the last id written; 0: none */
+    unsigned char *bytes;            /* the frame being written, */
+    size_t size;                     /* and its length so far */
+    int seen_count, wall_count, shape_count, value_count, frames, failed;  /* failed: no memory */
+    char names[DEM_REPLAY_VALUES][64];     /* of plotted values */
     double values[DEM_REPLAY_VALUES];
-    int given[DEM_REPLAY_VALUES];    /* 1: since the last frame */
-    double begun;                    /* s, when the first frame was due that it takes by itself */
+    int given[DEM_REPLAY_VALUES];    /* 1: set since the last frame */
+    double begun;                    /* s, time of the first automatic frame */
     double due;                      /* intervals from there to the next one; below 0: none yet */
-    dem_replay *next;                /* of the world's films */
+    dem_replay *next;                /* in the world's list of replays with automatic frames */
 };
 
-/* --- bytes --- */
+/* --- bytes of a frame, and JSON --- */
 
+/* Appends `size` bytes to the frame; number: in little-endian order. If memory runs out, sets
+   r->failed. */
 static void demi_film_put(dem_replay *r, const void *data, size_t size, int number) {
     if (r->failed || !demi_grow(r->world, DEMI_LOOSE, &r->bytes, 1, r->size + size)) {
         r->failed = 1;
@@ -68,15 +78,17 @@ static void demi_film_byte(dem_replay *r, int value) {
     const unsigned char byte = (unsigned char)value;
     demi_film_put(r, &byte, 1, 0);
 }
+/* Appends an integer as a varint. */
 static void demi_film_count(dem_replay *r, uint32_t value) {
     for (; value > 127; value >>= 7) demi_film_byte(r, (int)(value & 127) | 128);
     demi_film_byte(r, (int)value);
 }
+/* Appends a float32, limited to its range. */
 static void demi_film_real(dem_replay *r, double value) {
     const float number = (float)DEMI_MAX(-3e38, DEMI_MIN(3e38, value));
     demi_film_put(r, &number, sizeof number, 1);
 }
-/* The frame as base64, in a block of its own. */
+/* Writes the frame to the file, as a block in base64. */
 static void demi_film_block(dem_replay *r) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char text[4096];
@@ -94,7 +106,7 @@ static void demi_film_block(dem_replay *r) {
     }
     fputs("</script>\n", r->out.file);
 }
-/* Text as a JSON string that cannot end a script either. */
+/* Writes text as a JSON string. It escapes <, so that the text cannot end the script block. */
 static void demi_film_text(FILE *out, const char *text) {
     fputc('"', out);
     for (; *text; text++) {
@@ -104,6 +116,7 @@ static void demi_film_text(FILE *out, const char *text) {
     }
     fputc('"', out);
 }
+/* Writes a JSON array of count x per numbers after other members of an object. */
 static void demi_film_reals(FILE *out, const char *name, const dem_real *values, int count, int per,
                             int stride) {
     char number[32];
@@ -116,7 +129,7 @@ static void demi_film_reals(FILE *out, const char *name, const dem_real *values,
     fputs("]", out);
 }
 
-/* --- what stands before the frames --- */
+/* --- blocks before the frames that need them --- */
 
 static void demi_film_head(dem_replay *r) {
     const dem_world_desc d = dem_world_desc_get(r->world);
@@ -135,6 +148,7 @@ static void demi_film_head(dem_replay *r) {
     else fputs("null", out);
     fputs(",\"values\":[]}</script>\n", out);
 }
+/* Writes a shape: member spheres, pieces of a union, planes of faces, or semi-axes. */
 static void demi_film_shape(dem_replay *r, int id) {
     const demi_shape *s = &r->world->shapes[id - 1];
     const dem_real axes[3] = {s->axes.x, s->axes.y, s->axes.z};
@@ -162,6 +176,7 @@ static void demi_film_shape(dem_replay *r, int id) {
     else demi_film_reals(r->out.file, "axes", axes, 1, 3, 3);
     fputs("}</script>\n", r->out.file);
 }
+/* Writes the geometry of wall i in its own frame. */
 static void demi_film_wall(dem_replay *r, int i) {
     const demi_wall *wall = &r->world->walls[i];
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
@@ -201,7 +216,8 @@ static void demi_film_wall(dem_replay *r, int i) {
 
 /* --- a frame --- */
 
-/* Walls: new ones are described first. */
+/* Appends walls that have moved, are new or are gone. The first pass counts them and writes the
+   blocks of new walls. */
 static void demi_film_walls(dem_replay *r) {
     dem_world *w = r->world;
     uint32_t changed = 0;
@@ -247,7 +263,7 @@ static void demi_film_walls(dem_replay *r) {
         }
     }
 }
-/* Who went and who came, by slot. */
+/* Appends the bodies that are gone, then the new ones, by slot. */
 static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
     const demi_bodies *bodies = &r->world->bodies;
     uint32_t gone = 0, fresh = 0;
@@ -281,7 +297,8 @@ static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
         }
     }
 }
-/* Three smallest components, the largest one made positive and left out. */
+/* Returns a quaternion in 32 bits: the three smallest components with 10 bits each, and the index
+   of the largest, which is made positive, in the top two bits. */
 static uint32_t demi_film_turn(const dem_real *q) {
     int k, most = 0, bit = 0;
     uint32_t turn;
@@ -294,7 +311,7 @@ static uint32_t demi_film_turn(const dem_real *q) {
     }
     return turn;
 }
-/* A grain, as the frame before left it and as it is. */
+/* Appends the changes of body i, in slot s, since the frame before. */
 static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     demi_seen *one = &r->seen[s];
     const dem_real *v = b->velocities + 4*i;
@@ -321,7 +338,7 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     } else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
     if (told != one->speed) flags |= 64;
     if (turn != one->turn) more |= 1;
-    if (memcmp(&own, &one->own, sizeof own)) more |= 2;    /* by its bits: what is none, too */
+    if (memcmp(&own, &one->own, sizeof own)) more |= 2;    /* compares bits: it may be NaN */
     demi_film_byte(r, more ? flags | 128 : flags);
     for (k = 0; k < 3; k++) {
         const int size = flags >> 2*k & 3;
@@ -338,7 +355,7 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     one->turn = turn;
     one->own = own;
 }
-/* Before the first frame: how finely places are told. */
+/* Before the first frame: chooses the resolution of positions and writes the head. */
 static void demi_film_resolve(dem_replay *r, const dem_bodies *b) {
     dem_real least = 0;
     int i;
@@ -348,6 +365,7 @@ static void demi_film_resolve(dem_replay *r, const dem_bodies *b) {
         (double)least/32 : 1e-5;
     demi_film_head(r);
 }
+/* Fails if memory ran out or the file cannot be written. */
 static dem_result demi_film_check(dem_replay *r, const char *call) {
     if (r->failed) return demi_no_memory(r->world, call);
     if (!ferror(r->out.file)) return DEM_OK;
@@ -396,9 +414,10 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
     return demi_film_check(r, "dem_replay_frame_write");
 }
 
-/* --- begin, plots, end --- */
+/* --- automatic frames; opening, values, closing --- */
 
-/* Frames that are due. One that fails ends its film, not the run: dem_replay_close says so. */
+/* Writes the frames that are due at this step. A frame that fails ends its replay, not the run;
+   dem_replay_close returns the error. */
 static void demi_films_look(dem_world *w) {
     dem_replay *r;
     for (r = w->look.films; r; r = r->next) {
@@ -410,6 +429,7 @@ static void demi_films_look(dem_world *w) {
     }
 }
 
+/* Removes a replay from the world's list and frees it. */
 static void demi_film_free(dem_replay *r) {
     dem_world *w = r->world;
     dem_replay **at = &w->look.films;
@@ -456,7 +476,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     r->desc = d;
     r->real = real;
     if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
-    r->out.path = r->out.place;                 /* a copy: the caller's may go */
+    r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
     snprintf(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
     if (real >= 0) {
@@ -495,19 +515,19 @@ DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double 
         fputs("}</script>\n", r->out.file);
     }
     r->values[k] = value;
-    r->given[k] = value > -1e300 && value < 1e300;         /* what is no number leaves a gap */
+    r->given[k] = value > -1e300 && value < 1e300;         /* NaN and infinity leave a gap */
     return DEM_OK;
 }
 DEM_API dem_result dem_replay_close(dem_replay *r) {
     dem_result result;
     if (!r || demi_null_write(r->world, "dem_replay_close", r, "replay")) return DEM_ERROR_ARGUMENT;
-    if (r->failed) {                            /* a frame is missing, told when it was asked for */
+    if (r->failed) {                            /* a frame is missing: the file is removed */
         demi_out_drop(&r->out);
         result = demi_film_check(r, "dem_replay_close");
         demi_film_free(r);
         return result;
     }
-    if (!r->frames) {                           /* a film of nothing tells so */
+    if (!r->frames) {                           /* the viewer reports a replay without frames */
         const dem_bodies b = dem_bodies_get(r->world);
         demi_film_resolve(r, &b);
     }

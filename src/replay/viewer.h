@@ -1,7 +1,7 @@
 /* ---------------------------------------------------------------------------------------------
    >>viewer
-   The page that plays a film: examples/replay/viewer.html, where it is to be read and changed,
-   without its indentation and comments. `make viewer` puts it here.
+   The web page that plays a replay, as C strings. It is a copy of examples/replay/viewer.html
+   without indentation and comments. Read and edit that file; `make viewer` copies it here.
    --------------------------------------------------------------------------------------------- */
 /* viewer: begin */
 static const char *const demi_viewer[] = {
