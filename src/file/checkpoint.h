@@ -58,7 +58,7 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
        allocator, allow_large_dt, user pointers). The file holds the values, so that an error
        message can name the field and both values. --- */
 
-enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes of the largest field in the file */
+enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes of a field in the file, at most */
 /* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
    member by member, because the struct has padding. */
 static uint64_t demi_digest_spheres(const void *item) {
@@ -174,8 +174,8 @@ static uint64_t demi_scene_digest(const dem_world *w) {
 
 /* --- the state, visited in the order in which it is checked --- */
 
-/* Visits all numbers that are not in arrays. Written records of outputs are those of the present
-   outputs. */
+/* Visits all numbers that are not in arrays. When writing, the records of outputs are those of the
+   present outputs. */
 static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);

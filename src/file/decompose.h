@@ -18,7 +18,7 @@ typedef struct demi_mould {
     const dem_mesh *mesh;
     const signed char *sign;       /* orientation of each triangle; 0: not counted (>>closed) */
     int n[3], count;               /* points along each axis; all points */
-    double lo[3], step;            /* m: lowest corner of the grid, distance of points */
+    double lo[3], step;            /* m: lowest corner of the grid, distance between points */
     unsigned char *inside;         /* of each point: 1 inside the mesh, 0 outside */
     uint16_t *covered;             /* of each point: number of spheres that contain it */
     int32_t *pick;                 /* candidates: numbers of their points */
@@ -90,8 +90,8 @@ static void demi_mould_cross(demi_mould *m, int triangle) {
 }
 /* With by = 0, returns the gain of adding a sphere of centre c and radius r (m): of the points that
    only this sphere would cover, the number inside the mesh minus the number outside. *right (or
-   null) receives the number inside. With by = 1 or -1, adds the sphere to `covered` or removes it.
-   */
+   null) receives the number inside. With by = 1, adds the sphere to `covered`; with by = -1,
+   removes it. */
 static int demi_mould_gain(demi_mould *m, const double *c, double r, int by, int *right) {
     int from[3], to[3], i[3], e, good = 0, bad = 0;
     for (e = 0; e < 3; e++) {
@@ -162,7 +162,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, demi_d3 lowest, demi_d3 
     for (i = 0; i < DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS; i++) m->most[i] = INT_MAX/2;
     for (i = 0; i < m->mesh->triangle_count; i++) if (m->sign[i]) demi_mould_cross(m, i);
     for (i = 0; i < m->count; i++) inside += m->inside[i];
-    for (i = 0; i < m->count; i++) {            /* at most DEMI_GRAIN_PICKS of them, evenly */
+    for (i = 0; i < m->count; i++) {            /* picks inside points at equal intervals */
         const int64_t now = (int64_t)(seen + 1)*DEMI_GRAIN_PICKS;
         if (!m->inside[i]) continue;
         seen++;

@@ -12,7 +12,7 @@
    against every other. DEMI_OUTLINE_CELLS: cells along a side of the square grid that finds the
    corners near an ear. */
 enum { DEMI_OUTLINE_MOST = 10000, DEMI_OUTLINE_CELLS = 32 };
-/* The face under work. Corners are numbered 0 to count - 1 in the order of the outline. */
+/* The face being cut. Corners are numbered 0 to count - 1 in the order of the outline. */
 typedef struct demi_outline {
     int count;
     int32_t *corner;               /* index of each corner's vertex in the mesh */
@@ -21,7 +21,7 @@ typedef struct demi_outline {
     int32_t first[DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS];  /* first corner in each cell; -1: none */
     double *xy;                    /* count x 2, m: projected, counterclockwise, corner 0 at 0 */
     double lo[2], cell;            /* m: lowest corner of the grid, size of a cell */
-    double near;                   /* m2: a triangle with twice this area or less has none */
+    double near;                   /* m2: a triangle has no area if twice that is at most this */
     double work;                   /* corners and cells that may still be visited */
     int bent, crossed;             /* 1: not flat; 1: an edge crosses another, or it has no area */
 } demi_outline;

@@ -19,8 +19,7 @@ static char *demi_text_copy(dem_world *w, const char *text) {
     if (copy) memcpy(copy, text, size);
     return copy;
 }
-/* Returns where the last run of # in a path begins. *count receives its length, 0 if there is no #.
-   */
+/* Returns where the last run of # in a path begins. *count receives its length, 0 if none. */
 static size_t demi_output_marks(const char *path, size_t *count) {
     size_t end = strlen(path), begin;
     while (end > 0 && path[end - 1] != '#') end--;
@@ -45,7 +44,7 @@ static void demi_output_heading(const dem_output_desc *d, char *heading) {
    no error. */
 static dem_result demi_csv_resume(dem_world *w, const char *path, const char *heading,
                                   double from) {
-    const char *call = "dem_world_step";        /* the call that the user makes again */
+    const char *call = "dem_world_step";        /* the call that fails and is repeated */
     const size_t head = strlen(heading);
     char *data = 0, *line;
     size_t size = 0, keep;
@@ -82,7 +81,7 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     return result;
 }
 /* Appends a line to a CSV file. The first line of a run replaces all lines of an older file. The
-   first line after a checkpoint was read follows the last line that the checkpoint knows of. */
+   first line after a checkpoint was read follows the last line that the checkpoint records. */
 static dem_result demi_output_line(dem_world *w, const demi_output *o, const char *path) {
     const dem_output_desc *d = &o->desc;
     double value[DEM_OUTPUT_COLUMNS];
@@ -236,8 +235,7 @@ static void demi_outputs_again(dem_world *w) {
             }
         }
 }
-/* Returns the part of an error message that says what is wrong with a desc, or null if nothing is.
-   */
+/* Returns the part of an error message that says what is wrong with a desc; null: nothing is. */
 static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
     if ((int)d->kind < 0 || (int)d->kind >= DEMI_OUTPUTS)
         return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";

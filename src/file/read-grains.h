@@ -217,8 +217,8 @@ static dem_result demi_grains_text(demi_text *t, demi_layout *l, dem_grains *g) 
     return result == DEM_OK ? demi_grains_rows(&before, l, between, -1, g) : result;
 }
 /* Reads extended XYZ: a line with the number of grains, then a line that describes the columns as
-   Properties=name:type:columns:name:type:columns and so on, possibly in quotes. t: at the number.
-   */
+   Properties=name:type:columns:name:type:columns and so on, possibly in quotes. t is at the number
+   of grains. */
 static dem_result demi_grains_xyz(demi_text *t, double count, demi_layout *l, dem_grains *g) {
     static const char word[] = "Properties=";
     const size_t n = sizeof word - 1;
@@ -295,8 +295,7 @@ static int demi_numbers_type(demi_numbers *in, const char *name, size_t length) 
         }
     return 0;
 }
-/* True if `count` numbers can be left. A word takes at least two bytes, with the blank before it.
-   */
+/* True if `count` numbers can be left. A word and the blank before it take at least two bytes. */
 static int demi_numbers_there(const demi_numbers *in, double count) {
     return in->text ? 2*count <= (double)(in->text->end - in->text->at) + 1
                     : count*in->size <= (double)(in->end - in->at);

@@ -472,8 +472,7 @@ static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
                  "0.001" : "1000");
 }
 
-/* Fills in the part that depends on neighbouring triangles: edges, duplicates, winding (>>closed).
-   */
+/* Fills in the part that depends on other triangles: edges, duplicates and winding (>>closed). */
 static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
                                     dem_mesh_health *health) {
     demi_closed c;
@@ -495,8 +494,8 @@ typedef struct demi_mesh_format {
     int (*is)(demi_text t);             /* true if the contents look like this format */
     /* reads the text: with fill = 0 it counts and allocates, with fill = 1 it fills the arrays */
     dem_result (*pass)(demi_text t, dem_mesh *mesh, int fill);
-    /* by_place, 1: corners are positions, of which equal ones must be merged; binary, 1: the file
-       may contain bytes that are not text */
+    /* by_place is 1 if corners are positions, of which equal ones must be merged; binary is 1 if
+       the file may contain bytes that are not text */
     int by_place, binary;
 } demi_mesh_format;
 static int demi_stl_is(demi_text t) {
@@ -605,8 +604,7 @@ static size_t demi_file_size(FILE *file) {
     return size < 0 ? DEMI_ENDLESS - 1 : (size_t)size;
 }
 /* Loads a complete file to *bytes, which the caller frees, also after a failure. Stops with an
-   error if there is more than the file's size when it was opened, since a device may have no end.
-   */
+   error if it reads more than the size when the file was opened, since a device may have no end. */
 static dem_result demi_load(dem_world *w, const char *call, const char *path, char **bytes,
                             size_t *size) {
     FILE *file;

@@ -216,7 +216,7 @@ static int demi_domains_check(const demi_reader *r) {
     return 1;
 }
 /* Checks that each body and its slot refer to each other, and that every other slot is in one of
-   the two chains of free slots, once. seen: slot_count zeros. */
+   the two chains of free slots, once. seen: slot_count bytes, all zero. */
 static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
     const dem_world *t = r->t;
     int i, chain, left = t->bodies.slot_count - t->bodies.count;
@@ -270,8 +270,9 @@ static int demi_bodies_sane(const demi_reader *r) {
     return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
-   be among the `count` candidates of this list, ascending; all pairs must be of two spheres
-   (shaped 0), or none (1). Then makes k the candidate's index in the list of all domains. */
+   be among the `count` candidates of this list, ascending. With shaped = 0 all pairs must be of two
+   spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
+   index of the candidate in the list of all domains. */
 static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
                            int end, int shaped) {
     dem_world *t = r->t;
@@ -474,8 +475,7 @@ static int demi_twin_lists_room(dem_world *t) {
             demi_wall_lists_reserve(t, most[3]) &&
             demi_quiet_reserve(t, t->bodies.count));
 }
-/* Computes everything that follows from the state and is not stored. Returns 0 if memory ran out.
-   */
+/* Computes what follows from the state and is not stored. Returns 0 if memory ran out. */
 static int demi_twin_follow(dem_world *t) {
     const demi_periods p = demi_periods_of(t);
     int d, k, l;
@@ -584,7 +584,7 @@ static char *demi_state_keep(dem_world *w, size_t *size) {
 }
 /* Returns a copy of w in the state that demi_state_keep has stored, for trials. It shares w's
    shapes and geometry of walls, for which w->facets_valid must hold, and owns everything else. Null
-   if the state cannot be restored. */
+   if memory ran out or the state is not valid. */
 static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t size) {
     demi_reader r;
     unsigned char *seen = 0;

@@ -38,8 +38,8 @@ static long demi_readlink(const char *path, char *to, size_t size) {
 #endif
 enum { DEMI_LINK = 1024, DEMI_LINKS = 16 };   /* most bytes of a link's target; most links */
 enum { DEMI_SUFFIX = 14 };                      /* bytes of .XXXXXXXX.tmp and the zero */
-/* Replaces `place` by its target as long as it is a link. Returns 0 if a target is too long or the
-   chain of links is: links may form a circle. */
+/* Replaces `place` by its target as long as it is a link. Returns 0 if a target is too long, or
+   after DEMI_LINKS links, because they may form a circle. */
 static int demi_link_follow(char *place, size_t room) {
     char to[DEMI_LINK];
     int i;
@@ -218,7 +218,7 @@ enum { DEMI_GRAIN_COLUMNS = 10 + DEM_BODY_REALS };
    arrays. Otherwise there is one row for each part, such as a member sphere of a cluster. */
 typedef struct demi_drawing {
     int count;                                     /* rows */
-    const dem_real *pos, *vel, *spin;              /* count x 4: m and radius; m/s; rad/s */
+    const dem_real *pos, *vel, *spin;              /* count x 4: m, radius (m); m/s; rad/s */
     const dem_real *orient, *axes;                 /* count x 4; m; null: no orientations */
     const uint32_t *slots;                         /* of the body */
     const int32_t *materials;
@@ -382,8 +382,7 @@ typedef struct demi_lines {
     dem_real *ends, *force, *overlap, *memory;     /* x 6, m; x 3, N; x 1, m; x stride */
     int32_t *wall;                                 /* id; 0: a contact of two bodies */
 } demi_lines;
-/* Adds a contact: a segment from the centre of a to that of b, or to the contact point on a wall.
-   */
+/* Adds a contact: a segment from the centre of a to that of b or to the contact point on a wall. */
 static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *user) {
     demi_lines *l = (demi_lines *)user;
     const demi_periods p = demi_periods_of(l->w);

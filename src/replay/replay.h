@@ -44,8 +44,8 @@ struct dem_replay {
     int real;                        /* index of that number in desc.body_reals, or -1 */
     double resolution;               /* m, of positions; 0: no frame yet */
     demi_seen *seen;                 /* x seen_count: one for each slot */
-    float (*pose)[7];                /* of each wall: the last pose written */
-    int32_t *wall_told;              /* of each place of a wall: the last id written; 0: none */
+    float (*pose)[7];                /* by index of the wall: its pose when last written */
+    int32_t *wall_told;              /* by index of the wall: its id when last written; 0: none */
     unsigned char *bytes;            /* the frame being written, */
     size_t size;                     /* and its length so far */
     int seen_count, wall_count, shape_count, value_count, frames, failed;  /* failed: no memory */
@@ -131,6 +131,7 @@ static void demi_film_reals(FILE *out, const char *name, const dem_real *values,
 
 /* --- blocks before the frames that need them --- */
 
+/* Writes the head: title, resolution, gravity, periods and the name of the user's number. */
 static void demi_film_head(dem_replay *r) {
     const dem_world_desc d = dem_world_desc_get(r->world);
     const demi_periods p = demi_periods_of(r->world);
