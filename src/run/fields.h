@@ -1,12 +1,15 @@
 /* ---------------------------------------------------------------------------------------------
    >>fields
-   Means on a grid. What is there at a place (a grain at its centre, a piece of the line between two
-   centres) is put into the cell it is in, or spread over the cells about it; in a periodic world
-   wherever one of its images is. A field is one array of sums, block after block, so that whoever
-   saves, copies or adds up fields need not know which there are. First how a persistent contact
-   looks to a user: stress is made of all contacts.
+   Fields: averages of grains and contacts on a grid (binning, or coarse graining [GOL10]). A sample
+   adds a grain to the cell of its centre, and the stress of a contact to the cells along its branch
+   vector. With coarse graining it spreads both over the cells nearby. In a periodic world every
+   image inside the grid counts. This part owns w->fields and their sums; it reads bodies and
+   contacts, and completes the half kick of velocities (demi_finish) before it samples grains.
+   A field is one array of sums, block after block, so that checkpoints, copies and slabs treat it
+   as plain numbers. demi_kept_info comes first, since stress needs all contacts.
    --------------------------------------------------------------------------------------------- */
-/* One kept contact, as users see it. */
+/* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
+   users see. */
 static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
     dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
@@ -19,23 +22,27 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_i
     out->overlap = c->overlap;
     out->force = c->force;
 }
-/* Blocks of a field's sums: where each begins, and how many numbers of a cell stand together in
-   it. */
+/* Blocks of a field's sums. The block of constant c begins at c x cells; within it, the numbers of
+   one cell are adjacent (3 of momentum; 6 of flux and of stress: xx yy zz xy xz yz). The last
+   constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist. */
 enum { DEMI_SOLID = 0, DEMI_MASS = 1, DEMI_MOMENTUM = 2, DEMI_GRAINS = 5, DEMI_FLUX = 6,
        DEMI_STRESS = 12, DEMI_CONTACTS = 18, DEMI_FIELD_REALS = 19 };
 static size_t demi_field_cells(const demi_field *f) {
     return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
 }
-/* Numbers in all. */
+/* Returns the length of `sums`. */
 static size_t demi_field_reals(const demi_field *f) {
     return demi_field_cells(f)*(f->desc.stress ? DEMI_FIELD_REALS : DEMI_FLUX);
 }
-/* The same numbers for all that a sample puts into a field. */
+/* The geometry of a field's grid, computed once per sample. */
 typedef struct demi_grid {
     demi_field *field;
-    double lo[3], size[3], period[3];   /* m */
-    double volume, reach, norm;         /* m3, of a cell; m; 1/m3 (planar: 1/m2 over the depth) */
-    int axes;                           /* 2: planar */
+    double lo[3], size[3], period[3];   /* m; period 0: not periodic */
+    /* m3, of a cell; m, radius beyond which Lucy's function of coarse graining is 0; 1/m3, factor
+       of that function (planar: 1/m2, over the depth). Without coarse graining the last two are
+       0. */
+    double volume, reach, norm;
+    int axes;                           /* along which it spreads: 3; planar: 2 */
 } demi_grid;
 static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     const demi_periods p = demi_periods_of(w);
@@ -49,14 +56,14 @@ static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     g.size[1] = ((double)d->box.hi.y - g.lo[1])/d->cells[1];
     g.size[2] = ((double)d->box.hi.z - g.lo[2])/d->cells[2];
     g.volume = g.size[0]*g.size[1]*g.size[2];
-    for (k = 0; k < 3; k++)                     /* in a ring of slabs no world is periodic there */
+    for (k = 0; k < 3; k++)        /* the world of a slab has no period along a ring of slabs */
         g.period[k] = (double)DEMI_MAX(p.period[k], w->ring_period[k]);
     g.axes = w->desc.planar ? 2 : 3;
     g.reach = c = 2*(double)d->width;
     g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*g.size[2]) : 105/(16*DEMI_PI*c*c*c);
     return g;
 }
-/* n numbers into the cell of index `at`, of a block that begins there. */
+/* Adds n numbers, times weight, to the cell of indices `at` in a block that has n per cell. */
 static void demi_cell_add(demi_grid *g, const int *at, int block, int n, const double *value,
                           double weight) {
     const int *cells = g->field->desc.cells;
@@ -66,7 +73,9 @@ static void demi_cell_add(demi_grid *g, const int *at, int block, int n, const d
     int k;
     for (k = 0; k < n; k++) sum[k] += weight*value[k];
 }
-/* Puts n numbers to one image at x: into its cell, or spread over those within reach. */
+/* Adds n numbers at point x (m): to its cell, or by Lucy's function to all cells whose centres are
+   within `reach`, weighted by its value times the volume of a cell. Points outside the grid add
+   nothing to it. */
 static void demi_image_put(demi_grid *g, const double *x, int block, int n, const double *value) {
     const int *cells = g->field->desc.cells;
     int from[3], to[3], at[3], k;
@@ -93,7 +102,8 @@ static void demi_image_put(demi_grid *g, const double *x, int block, int n, cons
                                   g->norm*g->volume*(1 + 3*u)*(1 - u)*(1 - u)*(1 - u));
             }
 }
-/* The same to all images of a place: of an axis without a period there is one. */
+/* Adds n numbers at `place` (m) and at all its periodic images that reach the grid, at most 101
+   along each axis. */
 static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const double *value) {
     const int *cells = g->field->desc.cells;
     double x[3], first[3], last[3], at[3];
@@ -105,7 +115,7 @@ static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const 
         if (!(P > 0)) continue;
         first[k] = ceil((g->lo[k] - g->reach - x[k])/P);
         last[k] = DEMI_MIN(floor((hi + g->reach - x[k])/P), first[k] + 100);
-        /* a field as long as the period: its end is its begin */
+        /* if the field is as long as the period, its upper end is its lower end */
         if (!(g->reach > 0) && x[k] + last[k]*P >= hi) last[k]--;
     }
     for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
@@ -116,12 +126,13 @@ static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const 
                 demi_image_put(g, image, block, n, value);
             }
 }
-/* Is body i one that the field counts? */
+/* True if the field includes body i, by material and radius. */
 static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
     const dem_real r = w->bodies.pos[4*i + 3];
     return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
            (!(d->radius_max > 0) || r <= d->radius_max);
 }
+/* Adds grain i: volume, mass, momentum and number; with desc.stress the flux m v v. */
 static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
     const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
     const double v[3] = {(double)w->bodies.vel[4*i], (double)w->bodies.vel[4*i + 1],
@@ -144,8 +155,10 @@ static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
     flux[4] = m*v[0]*v[2]/g->volume; flux[5] = m*v[1]*v[2]/g->volume;
     demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_FLUX, 6, flux);
 }
-/* A contact of bodies a and b (-1: a wall), force on a, branch from a's centre to b's or to the
-   wall: force x -branch along that line, in pieces; and one contact more for each. */
+/* Adds a contact of bodies a and b (-1: a wall): its stress, and 1 to the number of contacts of
+   each grain. force: N, on a. branch: m, from the centre of a to that of b, or to the contact point
+   on a wall. The stress is the symmetric part of force x (-branch) over the volume of a cell; it is
+   divided equally among eight points of the branch. */
 static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, dem_vec3 force,
                             dem_vec3 branch) {
     const int pieces = 8;
@@ -163,7 +176,7 @@ static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, de
     part[5] = (f[1]*l[2] + f[2]*l[1])/2;
     for (k = 0; k < 6; k++) part[k] /= pieces*g->volume;
     for (k = 0; k < pieces; k++) {
-        /* of two grains, each answers for the half that begins at its centre */
+        /* each of two grains accounts for the half of the branch on its side */
         if (b >= 0 && k < pieces/2 ? !is_a : b >= 0 ? !is_b : !is_a) continue;
         demi_grid_put(g, demi_add(from, demi_scale(branch, (dem_real)((k + 0.5)/pieces))),
                       DEMI_STRESS, 6, part);
@@ -171,6 +184,8 @@ static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, de
     if (is_a) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
     if (is_b) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
 }
+/* Adds all contacts of the world: sphere pairs of the pruned neighbour list, then persistent
+   contacts. */
 static void demi_field_contacts(const dem_world *w, demi_grid *g) {
     dem_contact_info info;
     dem_vec3 branch;
@@ -190,12 +205,13 @@ static void demi_field_contacts(const dem_world *w, demi_grid *g) {
         }
     }
 }
-/* Does it want a sample now? */
+/* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
 }
-/* All fields that want a sample now: contacts by the velocities of the forces just worked out,
-   which are predicted, and which slabs have told each other; grains by those of the full step. */
+/* Samples all fields that are due. Contacts come first, while velocities are still the predicted
+   ones: the present forces were computed from them, and slabs have exchanged them. demi_finish then
+   completes the half kick, and grains are sampled with the velocities of the full step. */
 static void demi_fields_sample(dem_world *w) {
     int f, i, any = 0;
     for (f = 0; f < w->field_count; f++) {
@@ -219,7 +235,7 @@ static void demi_fields_sample(dem_world *w) {
     }
 }
 
-/* Checked in dem_field_add. */
+/* Fields of dem_field_desc, as checkpoints store and compare them; dem_field_add checks limits. */
 static const demi_field_row demi_field_rows[] = {
     DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
     DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
@@ -267,7 +283,7 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     id.id = w->field_count;
     return id;
 }
-/* From an id to a field, or a sentence in the name of `call`. */
+/* Returns the field of an id, or null with an error message in the name of `call`. */
 static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
     if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d; check the id "
