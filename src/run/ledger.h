@@ -1,11 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>ledger
-   Where the energy went. Laws add what they dissipate and store; moves add the work of gravity and
-   fields; walls the work they do. The springs in the tangent planes are the odd one out: what they
-   took in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the
-   contact.
+   The account of energy (desc.ledger), and totals of mass, momentum and kinetic energy. Contact
+   laws report what they dissipate and store; the step computes the work of gravity, of force fields
+   and of walls. This part sums them in w->booked: supplied and dissipated energy since the world
+   was created, and the energy stored now. Tangential dissipation is not reported but follows as a
+   remainder: the work done against the tangential force, minus what sliding dissipated, minus what
+   tangential springs hold now. It contains the losses of tangential dashpots, and the energy that a
+   spring held when its contact ended.
    --------------------------------------------------------------------------------------------- */
-/* J, of all that moves. */
+/* Computes the kinetic and the rotational energy (J) of all bodies that can move. */
 static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
     int i;
     *kinetic = *rotational = 0;
@@ -18,8 +21,10 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
         *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
-/* After a force evaluation: adds the domains' flows to the totals; stored energies replace the
-   last. */
+/* Closes the account of a step with springs, when its forces are known. Adds the work and losses of
+   all domains (work groups) and of walls to the totals, and replaces the stored energies. With a
+   user-defined law, DEMI_E_TOLD sums the magnitudes of all that the law reports; while it is 0, the
+   law does not fill force->energy. Does nothing unless desc.ledger is set. */
 static void demi_ledger_book(dem_world *w) {
     static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL,
                                 DEMI_E_FORCE};
