@@ -1,15 +1,19 @@
 /* ---------------------------------------------------------------------------------------------
    >>responses
-   The table of responses: what springs do and what impulses do where a step, or whoever looks at
-   contacts, calls the response in force. Their traits: DEMI_RESPONSES in >>layout.
+   The table of responses: the functions by which springs (soft contacts) and impulses (rigid
+   contacts, non-smooth dynamics) settle the time step, compute contact forces, account for energy
+   and show a contact to users. A step and the functions that read contacts call the row of
+   w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Owns no data.
    --------------------------------------------------------------------------------------------- */
-/* Springs: forces of all contacts that a domain owns, one after the other. */
+/* Springs: computes the forces of all contacts that domain d owns: first pairs of spheres, by the
+   kernel of the laws in force, then persistent contacts. */
 static void demi_springs(dem_world *w, int d) {
     w->kernel(w, d);
     demi_kept_clear(w, d);
     demi_kept_respond(w, d);
 }
-/* One near pair, if it touches: its force by the law of the run, on a copy of its history. */
+/* Springs: `info` of demi_response_row. Computes the force of one pair of the pruned neighbour list
+   again, by the laws of the run and on a copy of its contact history, so that nothing changes. */
 static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info *out,
                              dem_vec3 *gap) {
     demi_run r = demi_run_of(w, 0, w->effects.uniform);
@@ -20,7 +24,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     dem_contact_force f;
     demi_calling was;
     int e;
-    tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
+    tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
     *gap = demi_rows_at(&tile.gap, 0);
@@ -43,24 +47,27 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     return 1;
 }
 
+/* One response. A null function means that nothing has to be done. */
 typedef struct demi_response_row {
-    dem_result (*settle)(dem_world *w);         /* the time step of the scene as it is */
-    int (*room)(dem_world *w);                  /* for the contacts found; 0: memory ran out */
-    void (*respond)(dem_world *w, int domain);  /* forces of a domain's contacts, */
+    dem_result (*settle)(dem_world *w);         /* checks or chooses the time step */
+    int (*room)(dem_world *w);                  /* makes room for contacts; 0: memory ran out */
+    void (*respond)(dem_world *w, int domain);  /* computes the forces of a domain's contacts, */
     void (*solve)(dem_world *w);                /* or of all contacts at once */
-    void (*book)(dem_world *w);                 /* work and losses, after the forces of a step */
-    /* normal, overlap and force of entry p of a domain's near list, and the way from a's centre to
-       b's; without `out` nothing but the answer. 0: the two do not act on each other */
+    void (*book)(dem_world *w);                 /* adds work and losses of a step to the ledger */
+    /* Returns 1 if the two bodies of entry p in a domain's pruned neighbour list act on each other,
+       or 0. If it returns 1 and `out` is not null, it also writes normal, overlap and force to
+       `out`, and the vector from the centre of a to that of b (m) to *gap. */
     int (*info)(const dem_world *w, int domain, int p, dem_contact_info *out, dem_vec3 *gap);
 } demi_response_row;
 #define DEMI_RESPONSE_ROW(NAME, MEMORY, VECTORS, TRAITS, ...) {__VA_ARGS__},
 static const demi_response_row demi_responses[] = {DEMI_RESPONSES(DEMI_RESPONSE_ROW)};
-/* Settles the time step before stepping, unless it suits the scene already. */
+/* Settles the time step of the response in force, unless that has been done for this scene. */
 static dem_result demi_dt_settle(dem_world *w) {
     return w->stage.dt_valid ? DEM_OK : demi_responses[w->desc.response].settle(w);
 }
-/* Entry p of the near list of domain d as users see it; unless null, *branch receives the way from
-   a's centre to b's. 0: the two do not act on each other. */
+/* Writes the contact of entry p in the pruned neighbour list of domain d in the form that users
+   see, and returns 1; returns 0 if the two bodies do not act on each other. out: or null, to learn
+   only that. *branch, unless null, receives the vector from the centre of a to that of b, m. */
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
                               dem_vec3 *branch) {
     const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)p;
