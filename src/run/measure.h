@@ -1,6 +1,10 @@
 /* ---------------------------------------------------------------------------------------------
    >>measure
-   Looking at a world without changing it: counters, contacts, the digest.
+   Measurements of the present state: counters, contacts, blinded grains of a sieve, the angle of
+   repose, and the digest of a world. Functions that take the world as const change nothing that a
+   step uses; dem_contacts_each and dem_bonds_make compute forces first if the scene has changed,
+   and let the user change contact histories. Owns no data of the world; what the angle of repose
+   needs is allocated and freed within the call.
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_counters dem_counters_get(const dem_world *w) {
     dem_counters c;
@@ -15,7 +19,8 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
         for (k = 0; k < w->domains[d].kept && pressing; k++) {
-            const demi_kept *kept = demi_kept_of(w, d) + k;     /* corners: one contact of four */
+            /* a polyhedron presses on a wall at up to four points: one contact */
+            const demi_kept *kept = demi_kept_of(w, d) + k;
             c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
         }
     }
@@ -53,7 +58,8 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     }
     return n;
 }
-/* Contacts of now: of a list and of forces that fit the scene. */
+/* Brings the contacts up to date if the scene has changed since the last step: the time step, the
+   neighbour list if necessary, and forces at the present time. */
 static dem_result demi_contacts_settle(dem_world *w) {
     const demi_stages *s = &w->stage;
     dem_result result;
@@ -104,7 +110,8 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     if (changed) demi_scene_changed(w);
     return n;
 }
-/* What dem_bonds_make hands on. */
+/* What dem_bonds_make passes to demi_bond_make: the user's function and its argument, the largest
+   gap (m), and the number of pairs so far. */
 typedef struct demi_bonds { dem_contact_fn make; void *user; dem_real gap; int count; } demi_bonds;
 static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
     demi_bonds *b = (demi_bonds *)user;
@@ -133,10 +140,11 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
     return dem_contacts_each(w, demi_bond_make, &b) < 0 ? -1 : b.count;
 }
 
-/* Digest of contact memory, reals a `stride` apart, turned round or not. Told is what is not 0 and
-   belongs to an effect of the scene, with a number that does not depend on which other laws are in
-   force: so it does not matter whether a list has been made since friction came or went. *any: is
-   there something to tell? */
+/* Extends the digest h by one contact history, whose reals are `stride` apart. flip: components of
+   vectors change their sign, since the other body is a. Only reals that are not 0 and belong to an
+   effect of the scene count, each with a number that does not depend on which other laws are in
+   force. So the digest is the same whether or not the neighbour list has been rebuilt since
+   friction was added or removed. *any receives 1 if at least one real counts, otherwise 0. */
 static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory,
                                  size_t stride, int flip, int *any) {
     const demi_laws *laws = &w->laws;
@@ -161,7 +169,8 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     }
     return h;
 }
-/* Memory of two spheres, the same whichever of them is a; 0 when there is nothing to remember. */
+/* Returns the digest of the contact history of two spheres in slots sa and sb, the same whichever
+   of them is a; 0 if the history is empty. */
 static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
                                  const dem_real *memory, size_t stride) {
     const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
@@ -170,9 +179,10 @@ static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
     one = demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, stride, sa > sb, &any);
     return any ? one : 0;
 }
-/* Digest of one contact, whichever of its bodies is a. */
+/* Returns the digest of one persistent contact, the same whichever of its bodies is a. While there
+   is no neighbour list, such a contact names slots instead of indices. */
 static uint64_t demi_kept_hash(const dem_world *w, const demi_kept *c) {
-    const int pushes = c->share > 0, slots = !w->stage.list_valid;   /* while there is no list */
+    const int pushes = c->share > 0, slots = !w->stage.list_valid;
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
     int i, flip;
@@ -185,8 +195,9 @@ static uint64_t demi_kept_hash(const dem_world *w, const demi_kept *c) {
     h = demi_hash(h, &pushes, sizeof pushes);
     return demi_memory_hash(w, h, c->memory, 1, flip, &i);
 }
-/* Contacts as a sum of their own digests, in which neither their order tells nor whether there is a
-   list or they are on their way to the next one. */
+/* Extends the digest h by all contact histories. It uses the sum of their individual digests, so
+   neither the order of contacts matters, nor whether there is a neighbour list. While there is
+   none, the histories of sphere pairs are in w->filed, by slot. */
 static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
     uint64_t sum = 0;
     int d, k, i;
@@ -214,8 +225,9 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
     return demi_hash(h, &sum, sizeof sum);
 }
 
-/* Contact k of domain d: whose it is; and when it is one with this wall, 1, its normal and its
-   friction. */
+/* Returns 1 if persistent contact k of domain d touches this wall, otherwise 0. *body receives the
+   body of the contact, *normal its unit normal (body to wall), *mu the static friction of that body
+   and the wall. */
 static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
                            dem_real *mu) {
     const demi_kept *c = demi_kept_of(w, d) + k;
@@ -224,9 +236,10 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
     *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
     return c->b < 0 && c->wall == wall && c->overlap > 0;
 }
-/* Contacts of one grain follow each other. Stuck: two of them push against each other in the
-   sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
-   |n_z| <= mu |n_xy|. */
+/* The contacts of one grain are adjacent in the list. A grain is stuck if two of its contacts with
+   the sieve oppose each other and friction holds both: the components n_xy of their normals in the
+   plane of the sieve have a scalar product below -0.25, and both normals lie within the friction
+   angle of that plane, |n_z| <= mu |n_xy|. */
 DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real speed) {
     if (demi_null_look(w, "dem_sieve_blinded_get", w, "world")) return -1;
     const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded_get", sieve);
@@ -244,7 +257,7 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].kept;
-        int last = -1;                          /* the grain counted last: once is enough */
+        int last = -1;                          /* the grain counted last: counted only once */
         for (k = 0; k < all; k++) {
             dem_vec3 v, flat;
             dem_real z;
@@ -269,18 +282,22 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     return count;
 }
 
-/* A surface seen along two level directions: cells about a mean diameter wide, in each the top of
-   the highest grain there. */
+/* The free surface of a heap or of the charge of a drum, as heights over a horizontal grid. Rows
+   follow each other in the direction of the slope, a mean grain diameter wide; columns divide each
+   row across it. A cell holds the top of its highest grain. */
 typedef struct demi_surface {
-    dem_vec3 centre, out, along, up;   /* m; unit */
-    int around;                        /* a heap: rows by distance from the centre, to which the
-                                          nearest image of each grain counts */
-    double width, from;                /* m: of a cell; where the first row begins */
+    /* m, origin; unit vectors: horizontal, across rows (in a drum the direction in which its bottom
+       moves); horizontal, along rows (in a drum its axis); against gravity */
+    dem_vec3 centre, out, along, up;
+    int around;                        /* 1: a heap, rows by distance from the vertical through
+                                          `centre`, columns by angle; uses nearest images */
+    double width, from;                /* m: of a row; where the first row begins */
     int rows, columns;
-    double *top;                       /* rows x columns, m above the lowest grain; < 0: nobody */
-    int32_t *root, heap;               /* bodies: of which heap; -1: none. The one that is meant */
+    double *top;                       /* rows x columns, m above the lowest grain; < 0: empty */
+    int32_t *root, heap;               /* of each body: a body that names its heap, -1: none; the
+                                          name of the heaviest heap, the one measured */
 } demi_surface;
-/* The mean height of a row, over the columns where there is somebody; < 0: nobody. */
+/* Returns the mean height (m) of a row over its columns that are not empty; -1 if all are. */
 static double demi_surface_row(const demi_surface *s, int row) {
     double sum = 0;
     int k, n = 0;
@@ -290,7 +307,8 @@ static double demi_surface_row(const demi_surface *s, int row) {
     }
     return n ? sum/n : -1;
 }
-/* The line through rows first .. last - 1. 0: too few. */
+/* Fits a straight line to the heights of rows first .. last - 1 by least squares and writes its
+   angle, standard error and number of points. Returns 0 if fewer than four rows have grains. */
 static int demi_surface_line(const demi_surface *s, int first, int last, dem_repose *out) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, slope, rest;
     int k;
@@ -308,7 +326,7 @@ static int demi_surface_line(const demi_surface *s, int first, int last, dem_rep
     out->places = (int)n;
     return 1;
 }
-/* Is grain i at x in the box, if there is one, and can it move? */
+/* True if grain i, at x, can move and is inside the box; a box of size 0 means everywhere. */
 static int demi_repose_sees(const dem_world *w, dem_box b, int i, dem_vec3 x) {
     const dem_vec3 size = demi_sub(b.hi, b.lo);
     if (!(w->bodies.inv_mass[i] > 0)) return 0;
@@ -316,12 +334,14 @@ static int demi_repose_sees(const dem_world *w, dem_box b, int i, dem_vec3 x) {
     return x.x >= b.lo.x && x.x <= b.hi.x && x.y >= b.lo.y && x.y <= b.hi.y && x.z >= b.lo.z &&
         x.z <= b.hi.z;
 }
+/* Returns the body that names the heap of body i (union-find with path halving). */
 static int32_t demi_heap_of(int32_t *root, int32_t i) {
     while (root[i] != i) i = root[i] = root[root[i]];
     return i;
 }
-/* Puts grain i into one heap with those whose gap to it is below half the mean radius; across
-   periodic faces too. */
+/* Joins the heap of grain i with those of all grains whose gap to it is below half the mean radius
+   of the two, also across periodic faces. tree: the centres of all bodies; most: m, the largest
+   radius. */
 static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, double most,
                            int32_t *root) {
     const double r = (double)w->bodies.pos[4*i + 3];
@@ -347,8 +367,9 @@ static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, dou
         }
     }
 }
-/* The heaps that the grains in the box form, and which is the heaviest: single grains that ran
-   away, or that fly, are of none. 0 when memory ran out. */
+/* Finds the heaps that the grains in the box form, and the heaviest of them: s->root and s->heap.
+   Grains that ran away or fly form small heaps of their own, which are not measured. Returns 0 if
+   memory runs out. */
 static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
     const demi_periods p = demi_periods_of(w);
     const int n = w->bodies.count;
@@ -377,7 +398,8 @@ static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
     demi_free(w, mass);
     return ok;
 }
-/* Row and column of a grain, and how high its top is. */
+/* Computes the row and column of grain i, and returns the height of its top above s->centre, m. The
+   row is a double, because a grain far away may have a number that no int holds. */
 static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, double *row,
                                  int *column) {
     const demi_periods p = demi_periods_of(w);
@@ -385,16 +407,16 @@ static double demi_surface_place(const dem_world *w, const demi_surface *s, int 
     const dem_vec3 d = s->around ? demi_nearest(&p, to) : to;
     const double x = (double)demi_dot(d, s->out), y = (double)demi_dot(d, s->along);
     const double far = s->around ? sqrt(x*x + y*y) : x;
-    const double n = s->columns, across = floor(y/s->width);     /* rows more than ints hold */
+    const double n = s->columns, across = floor(y/s->width);
     const double at = s->around ? (demi_atan2(y, x)/(2*DEMI_PI) + 0.5)*n
         : across - n*floor(across/n);
     *row = floor((far - s->from)/s->width);
     *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
     return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
 }
-/* m: the centre of mass of the heap, across periodic faces too. A period is a circle, on which the
-   mean direction of the grains gives a point in their midst. Then the images nearest to it
-   count. */
+/* Returns the centre of mass (m) of the heap, also if it extends across periodic faces. Along a
+   periodic axis, positions are mapped to a circle; the mean direction on it gives a point in the
+   middle of the grains. The centre of mass is then that of the images nearest to this point. */
 static dem_vec3 demi_heap_centre(const dem_world *w, const demi_surface *s) {
     const demi_periods p = demi_periods_of(w);
     double mass = 0, mean[3] = {0, 0, 0};
@@ -419,8 +441,9 @@ static dem_vec3 demi_heap_centre(const dem_world *w, const demi_surface *s) {
     }
     return mass > 0 ? demi_add(midst, demi_scale(sum, (dem_real)(1/mass))) : midst;
 }
-/* Looks at the grains of the heap: a surface with the heights above its lowest grain. 0: no memory;
-   top is null where there are no grains. */
+/* Measures the free surface of the heap: width, rows, columns and heights above its lowest grain.
+   Returns 0 if memory runs out. `top` stays null, and there is no surface, if the heap has no
+   grains or one of them is 1e5 rows away. */
 static int demi_surface_look(dem_world *w, demi_surface *s) {
     double diameter = 0, lowest = 1e300, least = 1e300, most = -1e300, row;
     int i, column, count = 0;
@@ -437,7 +460,7 @@ static int demi_surface_look(dem_world *w, demi_surface *s) {
         count++;
     }
     if (!count) return 1;
-    s->width = diameter/count;                  /* rows were metres till now */
+    s->width = diameter/count;                  /* until here rows were 1 m wide */
     for (i = 0; i < w->bodies.count; i++) {
         if (s->root[i] != s->heap) continue;
         demi_surface_place(w, s, i, &row, &column);
@@ -445,7 +468,7 @@ static int demi_surface_look(dem_world *w, demi_surface *s) {
         most = DEMI_MAX(most, row);
     }
     s->from = least*s->width;
-    if (!(most - least < 1e5)) return 1;        /* a grain is far off: no surface */
+    if (!(most - least < 1e5)) return 1;        /* a grain is too far away: no surface */
     s->rows = (int)(most - least) + 1;
     s->columns = w->desc.planar ? (s->around ? 2 : 1) : s->around ? 12 : 16;
     s->top = (double *)demi_alloc(w, (size_t)s->rows*(size_t)s->columns, sizeof(double));
@@ -461,7 +484,9 @@ static int demi_surface_look(dem_world *w, demi_surface *s) {
     }
     return 1;
 }
-/* What both have in common: world, gravity, box; level directions by `axis`, or any. */
+/* Begins both measurements of an angle of repose: checks gravity and box, sets the directions of
+   the surface, and finds the heaps. axis: of a drum; (0, 0, 0) takes any horizontal direction, in a
+   planar world z. On an error nothing is left to free. */
 static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box, dem_vec3 axis,
                                     demi_surface *s) {
     const double g = (double)demi_length(w->desc.gravity);
@@ -474,7 +499,7 @@ static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box,
     s->up = demi_scale(w->desc.gravity, (dem_real)(-1/g));
     demi_frame_of(R, s->up);
     s->along = demi_v(R[0], R[3], R[6]);
-    if (demi_dot(axis, axis) > 0) {             /* its level part */
+    if (demi_dot(axis, axis) > 0) {             /* its horizontal part */
         s->along = demi_sub(axis, demi_scale(s->up, demi_dot(axis, s->up)));
         if (!(demi_dot(s->along, s->along) > DEM_R(0.01)*demi_dot(axis, axis)))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is vertical, must be "
@@ -482,12 +507,13 @@ static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box,
                              (double)axis.x, (double)axis.y, (double)axis.z);
         s->along = demi_unit(s->along);
     } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
-    s->out = demi_cross(s->up, s->along);       /* where the shell goes at the bottom */
+    s->out = demi_cross(s->up, s->along);       /* motion of the drum at its bottom */
     if (demi_heaps(w, box, s)) return DEM_OK;
     demi_free(w, s->root);
     return demi_no_memory(w, call);
 }
-/* Frees the surface; good: 1, 0: too few places, -1: no memory. */
+/* Ends both measurements: frees the surface and returns the result. good: 1 the line was fitted, 0
+   too few points, -1 memory ran out. */
 static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *s, int good) {
     int i, all = 0, heap = 0;
     for (i = 0; i < w->bodies.count; i++) {
@@ -505,7 +531,7 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
 }
 DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_repose *out) {
     const char *call = "dem_repose_heap_get";
-    dem_world *w = (dem_world *)world;          /* its sentence, and memory for a while */
+    dem_world *w = (dem_world *)world;          /* for error messages and temporary memory */
     demi_surface s;
     double highest = 0;
     dem_result result;
@@ -518,13 +544,13 @@ DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_
     s.around = 1;
     if (!demi_surface_look(w, &s)) good = -1;
     for (i = 0; s.top && i < s.rows; i++) highest = DEMI_MAX(highest, demi_surface_row(&s, i));
-    /* outward from the last row of 80 % to the first of 20 % */
+    /* outward from the last row above 80 % of the height to the first below 20 % */
     for (first = 0, i = 0; s.top && i < s.rows; i++)
         if (demi_surface_row(&s, i) > 0.8*highest) first = i;
     for (last = first; s.top && last < s.rows; last++)
         if (!(demi_surface_row(&s, last) >= 0.2*highest)) break;
     if (s.top) good = demi_surface_line(&s, first, last, out);
-    out->angle = -out->angle;                   /* it falls outward */
+    out->angle = -out->angle;                   /* the slope of a heap falls outward */
     return demi_repose_end(w, call, &s, good);
 }
 DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
@@ -546,8 +572,8 @@ DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_
     return demi_repose_end(w, call, &s, good);
 }
 
-/* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
-   contact memory as a sum over contacts of their own digests, for the same reason. */
+/* Bodies enter the digest in the order of their slots and contact histories as a sum of individual
+   digests, so that it does not depend on the order of bodies or contacts in the arrays. */
 DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
     if (demi_null_look(w, "dem_world_hash_get", w, "world")) return 0;
     const demi_periods p = demi_periods_of(w);
@@ -558,7 +584,7 @@ DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
         const int b = w->bodies.slot_index[i];
         dem_real x[4];
         if (b < 0) continue;
-        /* a new list puts them there */
+        /* positions inside the periodic box, where the next rebuild of the list puts them */
         demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*b)));
         x[3] = w->bodies.pos[4*b + 3];
         h = demi_hash(h, &i, sizeof i);
