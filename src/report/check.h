@@ -1,12 +1,17 @@
 /* ---------------------------------------------------------------------------------------------
    >>check
-   What is likely to be wrong with a scene, before it runs. Each function looks for mistakes of one
-   kind and puts a sentence in for each. Limits are such that scenes of practice pass: grains from
-   0.1 um to 0.5 m, matter from foam to osmium, moduli softened to 1e4 Pa.
+   Validation of a scene before it runs (dem_world_check). Each function looks for likely mistakes
+   of one kind and adds a finding, a message with a severity, for each. This part reads the scene
+   and changes none of it. Where contacts are needed, it rebuilds the neighbour list and detects
+   contacts with walls, as a run would do first. The limits let practical scenes pass: grains from
+   0.1 um to 0.5 m, densities from foam to osmium, moduli softened down to 1e4 Pa.
    --------------------------------------------------------------------------------------------- */
 
-/* The most severe of all findings; what is found first comes first among its like. */
+/* The caller's array of findings, sorted by descending severity. Findings of the same severity keep
+   the order in which they were found. room: length of the array; kept: findings in it; count: all
+   findings, those without room included. */
 typedef struct demi_findings { dem_finding *to; int room, kept, count; } demi_findings;
+/* Adds a finding. If the array is full, the least severe one is dropped. */
 static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...)
     DEMI_FORMAT(3, 4);
 static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...) {
@@ -23,7 +28,8 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     va_end(arguments);
 }
 
-/* Units and sizes of matter. */
+/* Checks materials: values that suggest other units, materials without use; and the number of
+   threads. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
     int used[DEMI_MATERIALS], i, k;
     memset(used, 0, sizeof used);
@@ -66,6 +72,8 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
         demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more threads "
                   "make the run slower", w->desc.threads, demi_threads_available());
 }
+/* Computes the smallest and the largest (bounding) radius of all bodies, m; 1e300 and 0 if there
+   are none. */
 static void demi_radii_of(const dem_world *w, double *least, double *most) {
     int i;
     *least = 1e300;
@@ -85,9 +93,10 @@ static void demi_check_radii(const dem_world *w, demi_findings *f) {
         demi_find(f, DEM_SEVERITY_WARNING, "the smallest grain has a radius of %g m: below 1e-7 m "
                   "attraction and thermal motion outweigh the forces simulated here", least);
 }
-/* Places are numbers of so many digits: far from the origin too few are left for overlaps, which
-   are thousandths of a radius. A bead that rebounds from a plane in single precision is off by 1 %
-   where places are 2e-4 radii apart, by 5 % at 2e-3, and sticks fast at 2e-2. */
+/* Checks the resolution of positions. A floating-point position far from the origin has too few
+   digits left for overlaps, which are thousandths of a radius. In single precision the rebound of a
+   bead from a plane is wrong by 1 % if adjacent positions are 2e-4 radii apart, and by 5 % at 2e-3;
+   at 2e-2 the bead sticks to the plane. */
 static void demi_check_digits(const dem_world *w, demi_findings *f) {
     const double digit = DEMI_SINGLE ? 1.1920929e-7 : 2.220446e-16;
     double worst = 0;
@@ -109,8 +118,9 @@ static void demi_check_digits(const dem_world *w, demi_findings *f) {
                   DEMI_SINGLE ? ", or use double precision" : "");
 }
 
-/* m, how far along n (unit) from the origin a wall may stop what comes that way; 1e300: without
-   end, -1e300: nowhere (a plane seen along itself or from behind, a tube through its opening). */
+/* Returns the largest coordinate (m) along the unit vector n up to which a wall can stop a body
+   that moves along n. 1e300: it is infinite in that direction. -1e300: it stops nothing (a plane
+   parallel to n or seen from behind, a tube or profile seen along its axis). */
 static double demi_wall_far(const demi_wall *wall, dem_vec3 n) {
     const dem_vec3 own = demi_unrotate(wall->pose.rotation, n);
     const int drawn = demi_wall_is(wall, DEMI_DRAWN);
@@ -126,13 +136,15 @@ static double demi_wall_far(const demi_wall *wall, dem_vec3 n) {
     else if (demi_wall_is(wall, DEMI_BALLS)) far += (double)wall->radius;
     return far + (double)demi_dot(wall->pose.position, n);
 }
-/* m, the longest side of its box, or its diameter. */
+/* Returns the size of a wall, m: the longest side of its box, or its diameter if it has no
+   vertices. */
 static double demi_wall_size(const demi_wall *wall) {
     const dem_vec3 box = demi_sub(wall->box.hi, wall->box.lo);
     if (!wall->vertex_count) return 2*(double)wall->extent;
     return (double)DEMI_MAX(box.x, DEMI_MAX(box.y, demi_wall_is(wall, DEMI_DRAWN) ? 0 : box.z));
 }
-/* Does anything move, and does anything stop it? */
+/* Checks that something can move, that something makes it move, and that gravity does not let it
+   fall for ever. */
 static void demi_check_motion(const dem_world *w, demi_findings *f) {
     const dem_vec3 g = w->desc.gravity;
     const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
@@ -166,11 +178,12 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
                   "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
 }
 
-/* Is a wall with ends all behind some plane, or beyond a face where grains leave? */
+/* True if the whole of a finite wall is behind some plane or beyond an outflow face of the domain,
+   so that no grain can reach it. */
 static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
     double lo[3], hi[3];
     int k;
-    if (demi_wall_is(wall, DEMI_DRAWN)) return 0;       /* it goes on and on */
+    if (demi_wall_is(wall, DEMI_DRAWN)) return 0;       /* infinite along its own z */
     demi_domain_limits(w, lo, hi);
     for (k = 0; k < w->wall_count; k++) {
         const demi_wall *plane = &w->walls[k];
@@ -186,7 +199,7 @@ static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
     }
     return 0;
 }
-/* Sizes and places of walls, beside those of grains. */
+/* Checks walls: size compared with that of grains, and whether grains can reach them. */
 static void demi_check_walls(const dem_world *w, demi_findings *f) {
     double least, most;
     int i;
@@ -210,7 +223,8 @@ static void demi_check_walls(const dem_world *w, demi_findings *f) {
     }
 }
 
-/* Grains inside each other, in walls, or out of the domain. Needs lists. */
+/* Checks for pairs of bodies that overlap by more than 1 % of the smaller radius; pairs of fixed
+   bodies are exempt. Needs a valid neighbour list. */
 static void demi_check_pairs(const dem_world *w, demi_findings *f) {
     double worst = 0.01;
     int d, k, cross, count = 0, who[2] = {0, 0};
@@ -240,10 +254,12 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
                   "farther apart", count, count > 1 ? "s" : "",
                   count > 1 ? "" : "s", who[0], who[1], worst);
 }
+/* Checks for bodies that overlap walls by more than 1 % of their radius. Detects contacts
+   (demi_touch), and discards them afterwards. Needs a valid neighbour list. */
 static void demi_check_in_walls(dem_world *w, demi_findings *f) {
     double worst = 0.01;
     int d, k, count = 0, body = 0, wall = 0;
-    if (!demi_touch(w)) return;                 /* no memory: the run will say so */
+    if (!demi_touch(w)) return;                 /* no memory: the run will report it */
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].kept_next; k++) {
             const demi_kept *c = w->kept_next + w->kept_first[d] + k;
@@ -261,6 +277,7 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
                   "%.3g of its radius: move it, or does the normal (inside) of the wall point the "
                   "wrong way?", count, count > 1 ? "s" : "", body, wall, worst);
 }
+/* Checks for bodies whose centre is beyond an outflow face of the domain. */
 static void demi_check_outside(const dem_world *w, demi_findings *f) {
     double lo[3], hi[3];
     int i, k, count = 0;
@@ -279,33 +296,37 @@ static void demi_check_outside(const dem_world *w, demi_findings *f) {
 }
 
 /* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
-       thin: both sides push, so that grains inside a solid body touch nothing and stay there
-       unseen. A closed container has all grains inside; where some are inside and some are not,
-       one of the two was not meant. A shell is closed if an even number of its facets meets at
-       each edge (of profiles: at each end), also if the facets belong to several walls that do not
-       move against each other. A place is inside if a line from it crosses the shell an odd number
-       of times. --- */
+       thin shells that repel grains on both sides. Grains inside a body that was meant to be solid
+       therefore touch nothing and stay there unnoticed. A closed container has all grains inside;
+       if some grains are inside and others are not, one of the two is most likely a mistake. A
+       shell is closed if an even number of its facets shares each edge (of profiles: each end
+       point); the facets may belong to several walls that do not move against each other. A point
+       is inside if a ray from it crosses the shell an odd number of times. --- */
+/* A point that is tested: the centre of a grain, a point of a feed's region, or a periodic image of
+   either. */
 typedef struct demi_probe {
-    double x[3];                   /* m, where the surface was when its motion began */
-    int odd, turn;                 /* crossings: is their number odd; sum of their directions */
-    int feed;                      /* 0: a grain; else a place of this feed's region */
-    int owner;                     /* its images have the same */
+    double x[3];                   /* m, as seen from the surface before its motion began */
+    int odd, turn;                 /* ray: 1 after an odd number of crossings; sum of their signs */
+    int feed;                      /* 0: a grain; otherwise the number of the feed */
+    int owner;                     /* number of the grain or point, the same for its images */
 } demi_probe;
 typedef struct demi_probes {
-    demi_probe *at;                /* in the order of y: those near the surface */
-    int count, grains, places;     /* of these; of grains that can move and feeds' places in all */
-    int owners;
-    char *seen;                    /* for each owner: has an image of it been counted */
+    demi_probe *at;                /* those in the box of the surface, sorted by y */
+    int count, grains, places;     /* of `at`; grains that can move; points of feeds */
+    int owners;                    /* grains + places */
+    char *seen;                    /* of each owner: one of its images has been counted */
 } demi_probes;
-enum { DEMI_FEED_PLACES = 64 };    /* places by which a feed's region is known */
+enum { DEMI_FEED_PLACES = 64 };    /* random points that represent the region of a feed */
 
 static int demi_probe_compare(const void *a, const void *b) {
     const double x = ((const demi_probe *)a)->x[1], y = ((const demi_probe *)b)->x[1];
     return x < y ? -1 : x > y;
 }
-/* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
-   moved from `home` to `pose` since. A wall that repeats may stand any number of periods away: its
-   images are those around its middle. 0 when memory ran out. */
+/* Adds the point x (m) and its periodic images, those of them in the box of the surface. box: m,
+   lowest and highest corner of the surface at `home`, the pose at the start of its motion; points
+   are transformed from the present pose to that one. A wall that repeats periodically may be any
+   number of periods away from x: the images tested are those around the middle of the wall. room:
+   capacity of p->at. Returns 0 if memory runs out. */
 static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
                           const double *box, dem_vec3 x, int feed) {
     dem_real mid[3], to_mid[3];
@@ -352,7 +373,8 @@ static void demi_probes_free(dem_world *w, demi_probes *p) {
     demi_free(w, p->at);
     demi_free(w, p->seen);
 }
-/* Grains and places of feeds that may be inside a surface in this box. 0 when memory ran out. */
+/* Collects the grains that can move and the points of active feeds that are in the box of a
+   surface, sorted by y. Returns 0 if memory runs out. */
 static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
                             const double *box) {
     size_t room = 0;
@@ -382,7 +404,8 @@ static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
     p->seen = (char *)demi_alloc(w, (size_t)p->owners, 1);
     return p->seen != 0;
 }
-/* Are there probes on both sides? wall: a number; normals: 1 where its facets have any. */
+/* Adds a finding if some probes are inside the shell and others are not. wall: index; normals: 1 if
+   its facets have an orientation, which the message then names. */
 static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_probes *p, int wall,
                               int normals) {
     const char *name = demi_wall_kinds[w->walls[wall].kind].name, *way = "";
@@ -406,8 +429,10 @@ static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_p
                   "wall is solid, keep them out (`inside` of the feed); if it is hollow, all is "
                   "well", feed, (int)w->walls[wall].id, name, way);
 }
-/* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
-   above; the same of a side from b to a, to the bit. */
+/* Tests, in the first two coordinates, whether the ray from x along the first axis crosses the
+   segment from a to b. Returns 1 if it does and b is above the ray, -1 if it does and b is below,
+   and 0 if it does not. The segment from b to a is computed identically, with the opposite sign, so
+   no ray slips between two facets that share the segment. */
 static int demi_probe_crosses(const double *a, const double *b, const double *x) {
     const int up = b[1] > x[1];
     const double *lo = up ? a : b, *hi = up ? b : a;
@@ -415,7 +440,9 @@ static int demi_probe_crosses(const double *a, const double *b, const double *x)
     if (!((lo[0] - x[0])*(hi[1] - x[1]) - (hi[0] - x[0])*(lo[1] - x[1]) > 0)) return 0;
     return up ? 1 : -1;
 }
-/* Crossings of one facet: of a segment by lines along x, of a triangle by those along z. */
+/* Counts the crossings of one facet by the rays from all probes: along x for a segment of a
+   profile, along z for a triangle. A binary search finds the probes in reach: they are sorted by
+   y. */
 static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
     const int per = j->per;
     const double *c[3], *a, *b;
@@ -445,7 +472,8 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
         at->turn += turn;
     }
 }
-/* Shells of the join: root[i]: the first facet of the shell that facet i is of, -1: it is open. */
+/* Finds the shells (connected surfaces) of a join, by union-find over shared sides. root[i]
+   receives the first facet of the shell that contains facet i, or -1 if that shell is open. */
 static void demi_join_shells(demi_join *j, int32_t *root) {
     demi_side *s = j->per == 3 ? j->piece : j->side;
     const int sides = j->per == 3 ? j->sides : 2*j->facets;
@@ -471,7 +499,8 @@ static void demi_join_shells(demi_join *j, int32_t *root) {
     }
     for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
 }
-/* The closed shells of this wall and those that do not move against it: meshes or profiles. */
+/* Checks all closed shells of the group of walls that do not move against this one. per: corners of
+   a facet, 3 for meshes, 2 for profiles. Does nothing if memory runs out. */
 static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
     double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
     int32_t *root = 0, *next = 0;
@@ -494,7 +523,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
         next = root + j.facets;
         demi_join_shells(&j, root);
         for (i = 0; i < j.facets; i++) next[i] = -1;
-        for (i = j.facets - 1; i >= 0; i--) {   /* facets of a shell: a list, its root first */
+        for (i = j.facets - 1; i >= 0; i--) {   /* link the facets of a shell, its root first */
             if (root[i] < 0 || root[i] == i) continue;
             next[i] = next[root[i]];
             next[root[i]] = i;
@@ -510,7 +539,8 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
     demi_probes_free(w, &p);
     demi_join_free(w, &j);
 }
-/* A surface of revolution is closed where it ends on its axis, or where it began. */
+/* Checks a surface of revolution. It is closed if its profile begins and ends on the axis, or ends
+   where it began. */
 static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
     const demi_wall *s = &w->walls[wall];
     const int n = s->ring_count;
@@ -541,9 +571,11 @@ static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
     }
     demi_probes_free(w, &p);
 }
+/* Checks all closed surfaces: each surface of revolution, and each group of meshes or of profiles
+   once, for the first wall of the group. */
 static void demi_check_enclosed(dem_world *w, demi_findings *f) {
     int i, k, per;
-    if (!w->facets_valid && !demi_facets_weigh(w)) return;     /* no memory: the run will say so */
+    if (!w->facets_valid && !demi_facets_weigh(w)) return;  /* no memory: the run will report it */
     for (i = 0; i < w->wall_count; i++) {
         const int kind = w->walls[i].kind;
         if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
@@ -555,7 +587,8 @@ static void demi_check_enclosed(dem_world *w, demi_findings *f) {
     }
 }
 
-/* The time step that was asked for, beside what the scene bears. */
+/* Compares desc.dt with the largest and the recommended time step of the scene, and with the
+   distance that the fastest grain or wall moves in a step. */
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
     const int lasting = demi_response_is(w, DEMI_LASTING);
     const double dt = (double)w->desc.dt;
@@ -583,8 +616,12 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
                   "smallest grain in a step of %g s: they would pass through each other "
                   "undetected; use dt = 0", fastest, fastest*dt/(double)w->effects.radius_min, dt);
 }
-/* Overlaps, over the radius, of the smallest grains of each material with their like: when they
-   meet at the speed there may be, and under the weight of all, were they stacked where they are. */
+/* Estimates overlaps, divided by the radius, between two of the smallest grains of each material:
+   in an impact at the speed a->speed, and under the weight of all grains. The weight is that of a
+   bed that covers the area of the scene normal to gravity; each grain bears the weight on (2 r)^2
+   of that area (not in planar worlds). Reports what exceeds 0.05, with the modulus that would keep
+   it below 0.01: an overlap follows from the modulus to the power -2/5 (impact) or -2/3 (weight)
+   for Hertz's law, and -1/2 or -1 for linear springs. */
 static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
     const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
@@ -593,7 +630,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
                          (double)w->desc.gravity.z};
     demi_grades grades;
     int i, k;
-    if (!demi_laws_keep(w)) return;             /* nothing is known of it; no overlaps */
+    if (!demi_laws_keep(w)) return;             /* an unknown law, or impulses: no overlaps */
     for (i = 0; i < w->bodies.count; i++) {
         if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
         for (k = 0; k < 3; k++) {
@@ -630,6 +667,8 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
     }
 }
 
+/* Checks of the scene alone come first; the last three need the neighbour list. If it cannot be
+   built, the error message of the rebuild becomes a finding. */
 DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_findings f;
     dem_advice advice;
