@@ -1,11 +1,16 @@
 /* ---------------------------------------------------------------------------------------------
    >>effects
-   What a scene calls for, a row each: is it asked for, has it happened, and how a copy goes without
-   it. The time of a step with and without is measured on two copies that take turns, so that what
-   the machine does, it does to both.
+   Effects: the laws and features that a scene may use (friction, walls, ledger, ...), one row each.
+   A row says whether the scene uses the effect and whether it has happened so far, and how to
+   switch it off in a copy of the world. The cost of an effect is measured on two copies, with and
+   without it. They are timed in turn, so that disturbances by other programs affect both alike.
+   All this happens on copies. A measurement changes the world itself only as the start of a run
+   would: it settles the time step and the weights of facets.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_EFFECT_TURNS = 41, DEMI_EFFECT_STEPS = 24 };
-/* What a row tells: its state, in words what acts or why nothing does, and what is missing. */
+/* Returns the state of an effect. Also writes e->text (what acts, or why nothing does) and
+   e->missing (how many pairs of materials, walls and the like have the effect but have not been
+   touched). */
 typedef dem_effect_state (*demi_look_fn)(const dem_world *w, dem_effect *e);
 
 DEMI_FORMAT(2, 3) static void demi_say(dem_effect *e, const char *format, ...) {
@@ -14,10 +19,12 @@ DEMI_FORMAT(2, 3) static void demi_say(dem_effect *e, const char *format, ...) {
     vsnprintf(e->text, sizeof e->text, format, arguments);
     va_end(arguments);
 }
+/* True if materials i and j have touched so far. */
 DEM_INLINE int demi_met(const dem_world *w, int i, int j) {
     return (int)(w->booked.met[DEMI_MIN(i, j)] >> DEMI_MAX(i, j) & 1);
 }
-/* Materials of which there are grains, or will be, and of which there are walls, bit by bit. */
+/* Computes the sets of materials of grains, those of feeds included, and of walls: bit i is
+   material of index i. */
 static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
     int i, k;
     *grains = *walls = 0;
@@ -29,7 +36,10 @@ static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) 
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
 }
-/* Of what pairs of materials have: is there any of which both can meet, and has one touched? */
+/* State of an effect that is a property of pairs of materials. `of` returns the property, > 0 if
+   the pair has the effect. Off if no pair has it, idle if none of those that have it has touched
+   so far, otherwise active. missing counts pairs that could touch and have not. what: begins
+   e->text. */
 static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const dem_pair *p),
                                         const char *what, dem_effect *e) {
     int i, j, have = 0, possible = 0, met = 0, first = 0, second = 0;
@@ -60,14 +70,16 @@ static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
     demi_say(e, "%s", why);
     return DEM_EFFECT_OFF;
 }
+/* Properties of pairs, for `of` above. */
 static dem_real demi_any(const dem_pair *p) { (void)p; return 1; }
 static dem_real demi_rubs(const dem_pair *p) { return DEMI_MAX(p->friction, p->friction_static); }
 static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
 static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
 static dem_real demi_coheres(const dem_pair *p) { return p->cohesion; }
 
-/* An effect of contacts: `name` is the built-in law that has it; null: `none` says why none has it.
-   A response without laws has it in any case. */
+/* State of an effect of contacts. name: the built-in law with this effect, or null; `none` then
+   says why no law has it. Impulses have no laws and always have the effect; a user-defined law
+   replaces it. */
 static dem_effect_state demi_look_response(const dem_world *w, dem_real (*of)(const dem_pair *),
                                            const char *name, const char *none, dem_effect *e) {
     if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
@@ -97,7 +109,8 @@ static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
     return demi_look_response(w, demi_sticks, demi_normal_is(w, DEMI_BRANCHED) ? "hysteretic law"
                               : 0, "only the hysteretic normal law has it", e);
 }
-/* Is there a force now? The field is asked for every body that moves. */
+/* State of force fields: active if they exert a force or torque on some body now. Calls the user's
+   functions for every body that can move. */
 static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
     int i, pushed = 0;
     if (!w->desc.force && !w->desc.body_force)
@@ -118,6 +131,8 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
     demi_say(e, "acts on %d of %d bodies now", pushed, w->bodies.count);
     return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+/* State of user-defined numbers of bodies: active if contacts change them on some body now, or if
+   body_reals_fn may. */
 static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
     const int n = w->bodies.real_count;
     int i, k, moving = 0;
@@ -164,7 +179,7 @@ static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
              : ", never touched");
     return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
-/* Does any near pair reach across a face? */
+/* State of periodic faces: active if a pair of the pruned neighbour list crosses one. */
 static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
     int d, p, k, faces = 0, across = 0;
     for (k = 0; k < 3; k++) faces += w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
@@ -225,13 +240,15 @@ static dem_effect_state demi_look_outlets(const dem_world *w, dem_effect *e) {
     return went ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 
-/* --- without it --- */
+/* --- copies without an effect --- */
 
-/* What the user's functions are asked through, by copies that ask them once, or twice, of which the
-   first answer is thrown away. */
+/* User data of the functions below, which stand in for the user's law and force fields in a copy.
+   They call the original `times` times, once or twice, and use only the last result. desc: of the
+   original world; memory: reals in the contact history of its law. */
 typedef struct demi_again { dem_world_desc desc; int times, memory; } demi_again;
+/* Switches an effect off in the copy t, or makes it call the user's functions through *own. */
 typedef void (*demi_leave_fn)(dem_world *t, demi_again *own);
-/* With what rolls: loops are written for neither, for friction, and for both. */
+/* Rolling friction goes too: there are loops for neither, for friction, and for both. */
 static void demi_leave_friction(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.tangent_law = DEM_TANGENT_NONE;
@@ -263,7 +280,8 @@ static void demi_leave_motions(dem_world *t, demi_again *own) {
     dem_wall id;
     int i;
     (void)own;
-    /* facets will be weighed anew: in arrays of its own. A wall that has no room for them goes */
+    /* weights of facets will be computed again, so every wall of the copy needs arrays of its own.
+       If there is no memory for them, demi_wall_own removes the wall */
     for (i = 0; i < t->wall_count; i++)
         if (demi_wall_own(t, &t->walls[i]) && t->walls[i].kind != DEMI_WALL_NONE) {
             id.id = t->walls[i].id;
@@ -279,6 +297,8 @@ static void demi_leave_walls(dem_world *t, demi_again *own) {
         if (t->walls[i].kind != DEMI_WALL_NONE) dem_wall_remove(t, id);
     }
 }
+/* Stands in for the user's law. Additional calls work on copies of the contact history, of the
+   force and of the rates, so that only the last call counts. */
 static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const demi_again *own = (const demi_again *)c->user;
     dem_contact mine = *c;
@@ -326,13 +346,13 @@ static void demi_again_field(dem_world *t, demi_again *own) {
     t->desc.force_user = own;
 }
 
-/* >>add-effect: a row, its functions above. Where nothing can be left out: 0. twice: the copies ask
-   the user's function once and twice, since nothing would do its work. */
+/* >>add-effect: add a row here and its functions above. */
 typedef struct demi_effect_row {
     const char *name;
     demi_look_fn look;
-    demi_leave_fn leave;
-    int twice;
+    demi_leave_fn leave;           /* null: the effect cannot be switched off */
+    int twice;                     /* 1: nothing can replace the user's function, so the copies call
+                                      it once and twice instead of once and not at all */
 } demi_effect_row;
 static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"contacts",         demi_look_contacts,     0,                       0},
@@ -352,9 +372,10 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"feeds",            demi_look_feeds,        0,                       0},
     {"outlets",          demi_look_outlets,      0,                       0}};
 
-/* --- what it costs --- */
+/* --- costs of effects --- */
 
-/* A copy that goes on with the time step of now. */
+/* Returns a copy of w in the saved state that keeps the present time step, after `leave` (or null)
+   has changed it. Null if memory runs out. */
 static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
                                    demi_leave_fn leave, demi_again *own) {
     dem_world *t = demi_twin_in_state(w, state, size);
@@ -366,6 +387,7 @@ static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
     t->stage.dt_valid = t->stage.primed = 0;
     return t;
 }
+/* Returns the wall time (s) of `steps` steps; does nothing if *result is an error already. */
 static double demi_steps_time(dem_world *t, int steps, dem_result *result) {
     const double begun = demi_clock();
     if (*result == DEM_OK) *result = dem_world_step(t, steps);
@@ -375,9 +397,10 @@ static int demi_double_compare(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
-/* One turn: fresh copies, a few steps for their lists and memory, then some that are timed, less
-   than a contact lasts, so that both still are the same scene. Answers the time without over that
-   with the effect; 0 when memory ran out, below 0 where a copy does not run. */
+/* Measures once: returns the time of steps without the effect over that with it; 0 if memory runs
+   out, < 0 if a copy does not run. Both copies are new. Some steps let them build lists and
+   allocate memory; those timed are fewer than a contact lasts, so that both copies remain in nearly
+   the same state. turn: odd turns time the copy with the effect first, even turns the other. */
 static double demi_effect_turn(dem_world *w, const char *state, size_t size,
                                const demi_effect_row *row, int turn) {
     demi_again once, twice;
@@ -402,8 +425,9 @@ static double demi_effect_turn(dem_world *w, const char *state, size_t size,
     if (with) demi_twin_free(w, with);
     return ratio;
 }
-/* The median of as many turns as the budget allows, and how far medians of so many scatter, by the
-   middle half of them. 0 when memory ran out. */
+/* Measures the cost of an effect: the median over as many turns as the budget (s) allows, 5 to
+   DEMI_EFFECT_TURNS, and its standard error from the interquartile range. Returns 0 if memory runs
+   out. If a copy does not run, nothing is measured. */
 static int demi_effect_cost(dem_world *w, const char *state, size_t size,
                             const demi_effect_row *row, double budget, dem_effect *out) {
     double ratio[DEMI_EFFECT_TURNS];
@@ -417,13 +441,13 @@ static int demi_effect_cost(dem_world *w, const char *state, size_t size,
     qsort(ratio, (size_t)n, sizeof *ratio, demi_double_compare);
     out->measured = 1;
     out->share = (row->twice ? -1 : 1)*(1 - ratio[n/2]);
-    /* the middle half of a normal law is 1.35 standard deviations wide; a median has 1.25 times
-       the error of a mean */
+    /* the interquartile range of a normal distribution is 1.35 standard deviations; a median has
+       1.25 times the standard error of a mean */
     out->error = (ratio[3*n/4] - ratio[n/4])/1.35*1.25/sqrt((double)n);
     return 1;
 }
-/* States alone. look: a copy of the world, in which what has touched and which laws act may be
-   worked out anew. */
+/* Computes the states of all effects without their costs. look: a copy of struct dem_world, in
+   which the materials that have touched, or the laws in force, are brought up to date. */
 static void demi_effects_look(dem_world *look, dem_effect *out) {
     int k;
     if (look->stage.list_valid) demi_met_look(look, look->booked.met);
@@ -435,6 +459,7 @@ static void demi_effects_look(dem_world *look, dem_effect *out) {
         if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
     }
 }
+/* dem_effects_get after its checks: states, then costs if there is a budget. */
 static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
     dem_result result = DEM_OK;
     dem_world look;
@@ -444,7 +469,7 @@ static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFE
     if (budget > 0 && w->bodies.count) {
         if (!w->facets_valid && !demi_facets_weigh(w))
             result = demi_no_memory(w, "dem_effects_get");
-        else result = demi_dt_settle(w);        /* refused as a run would be */
+        else result = demi_dt_settle(w);        /* fails as a run would */
         if (result != DEM_OK) return -1;
     }
     look = *w;
@@ -471,11 +496,13 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
         return -1;
     }
     if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
-    was = demi_calls(w, "dem_effects_get", 1);  /* laws and others are asked for copies of w */
+    was = demi_calls(w, "dem_effects_get", 1);  /* copies call the user's functions */
     count = demi_effects_ask(w, budget, out);
     w->look.calling = was;
     return count;
 }
+/* Prints one line per effect. A cost is too noisy if its standard error is above 10 % of a step, or
+   if it is below -10 % or above 100 %. */
 static void demi_effects_lines(const dem_effect *e, FILE *out) {
     static const char *states[] = {"off", "idle", "active"};
     int k, noisy = 0;
