@@ -1,9 +1,11 @@
 /* ---------------------------------------------------------------------------------------------
    >>trials
-   What a choice costs and what it changes, tried on copies of the user's own scene. A trial is a
-   row: what it changes. Each runs several times, from places that hardly differ: what a choice
-   changes counts only as far as it is more than what chance does. Copies live within the
-   call; nothing of the world itself is stepped.
+   Trials (dem_trials_run): how much a numerical choice costs and how much it changes the results,
+   measured on copies of the user's scene. A row describes a trial: time step, stiffness or contact
+   law. Each trial runs several times from positions that hardly differ, because collisions amplify
+   tiny differences: a change counts only if it exceeds this statistical scatter. Copies are made
+   and freed within the call; the world itself takes no step. The observables shipped with dem.h
+   come first; their declarations in the public half describe them.
    --------------------------------------------------------------------------------------------- */
 DEM_API double dem_observer_height(const dem_world *w, void *user) {
     const dem_totals t = dem_totals_get(w);
@@ -32,11 +34,13 @@ DEM_API double dem_observer_walls(const dem_world *w, void *user) {
     return sum;
 }
 
-/* What a trial changes. */
+/* Contact laws that a trial replaces; number of samples in the second half of a run. */
 enum { DEMI_TRY_NORMAL = 1, DEMI_TRY_TANGENT = 2, DEMI_TRY_SAMPLES = 32 };
+/* A trial. step: factor on dt/contact time; stiffness: factor on moduli and stiffnesses; law:
+   DEMI_TRY_... or 0. */
 typedef struct demi_try { const char *name; double step, stiffness; int law; } demi_try;
 static const demi_try demi_tries[DEM_TRIALS] = {
-    {"as it is",           1,    1,   0},       /* the first */
+    {"as it is",           1,    1,   0},       /* must be the first */
     {"step doubled",       2,    1,   0},
     {"step halved",        0.5,  1,   0},
     {"step quartered",     0.25, 1,   0},
@@ -44,9 +48,9 @@ static const demi_try demi_tries[DEM_TRIALS] = {
     {"4 times stiffer",    1,    4,   0},
     {"other normal law",   1,    1,   DEMI_TRY_NORMAL},
     {"other friction law", 1,    1,   DEMI_TRY_TANGENT}};
-/* The law that is tried in place of the one in force, -1: none fits. Hertz and linear springs take
-   each other's place where there are moduli to make both of; a law of the user's own, or one that
-   unloads along another line, has no counterpart. */
+/* Returns the normal law to try instead of the one in force, or -1 if none fits. Hertz's law and
+   linear springs replace each other if all pairs have moduli, from which both can be computed. A
+   user-defined law and a hysteretic law have no counterpart. */
 static int demi_try_normal(const dem_world *w) {
     int i, j, moduli = 1;
     for (i = 0; i < w->material_count; i++)
@@ -55,6 +59,8 @@ static int demi_try_normal(const dem_world *w) {
     if (w->desc.law || !moduli || demi_normal_is(w, DEMI_BRANCHED)) return -1;
     return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
 }
+/* Returns the tangential law to try instead of the one in force, or -1 if none fits or no pair has
+   friction. A spring replaces any other law; with Hertz's law, [THO13] replaces a spring. */
 static int demi_try_tangent(const dem_world *w) {
     int friction, rolling, sticks;
     demi_pairs_rub(w, &friction, &rolling, &sticks);
@@ -62,7 +68,8 @@ static int demi_try_tangent(const dem_world *w) {
     if (demi_tangent_meant(w) != DEM_TANGENT_SPRING) return DEM_TANGENT_SPRING;
     return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_TANGENT_MINDLIN_RESCALED : -1;
 }
-/* Does the trial make sense in this scene? */
+/* True if the trial makes sense in this scene. The stiffness of a user-defined law is unknown, so
+   trials of stiffness then do not. */
 static int demi_try_fits(const dem_world *w, const demi_try *row) {
     if (row->law == DEMI_TRY_NORMAL) return demi_try_normal(w) >= 0;
     if (row->law == DEMI_TRY_TANGENT) return demi_try_tangent(w) >= 0;
@@ -76,8 +83,9 @@ static const char *demi_try_name(const dem_world *w, const demi_try *row) {
             : "Mindlin's friction";
     return row->name;
 }
-/* All moduli and stiffnesses times a factor: of materials, by which steps are chosen, and of pairs,
-   by which forces are, since a pair may have been set apart from what it was mixed of. */
+/* Multiplies all moduli and stiffnesses by a factor. Those of materials determine the time step,
+   those of pairs the forces; both are changed, since the user may have set a pair to values other
+   than those mixed from its materials. */
 static void demi_stiffen(dem_world *t, dem_real factor) {
     int i, j;
     for (i = 0; i < t->material_count; i++) {
@@ -94,12 +102,13 @@ static void demi_stiffen(dem_world *t, dem_real factor) {
             p.shear_eff *= factor;
             p.stiffness *= factor;
             p.stiffness_adhesion *= factor;
-            p.normal_damping *= DEMI_SQRT(factor);     /* the same share of the critical */
+            p.normal_damping *= DEMI_SQRT(factor);     /* keeps the damping ratio */
             demi_pair_put(t, i, j, &p);
         }
 }
-/* Makes a copy what the row says. Its step is as fine for its collisions as that of the scene: a
-   share of what is chosen as it goes on, where that is left to the library. */
+/* Applies a trial to the copy t. The time step keeps its ratio to the contact time, times
+   row->step. If dem.h chooses the step (desc.dt 0), dt_share applies this factor to every choice
+   during the run. */
 static void demi_try_set(dem_world *t, const demi_try *row) {
     const double dt = (double)t->clock.dt;
     dem_advice was, is;
@@ -118,9 +127,10 @@ static void demi_try_set(dem_world *t, const demi_try *row) {
     t->stage.pairs_changed = 1;
     t->stage.dt_valid = t->stage.primed = 0;
 }
-/* Puts every body a millionth of its radius off: far less than any overlap that matters, and enough
-   for chance to show soon, where collisions multiply it, as they do what a trial changes. Less than
-   that, the last bit, takes long to grow, and chance would look smaller than it is. */
+/* Moves every body that is not fixed by at most 1e-6 of its radius along each axis, at random; seed
+   0 moves none. This is far less than any relevant overlap, and enough for differences between runs
+   to appear soon, since collisions amplify them as they amplify the effect of a trial. A change in
+   the last bit would take long to grow, and the scatter would look smaller than it is. */
 static void demi_try_shake(dem_world *t, uint64_t seed) {
     int i, k;
     for (i = 0; i < t->bodies.count && seed; i++)
@@ -128,9 +138,9 @@ static void demi_try_shake(dem_world *t, uint64_t seed) {
             t->bodies.pos[4*i + k] += t->bodies.pos[4*i + 3]*
                 (dem_real)(1e-6*(2*demi_uniform(&seed) - 1));
 }
-/* Runs a copy through the trial; sums the observables' means over its second half. The first is for
-   what a change brings with it and is not its steady effect: a heap that sinks a little when it
-   becomes softer, and rings a little when stiffer. */
+/* Runs the copy t and adds the means of the observables over the second half of the run to sum. The
+   first half lets transients of the change decay: a heap sinks a little when it becomes softer, and
+   oscillates a little when it becomes stiffer. */
 static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum) {
     dem_result result = DEM_OK;
     int k, e;
@@ -146,18 +156,19 @@ static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum)
     }
     return result;
 }
-/* What chance adds to a difference of two means of n runs each, in standard errors: Student's t at
-   95 % for 2n - 2 degrees of freedom, by its expansion about the normal law. */
+/* Returns the half width of the 95 % confidence interval for the difference of two means of n runs
+   each, in standard errors: Student's t for 2n - 2 degrees of freedom, by its expansion about the
+   normal distribution. */
 static double demi_student(int n) {
     const double v = 1/(2.0*n - 2);
     return 1.96 + v*(2.372 + v*(2.822 + v*(2.556 + v*1.59)));
 }
-/* Drifts and promises, once all trials are done. The reference is the smallest step, since that is
-   the one choice of which it is known that less is better; whether a softer or stiffer grain is
-   the truer one, only the user knows. */
+/* Computes the reference, and drift and promise of every trial (see dem_trial), after all have run.
+   The reference is the trial with the smallest step, because a smaller step is always more
+   accurate; whether softer or stiffer grains are closer to reality, only the user knows. */
 static void demi_trials_judge(dem_trials *out) {
     int i, e;
-    for (i = 0; i < out->count; i++)            /* of what came to its end: the smallest step */
+    for (i = 0; i < out->count; i++)            /* among trials that reached their end */
         if (out->trial[i].done == out->seeds &&
             out->trial[i].step < out->trial[out->reference].step) out->reference = i;
     for (i = 0; i < out->count; i++) {
@@ -175,8 +186,10 @@ static void demi_trials_judge(dem_trials *out) {
         }
     }
 }
-/* The cheapest that keeps within the tolerance; a tenth less time is worth a change. When none
-   does, not even the scene beside itself, chance is larger than what was asked to be seen. */
+/* Chooses the best trial, the cheapest whose promise is within the tolerance, and writes the
+   advice. If the unchanged scene is within the tolerance, another trial replaces it only if it
+   saves a tenth of the time. If no trial is within the tolerance, not even the reference compared
+   with itself, the statistical scatter is larger than the tolerance. */
 static void demi_trials_advise(dem_trials *out) {
     const dem_trial *ref = &out->trial[out->reference], *scene = &out->trial[0], *best;
     const double now = scene->seconds;
@@ -206,8 +219,9 @@ static void demi_trials_advise(dem_trials *out) {
                  "times as long", best->name, scene->promise, ref->name, out->tolerance,
                  best->promise, best->seconds/now);
 }
-/* All runs of one trial, each on a copy of its own. A run that is refused or blows up is the
-   trial's answer, not the call's: the step may be too large, and that is worth knowing. */
+/* Makes all runs of one trial, each on a new copy. A run that does not start or becomes unstable is
+   a result of the trial (trial->refusal) and not an error of the call: the step may be too large,
+   which is worth knowing. Returns an error only if memory runs out. */
 static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, const demi_try *row,
                                  dem_trials *out, dem_trial *trial) {
     double value[16][DEM_OBSERVABLES], wall = 0;
@@ -237,7 +251,7 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
     }
     return DEM_OK;
 }
-/* 1 with a sentence when the desc asks for what cannot be. */
+/* Returns 1 with an error message if the desc is invalid or the scene cannot be compared. */
 static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
@@ -282,8 +296,10 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
                   "checkpoint", (unsigned)w->bodies.slot[lost] + 1);
     return 1;
 }
-/* What the trials shall simulate so that all end within the budget, from the time of some steps of
-   a copy. */
+/* Shortens out->duration if the trials would otherwise take longer than the budget (s of wall
+   time). The estimate is the time of 20 steps of a copy; the number of steps grows with
+   stiffness^0.4, as for Hertz's law. Fails if the scene does not run, or if a run has fewer than 64
+   steps. */
 static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size, double budget,
                                    dem_trials *out) {
     dem_world *t = demi_twin_in_state(w, state, size);
@@ -315,8 +331,9 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
     demi_twin_free(w, t);
     return result;
 }
-/* Of the usual observables: the height of the centre of mass above the lowest body; the kinetic
-   energy that there is, and what all would gain in falling by their radius. */
+/* Sets the scales of the default observables. height: m, of the centre of mass above the lowest
+   point of the grains. kinetic: J, the present energy plus what all grains would gain if they fell
+   by their radius. */
 static void demi_usual_scales(const dem_world *w, dem_trials *out) {
     const double g = (double)demi_length(w->desc.gravity);
     const dem_vec3 up = g > 0 ? demi_scale(w->desc.gravity, (dem_real)(-1/g)) : demi_v(0, 0, 1);
@@ -355,11 +372,11 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
            (size_t)out->observable_count*sizeof *usual);
     if (!d->observable_count) demi_usual_scales(w, out);
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_trials_run");
-    result = demi_dt_settle(w);                 /* refused as a run would be */
+    result = demi_dt_settle(w);                 /* fails as a run would */
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);
     if (!state) return demi_no_memory(w, "dem_trials_run");
-    was = demi_calls(w, "dem_trials_run", 1);       /* laws and others are asked for copies of w */
+    was = demi_calls(w, "dem_trials_run", 1);       /* copies call the user's functions */
     result = demi_advise_plan(w, state, size, d->budget > 0 ? d->budget : 60, out);
     for (k = 0; k < DEM_TRIALS; k++)
         if (demi_try_fits(w, &demi_tries[k])) rows[out->count++] = &demi_tries[k];
