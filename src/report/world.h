@@ -1,9 +1,11 @@
 /* ---------------------------------------------------------------------------------------------
    >>world
-   Making one, taking it down, saying what it does. A world is made of its desc, of which every 0
-   is replaced by a choice; the report tells what was chosen and which effects the scene calls
-   for, by the same functions that a run asks, on a copy: a report changes nothing. Taking it
-   down frees two chains of blocks (demi_hold), so that no array can be forgotten.
+   Creating a world, destroying it, and reporting on it. dem_world_create checks the desc.
+   Fields that are 0 are replaced by a choice, there or when a run begins; dem_world_report prints
+   these choices and the effects in use. It calls the same functions as a run, but on a copy of
+   struct dem_world, so a report changes nothing that a run uses. Every block that a world allocates
+   (demi_hold) is linked into one of two chains; dem_world_destroy frees both, so no array can be
+   forgotten.
    --------------------------------------------------------------------------------------------- */
 DEM_API const char *dem_result_name_get(dem_result r) {
     static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
@@ -93,7 +95,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
     if (demi_response_is(w, DEMI_MIDWAY)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
-    /* until bodies are there to decide */
+    /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
     w->bodies.slot_free = w->bodies.slot_pending = -1;
@@ -130,7 +132,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
 DEM_API const char *dem_world_error_get(const dem_world *w) {
     if (!w) return "dem_world_create: the world is null, because dem_world_create failed; "
         "dem_world_create_error_get(desc) says why";
-    ((dem_world *)w)->refused = 0;              /* somebody looks */
+    ((dem_world *)w)->refused = 0;              /* the message has been read */
     return w->error;
 }
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
@@ -141,7 +143,8 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
     return d;
 }
 
-/* How many levels there are, of which radii, and why. */
+/* Prints the levels of a hierarchical grid, and the estimated work of a search with levels and
+   with one grid. */
 static void demi_levels_report(const dem_world *w, FILE *out) {
     const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
     int i;
@@ -160,12 +163,13 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
                 w->levels.tests[0]);
 }
 
+/* Returns the number of persistent contacts. */
 static int demi_kept_total(const dem_world *w) {
     int d, n = 0;
     for (d = 0; d < w->domain_count; d++) n += w->domains[d].kept;
     return n;
 }
-/* What a law remembers, in words. */
+/* Returns in `text` how much contact history a law keeps, or "" if none. */
 static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) {
     text[0] = 0;
     if (row->memory)
@@ -173,7 +177,7 @@ static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) 
                  row->memory*(int)sizeof(dem_real));
     return text;
 }
-/* The laws in force. Of a law of the user's own only what it was given is known. */
+/* Prints the contact laws in force. Of a user-defined law only its settings are known. */
 static void demi_laws_report(const dem_world *w, FILE *out) {
     static const char *loads[] = {"the normal force", "the elastic part of the normal force",
                                   "the magnitude of the normal force"};
@@ -181,7 +185,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
                                     "the spring alone takes this limit",
                                     "the spring takes what the dashpot leaves"};
     const int load = w->desc.tension != DEM_TENSION_ALLOWED ? DEM_LOAD_REPULSIVE
-        : (int)w->desc.friction_load;           /* nothing pulls there */
+        : (int)w->desc.friction_load;           /* without tension: the normal force */
     const demi_laws *laws = &w->laws;
     char text[64];
     const char *unused = "";
@@ -230,7 +234,8 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
             demi_law_memory_text(laws->rolling, text));
 }
-/* A line about bodies that turn, where there are any. */
+/* Prints a line about bodies that are not spheres, or about orientations of spheres, if there are
+   any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     if (w->bodies.shaped)
@@ -244,7 +249,7 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
         fprintf(out, "           orientations of spheres are followed, because desc.orientations "
                 "is 1\n");
 }
-/* What each wall bears, and what came in and went out. */
+/* Prints the loads of walls and joints, and the flows of feeds and outlets. */
 static void demi_flows_report(const dem_world *w, FILE *out) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
@@ -278,7 +283,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 (unsigned long long)o->sorted, o->sorted_mass);
     }
 }
-/* The account of energy; a residual that is not small says that the step is too large. */
+/* Prints the account of energy. A large residual means that the time step is too large. */
 static void demi_ledger_report(const dem_world *w, FILE *out) {
     const dem_ledger l = dem_ledger_get(w);
     fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
@@ -293,7 +298,7 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
         fprintf(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
                 l.throughput > 0 ? l.residual/l.throughput : 0);
 }
-/* What was asked for and has not happened. */
+/* Prints effects that the scene contains and that have not happened so far. */
 static void demi_idle_report(dem_world *look, FILE *out) {
     dem_effect e[DEM_EFFECTS];
     int k;
@@ -302,8 +307,9 @@ static void demi_idle_report(dem_world *look, FILE *out) {
         if (e[k].missing)
             fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
 }
+/* Prints the report; section 11 of the manual explains its lines. */
 static void demi_report(const dem_world *world, FILE *out) {
-    dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
+    dem_world look = *world, *w = &look;        /* computes missing effects in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
     dem_advice a;
