@@ -44,6 +44,7 @@ typedef struct demi_grid {
     double volume, reach, norm;
     int axes;                           /* along which it spreads: 3; planar: 2 */
 } demi_grid;
+/* Computes the grid of field f. */
 static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     const demi_periods p = demi_periods_of(w);
     const dem_field_desc *d = &f->desc;
@@ -317,6 +318,9 @@ DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
     return DEM_OK;
 }
 
+/* Fluctuations about the mean velocity v of the cell give the kinetic stress, <m v v>/volume -
+   density v v, which is added to the stress of contacts. The granular temperature is the trace of
+   the kinetic stress over density and number of dimensions. */
 DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, int j, int k,
                                       dem_field_cell *out) {
     dem_field_data d;

@@ -71,6 +71,9 @@ static dem_result demi_contacts_settle(dem_world *w) {
     w->look.calling = was;
     return result;
 }
+/* The histories of sphere pairs are columns of the pruned neighbour list, so fn gets a copy that is
+   written back; a persistent contact hands over its own. If fn changes a value, forces are computed
+   again before the next step. */
 DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     if (demi_null(w, "dem_contacts_each", fn ? w : 0, "fn")) return -1;
     size_t stride;
