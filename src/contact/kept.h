@@ -1,20 +1,24 @@
 /* ---------------------------------------------------------------------------------------------
    >>kept
-   Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
-   may touch in several places and each may push past the centre; a wall is touched in as many
-   places as it has surfaces near: so these contacts are kept one by one. touch finds them (parts
-   against parts by >>meets, against wall elements) and which of the step before each continues;
-   >>kept-respond takes memory over from that one, asks the law and pushes. Within a domain they
-   stand in the order of their body a. Touch may run out of room; it then begins anew with more,
-   nothing lost.
+   Contact detection for persistent contacts: all contacts except those of sphere on sphere, which
+   >>respond handles without a list. Two such bodies may touch at several points, also beyond their
+   centres, and a body touches a wall once per nearby surface. These contacts are therefore stored
+   one by one in a list (demi_kept) and followed from step to step, so that each keeps its history.
+
+   The function demi_touch builds the list of the present step. It finds the contact points (part
+   against part by >>meets, part against wall element by >>touch) and decides which contact of the
+   step before each one continues. >>kept-respond then copies the history, evaluates the contact law
+   and adds the forces. Within a work group the list is ordered by body a. If a list is too short,
+   demi_touch enlarges it and starts again; this loses nothing, since the old list is untouched.
    --------------------------------------------------------------------------------------------- */
 
-/* Is the law asked about a contact? Not where the two are apart, but for a law with a range, nor
-   under way through a reduced hole. */
+/* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
+   for a body on its way through a hole of a reduced sieve, whose weight is 0. */
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
-/* One contact as touch finds it. */
+/* Appends a contact to the new list of work group d and returns it, cleared but for its history.
+   Returns null if the list is full. */
 static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_kept *c;
@@ -29,15 +33,17 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     return c;
 }
 
-/* --- which contact of a step ago a new one continues: its number in its domain, or -1. old: the
-       contacts that body a had. --- */
+/* --- continuation: the index within its work group of the old contact that a new one continues, or
+   -1. `old` and `olds` are the contacts that body a had in the step before, and their number.
+   --- */
 
-/* The one with the same partner and parts, or with the same wall, part, element and corner. */
+/* Returns the old contact with the same partner and parts or, at a wall, with the same wall, part,
+   element and corner; -1 if there is none. */
 DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds,
                               const demi_kept *c) {
     const int first = (int)(old - demi_kept_of(w, d));
     int *next = &w->domains[d].kept_same, n, i = *next - first;
-    if (i < 0 || i >= olds) i = 0;              /* mostly it is the one after the last */
+    if (i < 0 || i >= olds) i = 0;              /* usually the one after the last match */
     for (n = 0; n < olds; n++) {
         if (old[i].element == c->element && old[i].wall == c->wall &&
             old[i].part_a == c->part_a && old[i].b == c->b && old[i].part_b == c->part_b &&
@@ -49,18 +55,20 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
     }
     return -1;
 }
-/* Where that is not enough, the one that fits best:
-       TURNED   a polyhedron on a wall, by springs: of its element and corner the nearest normal
-                within 45 degrees, since round walls, wires and holes are one element on all sides
-       NEAREST  polyhedra by impulses: of the same pair or wall and within about 18 degrees the
-                nearest point that no contact before this one continues
-       SLID     on a wall, where nothing else fits: the body slid on to a neighbouring element */
+/* Which old contact fits best, if no such key identifies it:
+       TURNED   polyhedron on a wall, soft contacts: the nearest normal within 45 degrees, of the
+                same element and corner (round walls, wires and holes are one element all around)
+       NEAREST  polyhedra, rigid contacts: the nearest point within about 18 degrees of the same
+                pair or wall that no earlier contact of this step continues
+       SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
-/* How well old contact o, number `from`, fits c, which slid on: by their normals; where those are
-   nearly the same (within some 3 degrees), rather one that nothing continues yet; then the same
-   wall, and the same sign of what they count. A place of a surface that begins at depth has split
-   off another one, and takes a copy of its memory: as often as two come, one that takes away comes
-   with them (>>facets). Walls that do not move against each other are one here. */
+/* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
+   DEMI_FAR_OFF if it may not be continued. The criterion is the cosine between the normals. If
+   several are nearly equal (within some 3 degrees), contacts that nothing continues yet come first,
+   then those with the same sign of the weight, then those of the same wall. Walls at rest relative
+   to each other count as one wall. On facets a contact point that begins at depth has split off an
+   older one and copies its history. Copies do not add friction: each split also creates a contact
+   of negative weight (>>facets). On other walls only one new contact may continue o. */
 static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
                                const demi_kept *fresh, int freshs, const demi_kept *c) {
     const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
@@ -72,7 +80,8 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
         return DEMI_FAR_OFF;
     for (j = 0; j < freshs && !taken; j++)
         taken = fresh[j].wall == o->wall && fresh[j].element == o->element;
-    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* one alone may: the nearest */
+    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* one only: that with the nearest
+                                                                   normal */
         const dem_real nearer = demi_dot(o->normal, demi_sub(fresh[j].normal, c->normal));
         taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
             (fresh[j].from == from || (fresh[j].from < 0 &&
@@ -82,7 +91,8 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
     return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
         (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
 }
-/* fresh: all new contacts of the pair, or with the wall; NEAREST: those up to c. */
+/* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
+   with this wall; for NEAREST only those up to c. */
 static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
                           const demi_kept *fresh, int freshs, const demi_kept *c,
                           enum demi_fit how) {
@@ -109,21 +119,24 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
     }
     return best;
 }
-/* How far two contacts of one pair push the same way, t: 1 within 25 degrees, 0 beyond 45. *rate:
-   how t changes with the cosine between their normals. Those of one part are not shared: they are
-   counted already, by what they weigh. */
+/* Similarity t of two contacts of the same pair: 1 if their normals are within 25 degrees, 0 beyond
+   45 degrees, smooth in between. *rate receives its derivative with respect to the cosine of that
+   angle. */
 DEM_INLINE dem_real demi_kept_along(const demi_kept *a, const demi_kept *b, dem_real *rate) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
     *rate = t > 0 && t < 1 ? 6*t*(1 - t)/(one - zero) : 0;
     return !(t > 0) ? 0 : t < 1 ? t*t*(3 - 2*t) : 1;
 }
+/* Like demi_kept_along, but 0 for contacts of the same two parts: their weights already account for
+   overlap. */
 DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_real *rate) {
     *rate = 0;
     return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_kept_along(a, b, rate);
 }
-/* The force aside on contact c's ball that has c's normal turn towards, or away from, another's:
-   -(dE/dt)(dt/dcos) d(n.other)/dx. push: the first two. */
+/* Adds to c->aside the tangential force on contact c's sphere that arises because c's normal
+   rotates towards or away from the normal `other` as the sphere moves: -(dE/dt)(dt/dcos)
+   d(n.other)/dx. `push` is the product of the first two factors, over U'(d) of contact c. */
 DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
     const dem_real along = demi_dot(other, c->axis);
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
@@ -131,7 +144,7 @@ DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
     turn = demi_add(demi_scale(turn, c->bend), demi_scale(c->axis, along*c->along));
     c->aside = demi_add(c->aside, demi_scale(turn, push));
 }
-/* Exponent of R* in the stiffness of a body's contacts: 1/2 for Hertz; linear: 2/5, or 0 where the
+/* Exponent of R* in the stiffness of a contact: 1/2 for Hertz; for a linear law 2/5, or 0 if the
    stiffness is given. */
 static dem_real demi_kept_power(const dem_world *w, const demi_kept *c) {
     const int a = w->bodies.material[c->a] - 1;
@@ -139,26 +152,27 @@ static dem_real demi_kept_power(const dem_world *w, const demi_kept *c) {
     if (demi_normal_is(w, DEMI_HERTZIAN)) return DEM_R(0.5);
     return w->pairs[a*DEMI_MATERIALS + b].given.stiffness > 0 ? DEM_R(0) : DEM_R(0.4);
 }
-/* U'(d_i) over U'(d_k), of contacts that overlap: q, exponent of R*, as above. */
+/* Returns U'(d_i)/U'(d_k) for two contacts that overlap. q: exponent of R*, see demi_kept_power. */
 static dem_real demi_kept_steep(const demi_kept *i, const demi_kept *k, int hertz, dem_real q) {
     const dem_real more = i->overlap/k->overlap, R = i->r_eff/k->r_eff;
     if (hertz) return more*DEMI_SQRT(more*R);
     return q > 0 && (R < 1 || R > 1) ? more*(dem_real)demi_pow((double)R, (double)q) : more;
 }
-/* What the shared energy (below) asks of contacts whose shares are known: lift, aside, grip. */
+/* Sets lift, aside and grip of the n contacts of a pair from the gradient of the merged energy E
+   (see demi_kept_share). Their shares and areas must be known. */
 static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
     const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2), q = demi_kept_power(w, c);
     dem_real rate;
     int i, k;
     for (k = 0; k < n; k++) {
-        const dem_real d = c[k].overlap, own = c[k].share*d/p;     /* E_k over U'(d_k) */
+        const dem_real d = c[k].overlap, own = c[k].share*d/p;     /* E_k/U'(d_k) */
         if (!(d > 0)) continue;
         c[k].lift = c[k].share*(1 + 2/p*c[k].rate*c[k].added*d*d/c[k].area);
         for (i = 0; i < n; i++) {
             const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap;
-            dem_real far;                       /* E_i over U'(d_k) and A_i */
+            dem_real far;                       /* E_i/(U'(d_k) A_i) */
             if (!(t > 0) || !(e > 0)) continue;
             far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*c[i].rate/c[i].area;
             c[k].lift -= far*2*t*c[k].weight*d;
@@ -172,7 +186,7 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         if (!(c[k].overlap > 0)) continue;
         for (i = 0; i < n; i++) {
             const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
-            dem_real press;                     /* U'(d_i) over U'(d_k) */
+            dem_real press;                     /* U'(d_i)/U'(d_k), times t */
             if (!(t > 0) || !(c[i].overlap > 0)) continue;
             press = t*demi_kept_steep(&c[i], &c[k], hertz, q);
             lift += press*c[i].lift;
@@ -183,46 +197,53 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         else c[k].grip = c[k].share;
     }
 }
-/* Room that contact i leaves to itself: 1 + x, x what the others add, over d_i^2; where others take
-   away (>>facets) smoothly no less than a quarter. *rate: how it changes with x. */
+/* Returns A_i/d_i^2 = 1 + x of demi_kept_share, where x is the sum of the other terms over d_i^2.
+   If negative weights (>>facets) make x less than -1/2, the value decreases smoothly to no less
+   than 1/4. *rate receives its derivative with respect to x. */
 static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
     const dem_real below = DEM_R(0.0625)/(DEM_R(-0.25) - x);    /* x < -1/2 */
     *rate = x < DEM_R(-0.5) ? 16*below*below : DEM_R(1);
     return x < DEM_R(-0.5) ? DEM_R(0.25) + below : 1 + x;
 }
+/* True if a body is a cluster of spheres. */
 static int demi_is_cluster(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return shape && shape->count;
 }
-/* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1], that are one in all. With
-   overlaps d, weights w (>>facets; else 1), what each stores U(d), and t: do i and j push the same
-   way,
+/* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and a wall, so that together they act
+   as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets, otherwise
+   1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
+   (demi_kept_along),
        A_i = d_i^2 + sum of t_ij w_j d_j^2, j not i;   s_i = w_i d_i^2/A_i;   E = sum of s_i U(d_i)
-   a mean in which the deep ones count more: alike ones store what one would, whatever their number,
-   and one that begins or ends counts nothing: stiffness, damping and restitution do not grow with
-   the number of spheres that happen to touch [BER23]. The elastic force is the gradient of E, which
-   conserves: of contact k, along its normal, dE/dd_k = lift_k U'(d_k); and across it, as far as its
-   normal turns with its place, that of the t. With U ~ sqrt(R) d^p (Hertz) or d^p
+   This is a mean in which deeper contacts count more. Similar contacts together store the energy of
+   one, whatever their number, and a contact that begins or ends counts nothing. Stiffness, damping
+   and restitution therefore do not grow with the number of spheres that touch [BER23]. The elastic
+   force is the gradient of E, so energy is conserved. It acts along the normal of contact k with
+   dE/dd_k = lift_k U'(d_k), and across it as far as t depends on the rotation of the normal with
+   the sphere's position (`aside`). With U ~ sqrt(R) d^p (Hertz) or d^p:
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
-   (Left out: how the normal of an ellipsoid, or at an edge of a polyhedron, turns at a cluster's
-   ball. A ball that is nearly at what it goes round, within a tenth of its radius, turns no faster
-   than there. Pieces of unions share nothing: their energies add.)
-   It may be a little below 0 where others are far deeper: no mean that does not depend on their
-   number can do without. What a law is asked about before it touches counts by itself. Damping goes
-   by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of
-   s U'), so that mu is the ratio of both sums. Checked by "a cluster landing on one, two or
-   three spheres" and tests/surface/test_facets.c. */
+   Neglected: the rotation of the normal of an ellipsoid, or at an edge of a polyhedron, against a
+   cluster's sphere. If the centre of a sphere is within a tenth of its radius of the curve that it
+   rolls around, its normal rotates no faster than at that distance. Pieces of unions are not
+   merged: their energies add.
+
+   lift_k may be slightly negative if other contacts are far deeper; no mean that is independent of
+   the number of contacts avoids this. Contacts within the range of a law that do not overlap keep
+   their weight. Damping is scaled by s and uses the effective mass at the common centre of the
+   contacts. Friction is scaled by s (sum of lift U')/(sum of s U'), so that mu is the ratio of the
+   two total forces. Tests: "a cluster landing on one, two or three spheres" and
+   tests/surface/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&
         (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
     int i, j;
     for (i = 0; i < n; i++) {
         const dem_real d2 = c[i].overlap*c[i].overlap;
-        dem_vec3 mean;                          /* arm of a to the common middle, times A */
+        dem_vec3 mean;                          /* common centre as seen from a, times A */
         dem_real A = d2, rate;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].felt = c[i].spread;                /* polyhedra: at the pressure's middle */
+        c[i].felt = c[i].spread;                /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
         mean = demi_scale(demi_sub(c[i].arm_a, c[i].spread), d2);
         for (j = 0; j < n; j++) {
@@ -235,14 +256,15 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         c[i].added = A/d2 - 1;
         c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
         c[i].share = c[i].weight*d2/c[i].area;
-        if (A > d2/2)                           /* else others take away: its own place will do */
+        if (A > d2/2)                           /* else negative weights prevail */
             c[i].felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
     if (one) demi_kept_lift(w, c, n);
 }
 
-/* What grip of a step ago comes to each of some contacts that are one body's with one other or with
-   one wall: of those that continue the same one each its part. now: all of a step ago. */
+/* Sets `held` of n contacts of one body with one partner or wall: the grip (weight of friction)
+   that each inherits from the step before. Contacts that continue the same old one divide its grip
+   in proportion to their own. now: the old list of the work group. */
 static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     int i, k;
     for (k = 0; k < n; k++) {
@@ -253,8 +275,8 @@ static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
         if (all > c[k].grip) c[k].held *= c[k].grip/all;
     }
 }
-/* A contact of polyhedra, as touch has found it, becomes the corners that its pressure is spread
-   over: spread and aside are the two directions. 0: no room. */
+/* Splits contact c of two polyhedra into the corners of the rectangle that its pressure is spread
+   over; c->spread and c->aside are its two half edges. Returns 0 if the list is full. */
 static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
     const dem_vec3 one = c->spread, two = c->aside;
     int k;
@@ -277,8 +299,9 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     c->arm_b = demi_add(c->arm_b, c->spread);
     return 1;
 }
-/* A contact of polyhedra by its points: arm_a and arm_b are to the first one's centre. 0: no room.
-   */
+/* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
+   c->arm_a and c->arm_b lead to the centre of the first polyhedron. Returns 0 if the list is
+   full. */
 static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *p,
                             const demi_part *q, const demi_spots *spots, const demi_kept *old,
                             int olds) {
@@ -303,7 +326,8 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
     }
     return 1;
 }
-/* A contact of parts i of a and j of b as it begins; null: no room. */
+/* Appends a contact of part i of body a with part j of body b. send: as in demi_kept. Returns null
+   if the list is full. */
 DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int send, int i, int j,
                                       const demi_kept *old, int olds) {
     demi_kept *c = demi_kept_new(w, d);
@@ -314,7 +338,8 @@ DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int sen
     c->from = demi_kept_same(w, d, old, olds, c);
     return c;
 }
-/* The contact of two parts, if they touch: all that touch finds of it. 0: no room. */
+/* Appends the contact of two parts p and q if they touch. gap: from the centre of p to that of q,
+   m. Returns 0 if the list is full. */
 static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const demi_part *p,
                            const demi_part *q, int i, int j, dem_vec3 gap, const demi_kept *old,
                            int olds) {
@@ -323,7 +348,7 @@ static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const de
     demi_spots spots;
     if (!c) return 0;
     spots.count = 0;
-    if (c->from >= 0) c->normal = now[c->from].normal;      /* where to begin */
+    if (c->from >= 0) c->normal = now[c->from].normal;      /* initial guess */
     if (!demi_meet_of(p->kind, q->kind)(w, p, q, gap, c->from < 0 ? 0 : now[c->from].lambda, c,
                                         &spots))
         w->domains[d].kept_next--;
@@ -331,8 +356,9 @@ static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const de
              : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
     return 1;
 }
-/* Two spheres of near bodies, from their rows; to: from that of a to b's centre. Most do not touch.
-   0: no room. */
+/* Appends the contact of two spheres of neighbouring bodies if they touch; most do not. one, other:
+   their rows (centre from the body's, radius, m); to: from sphere i's centre to the centre of body
+   b, m. Returns 0 if the list is full. */
 DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i, int j,
                              const dem_real *one, const dem_real *other, dem_vec3 to,
                              const demi_kept *old, int olds) {
@@ -347,8 +373,9 @@ DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i,
         w->domains[d].kept_next--;
     return 1;
 }
-/* Which spheres of two bodies may touch while the near list lasts; it may be asked in any step of
-   its life: bounds that hold from then on outlast it. */
+/* Lists the pairs of spheres of bodies a and b that may touch while the pruned neighbour list is
+   valid. r: from a's centre to b's, m; x, na and y, nb: the rows of their spheres. It may be called
+   at any step during the life of that list: bounds for its whole life cover the rest of it. */
 static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const dem_real *x, int na,
                             const dem_real *y, int nb, demi_near_balls *out) {
     const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
@@ -368,8 +395,9 @@ static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const 
         }
     }
 }
-/* All contacts of one near pair. r: from a's centre to b's; old: those body a had in the step
-   before. 0: no room. */
+/* Appends all contacts of a candidate pair of spheres and clusters, entry `at` of the pruned
+   neighbour list. r: from a's centre to b's, m; old: the contacts of body a in the step before.
+   Returns 0 if the list is full. */
 static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, const dem_real *x,
                            int na, const dem_real *y, int nb, const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
@@ -394,7 +422,7 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
     }
     return 1;
 }
-/* The same of bodies of any parts. */
+/* The same for bodies of any parts. */
 static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
                          const demi_kept *old, int olds) {
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
@@ -414,6 +442,7 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
@@ -436,9 +465,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     demi_kept_inherit(now, from, count);
 }
 
-/* --- overlap, arm and radius of a part's contact with a wall at a place that was found --- */
+/* --- overlap, arm and radius of a part's contact with a wall, from a contact point that was found
+   --- */
 typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                 const demi_touching *place, demi_kept *c);
+/* A sphere's. */
 DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                   const demi_touching *place, demi_kept *c) {
     (void)w; (void)wall;
@@ -447,13 +478,14 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
     c->r_eff = p->radius;
     c->arm_a = demi_add(p->centre, demi_scale(c->normal, p->radius));
 }
-/* An ellipsoid's, whose place has 1 - W0 for an overlap. */
+/* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    const demi_touching *place, demi_kept *c) {
     demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
                      c);
 }
-/* A polyhedron's, or of what it is nearest to in a wall of grains, whose radius is R* then. */
+/* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
+   set so large that demi_wall_r_eff returns the radius of these grains. */
 static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                     const demi_touching *place, demi_kept *c) {
     const int ball = demi_wall_is(wall, DEMI_BALLS);
@@ -469,18 +501,21 @@ static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, c
 }
 #define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
 static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
-/* R* of a part of radius r with a wall. On a round wire the two radii of the contact differ, r and
-   r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse for a wire as
-   thick as the grain, 7 % for one of a fifth. */
+/* Effective radius R* [m] of a part of radius r with a wall. On a round wire of radius q the two
+   principal radii of the contact differ: r and r q/(r + q). Their geometric mean gives a force 1.5
+   % below that of Hertz's ellipse if the wire is as thick as the grain, and 7 % below for a wire a
+   fifth as thick. */
 static double demi_wall_r_eff(const demi_wall *wall, double r) {
     const double q = (double)wall->sieve.bar/2;
     if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
     return demi_sieve_wires(&wall->sieve) ? r*sqrt(q/(r + q)) : r;
 }
-/* A sheet, which pushes to both sides, pushes a body on once its centre is through. Then contact c
-   has turned round within a step, and nothing is left of the one before: its overlap is what is
-   seen from there. Not at the end of a sheet, where a polyhedron is pushed to both sides for a
-   while. old: those the body had; fresh: all it has with this wall now. */
+/* Handles a body whose centre has passed through an open surface, which repels on both sides: from
+   then on it pushes the body out on the far side. The normal of contact c then reverses within one
+   step, and no contact with the old normal is left. The relative depth continues that of the old
+   one: 2 - deep. This does not apply at the end of a surface, which repels a polyhedron on both
+   sides for a while. old: contacts of the body in the step before; fresh: all its new ones with
+   this wall. */
 static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *fresh, int count,
                               demi_kept *c) {
     int e, i;
@@ -495,16 +530,18 @@ static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *f
         if (i == count) c->deep = 2 - c->deep;
     }
 }
-/* Is a place of a part's at `at` that does not touch within the range of a law? Most are, or they
-   were not found; an ellipsoid's by its gap to the point of its own that comes there. */
+/* True if contact point `place` of part p, whose centre is at `at`, overlaps or is within the range
+   of the law. Contact points of other shapes are found only within that range. For an ellipsoid the
+   gap is the distance from its surface to the point, measured on the ray from its centre. */
 static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
                            const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
     return p->kind != DEMI_ELLIPSOID || place->overlap > 0 ||
         demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
 }
-/* Contacts of part k of a body with one wall: all of them, then what each continues. shaped: 0 for
-   a sphere, which has a copy of the code: its places weigh by themselves, as they are found. */
+/* Appends the contacts of part k of a body with one wall, then decides which old one each
+   continues. shaped: 0 for a sphere, for which the compiler makes a specialised copy; the weights
+   of its contact points remain those that were found. */
 DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
                                   const demi_part *p, const demi_kept *old, int olds) {
     const demi_wall *wall = v->wall;
@@ -526,7 +563,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
         c->normal = found[i].normal;
         c->share = c->weight = c->lift = c->grip = found[i].share;
         c->shift = found[i].shift;
-        if (!shaped || p->kind == DEMI_BALL) {  /* the commonest, without a call */
+        if (!shaped || p->kind == DEMI_BALL) {  /* the most common, inlined */
             demi_ball_on_wall(w, wall, p, &found[i], c);
             if (shaped && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED && c->overlap > 0)
                 demi_wall_bend(wall, v->element, v->left,
@@ -545,14 +582,14 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
-        for (e = 0; e < olds; e++)              /* under way: to the end */
+        for (e = 0; e < olds; e++)              /* stays in the hole until through */
             if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && c->overlap > 0 &&
                 !demi_kept_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
-/* Is a ball clear of what its body may touch of a wall? Told at once for a plane, which most balls
-   of a cluster beside it are clear of; 0: to be looked at. */
+/* True if a sphere at `at` cannot touch the part of a wall that its body may touch. Decided only
+   for planes, from which most spheres of a nearby cluster are far away; 0: must be examined. */
 DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
     const dem_real *R = v->wall->pose.rotation;
     dem_vec3 x;
@@ -560,7 +597,7 @@ DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
     x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
     return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
-/* Of one body with one wall. */
+/* Finds all contacts of one body with one wall: candidates first .. last - 1 of work group d. */
 static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
                                       const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
@@ -584,13 +621,14 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
     }
     demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
 }
-/* Do two contacts of one body with walls belong to one surface: of one part, with walls that do not
-   move against each other? */
+/* True if two contacts of one body with walls belong to the same surface: same part, and walls at
+   rest relative to each other. */
 DEM_INLINE int demi_kept_beside(const dem_world *w, const demi_kept *a, const demi_kept *b) {
     return a->part_a == b->part_a && w->walls[a->wall].group == w->walls[b->wall].group;
 }
-/* How much of what contact e takes away comes off c's friction, by weight: nothing where they are
-   not of one surface or do not push the same way; all, where they are at one place. */
+/* Returns the (not normalised) weight with which contact c takes part in the negative weight of
+   contact e: the similarity of their normals over the squared distance of their points. It is 0 if
+   the two do not belong to the same surface, and dominates if their points coincide. */
 static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const demi_kept *c) {
     const dem_vec3 d = demi_add(demi_sub(c->arm_a, e->arm_a),
         demi_sub(demi_scale(e->normal, e->overlap), demi_scale(c->normal, c->overlap)));
@@ -599,10 +637,12 @@ static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const d
     if (!(c->weight > 0) || !(c->overlap > 0) || !demi_kept_beside(w, e, c)) return 0;
     return (double)demi_kept_along(e, c, &rate)/((double)demi_dot(d, d) + hair*hair);
 }
-/* A place that takes away (where rows of a sieve cross, at the edge of a valley of facets) has no
-   friction of its own, since what gives way there would give energy. That of those beside it counts
-   so much less instead, springs and limits alike, the nearest most: one that it cancels has none,
-   two that begin as one hold together what the one did, and mu is still the ratio of both sums. */
+/* Removes the friction of contacts with negative weight (where rows of a sieve cross, or at the
+   edge of a valley of facets): a sliding contact with negative friction would supply energy. The
+   friction of the neighbouring contacts, springs and limits alike, is reduced by the same amount
+   instead, mostly that of the nearest. A contact that is cancelled entirely has no friction. Two
+   contacts that begin as one together hold what the one held. mu remains the ratio of the two total
+   forces. */
 static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
     int i, k;
@@ -616,13 +656,13 @@ static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
             if (part > 0) c[i].held += part*c[k].weight*demi_kept_steep(&c[k], &c[i], hertz, 0);
         }
     }
-    for (k = 0; k < n; k++) {                   /* held: what is taken away, until it is used */
+    for (k = 0; k < n; k++) {                   /* held: the reduction, until it is applied */
         if (c[k].held < 0) c[k].grip *= DEMI_MAX(1 + c[k].held/c[k].weight, DEM_R(0));
         c[k].held = 0;
     }
 }
-/* A place of a surface that ends at depth, since another one has taken its part over, hands its
-   springs to that: the one that pushes most nearly the same way. */
+/* If a contact with a surface ends at depth, because another one has replaced it, its springs pass
+   to the contact with the most similar normal: that contact's `send` names the one that ended. */
 static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int olds,
                             demi_kept *c, int n) {
     const int first = (int)(old - demi_kept_of(w, d));
@@ -645,19 +685,19 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
 }
-/* All of one body with walls, when all are there: how often friction counts, and what of a step ago
-   it begins with. */
+/* Completes the contacts of one body with walls once all are found: the weights of friction, and
+   which springs of the step before each inherits. */
 static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
                              demi_kept *c, int n) {
     const demi_kept *now = demi_kept_of(w, d);
-    if (n == 1 && olds <= 1) { c->held = -1; return; }      /* do not fetch the old one yet */
+    if (n == 1 && olds <= 1) { c->held = -1; return; }      /* do not load the old one yet */
     demi_kept_crossed(w, c, n);
     demi_kept_ended(w, d, old, olds, c, n);
     demi_kept_inherit(now, c, n);
 }
 
-/* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls.
-   */
+/* Finds all persistent contacts of one work group in the order of body a. Each body has its pairs
+   within the group first, then its pairs with other groups, then its walls. */
 static void demi_domain_kept_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const demi_kept *old = demi_kept_of(w, d), *end = old + domain->kept, *old_end;
@@ -671,14 +711,14 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     for (; !(domain->overflow & 16); old = old_end) {
-        while (k < walls && gap[k] > gone) k++; /* not near yet */
+        while (k < walls && gap[k] > gone) k++; /* not close enough yet */
         a = k < walls ? body[k] : INT_MAX;
         if (p < own_end) a = DEMI_MIN(a, near_a[p]);
         if (q < cross_end) a = DEMI_MIN(a, near_a[q]);
         if (a == INT_MAX) return;
         while (old < end && old->a < a) old++;
         for (old_end = old; old_end < end && old_end->a == a;) old_end++;
-        if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* too far apart for hardware */
+        if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
             demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
@@ -696,7 +736,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
                              w->kept_next + w->kept_first[d] + walled, domain->kept_next - walled);
     }
 }
-/* More room for the domains that ran out of it. 0 when memory ran out; nothing changed then. */
+/* Enlarges the lists of work groups that overflowed. Returns 0 if memory ran out; nothing has
+   changed then. */
 static int demi_kept_widen(dem_world *w) {
     int first[DEMI_DOMAINS + 1], d;
     for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
@@ -712,7 +753,7 @@ static int demi_kept_widen(dem_world *w) {
     memcpy(w->kept_first, first, sizeof w->kept_first);
     return 1;
 }
-/* All of them. 0 when memory ran out. */
+/* Finds the persistent contacts of all work groups. Returns 0 if memory ran out. */
 static int demi_touch(dem_world *w) {
     int d, again;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
