@@ -1,23 +1,26 @@
 /* ---------------------------------------------------------------------------------------------
    >>kept-respond
-   The law's answers to kept contacts, a tile of them at a time: coefficients and memory of each,
-   rows in which the stages of >>respond work out what laws answer, forces on both ends, walls'
-   sums, energies, rates of the user's numbers; and the forces on far ends, which wait in slots, of
-   all contacts. Owns what goes from step to step in a contact; pushes bodies.
+   Response of persistent contacts, a tile of them at a time. For each contact it copies
+   coefficients and contact history, fills the rows in which the stages of >>respond evaluate the
+   laws, and adds the forces to both bodies, the sums of walls, the ledger's energies and the rates
+   of user-defined numbers. It also gathers the forces on bodies of later work groups, which wait in
+   slots, for all contacts. It owns the part of a demi_kept that lasts from step to step, and adds
+   to forces of bodies.
    --------------------------------------------------------------------------------------------- */
 
-/* What a body adds to 1/M, 1/kg, where a stiffness follows masses: as light as any contact may find
-   it, which is what the time step is chosen for. */
+/* Returns the largest inverse mass, 1/kg, with which a contact may find the body. It is used where
+   a stiffness depends on masses, and is also what the choice of the time step assumes. */
 static double demi_give_at_most(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return (double)w->bodies.inv_mass[body]/(shape ? shape->light : 1);
 }
-/* Coefficients of a contact, as yet without its slope, and what goes by the root of m_eff. */
+/* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
+   the square root of m_eff (`root`). */
 static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
                             dem_real *root) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
-    /* there a grain of a wall has mass */
+    /* here a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     const double half = mill && grains ? 0.5 : 1;
     const int shaped = demi_shape_of(w, k->a) || (k->b >= 0 && demi_shape_of(w, k->b));
@@ -30,21 +33,22 @@ static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *ou
     root[0] *= (dem_real)sqrt(half);
     root[1] *= (dem_real)sqrt(half);
 }
-/* Velocity of a body at an arm: now, or its mean over the step. */
+/* Velocity of a body at an arm, m/s: at the full step or, with half_vel, averaged over the step. */
 static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int body, dem_vec3 arm) {
     return demi_add(demi_at(v + 4*body), demi_cross(demi_at(spin + 4*body), arm));
 }
 static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
-/* What contact c takes over from the one it continues: memory, and coefficients, where its radius
-   is as it was. Answers that one; c itself when it is new: then nothing has turned. */
+/* Copies history and coefficients from the contact that c continues; coefficients are worked out
+   again if its effective radius or its wall has changed. Returns that contact or, if c is new, c
+   itself, so that its change of normal is zero. */
 DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
                                              demi_kept *c) {
     const demi_kept *old = c->from < 0 ? c : now + c->from;
     const int fits = old != c && old->wall == c->wall &&
         !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
-    if (c->b < 0 && !demi_shape_of(w, c->a))    /* which touch does not fetch */
+    if (c->b < 0 && !demi_shape_of(w, c->a))    /* not set by touch */
         c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
     if (fits) {
         memcpy(c->coef, old->coef, sizeof *c - offsetof(demi_kept, coef));
@@ -56,10 +60,11 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
     c->coef_r = c->r_eff;
     return old;
 }
-/* Springs of friction and rolling that come to count more than they did (contacts that are shared,
-   places of a surface) keep their force, those that count less their length: the other way about
-   they would make energy. What ended in this one joins it first, as the mean of both springs, which
-   holds no more than they did. */
+/* Rescales the springs of friction and rolling when the weight of friction changes (merged
+   contacts, contact points of a surface). If the weight grows, a spring keeps its force; if it
+   falls, the spring keeps its length. The reverse would create energy. A contact that has ended in
+   this one is merged first: the weighted mean of both springs stores no more energy than the two
+   did. */
 static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *c) {
     const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
     const dem_real held = c->held < 0 ? now[c->from].grip : c->held, more = ended ? ended->grip : 0;
@@ -73,13 +78,13 @@ static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *
         c->memory[k] *= left;
     }
 }
-/* m: radii of what touches, together: spheres, those of clusters, too; bounding ones of other
-   shapes. Of a wall none. */
+/* Sum of the two radii, m: of spheres, including those of clusters, or the bounding radii of other
+   shapes; a wall adds none. */
 static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
-/* Who touches, for a law that wants to know. */
+/* Fills in `who` for a law that has desc.law_who set. */
 static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
                           dem_contact_who *who) {
     const demi_periods periods = demi_periods_of(w);
@@ -100,24 +105,25 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rate
 #pragma GCC push_options
 #pragma GCC optimize("no-trapping-math")
 #endif
-/* Contacts under work, a tile of them: what only these have, and rows for the stages of >>respond.
-   A wall is a body b without an arm: the others are against its surface there. */
+/* A tile of persistent contacts: what only these need, and the rows for the stages of >>respond. A
+   wall is a body b with zero arm: velocities are relative to its surface at the contact point. */
 typedef struct demi_kept_tile {
-    demi_rows arm[2], mid[2];      /* m, of a and b: now, in the middle of the step */
-    demi_rows spin[2], spun[2];    /* rad/s, of a and b: the same */
-    dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: less share */
-    dem_real still[DEMI_ROOM];      /* N, the elastic force, where any is lifted */
-    dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 less inset */
+    demi_rows arm[2], mid[2];      /* m, of a and b: now; at mid-step */
+    demi_rows spin[2], spun[2];    /* rad/s, of a and b: likewise */
+    dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: minus share */
+    dem_real still[DEMI_ROOM];      /* N, elastic force, if any is lifted */
+    dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 - inset */
     dem_real root[2][DEMI_ROOM];
-    /* where bodies are no spheres: of a and b, what follows from them for 1/m_eff */
-    demi_rows felt[2];             /* m; 0: nothing turns */
+    /* for 1/m_eff, if not all bodies are spheres: of a and b */
+    demi_rows felt[2];             /* m; 0: does not rotate */
     dem_real q[2][4][DEMI_ROOM], I[2][3][DEMI_ROOM], inv[2][DEMI_ROOM];
-    /* the others: here, so that all rows begin on cache lines */
+    /* the remaining fields are last, so that all rows begin on cache lines */
     demi_tile rows;
     demi_kept *contact[DEMI_TILE];
-    const demi_kept *old[DEMI_TILE];               /* what each continues; itself, if new */
-    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* where a wall is touched, m; its speed, m/s */
-    int count, lifted, shaped;     /* is still wanted? are there bodies that are no spheres? */
+    const demi_kept *old[DEMI_TILE];               /* what each continues; a new one: itself */
+    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* contact point with a wall, m; its velocity,
+                                                      m/s */
+    int count, lifted, shaped;     /* is `still` needed? bodies that are not spheres? */
 } demi_kept_tile;
 DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {
     DEMI_XY(rows, 0, q) = v.x;
@@ -127,7 +133,7 @@ DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) 
 DEM_INLINE dem_vec3 demi_middle(dem_vec3 a, dem_vec3 b) {
     return demi_scale(demi_add(a, b), DEM_R(0.5));
 }
-/* Row q of what is against a wall. */
+/* Fills row q of a contact with a wall, on its wall's side. */
 DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_vec3 mid,
                                      demi_kept_tile *t, int q) {
     const dem_world *w = r->w;
@@ -140,14 +146,14 @@ DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_
     demi_rows_put(&t->arm[1], q, demi_v(0, 0, 0));
     demi_rows_put(&t->spin[1], q, wall->pose.spin);
     if (!r->following) return;
-    /* where the contact was in the middle of the step */
+    /* velocity relative to the wall at mid-step */
     demi_rows_put(&t->rows.gone, q,
                   demi_sub(uh, demi_surface_at(&wall->mid,
                       demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2))))));
     demi_rows_put(&t->mid[1], q, demi_v(0, 0, 0));
     demi_rows_put(&t->spun[1], q, wall->mid.spin);
 }
-/* Row q of two bodies. */
+/* Fills row q of a contact of two bodies, on the side of body b. */
 DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, const demi_kept *old,
                                      demi_kept_tile *t, int q) {
     const dem_world *w = r->w;
@@ -160,7 +166,8 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
     demi_rows_put(&t->mid[1], q, demi_middle(k->arm_b, old->arm_b));
     demi_rows_put(&t->spun[1], q, demi_at(w->bodies.half_spin + 4*k->b));
 }
-/* Row q: what body `who`, of side 0 or 1, gives way by where it is pushed. */
+/* Fills row q with the mobility of body `who` (side 0: a, 1: b; negative: a wall) at an arm:
+   1/mass, orientation and moments of inertia. */
 DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, int side,
                                      demi_kept_tile *t, int q) {
     const dem_real inv = who < 0 ? 0 : w->bodies.inv_mass[who];
@@ -171,12 +178,12 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, 
     for (e = 0; e < 4; e++) t->q[side][e][q] = turns ? w->bodies.orient[4*who + e] : 0;
     for (e = 0; e < 3; e++) t->I[side][e][q] = turns ? w->bodies.moment[4*who + e] : 1;
 }
-/* Row q: a contact, and the one of a step ago that it continues. */
+/* Fills row q from a contact and the old one that it continues. */
 static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
                             demi_kept_tile *t, int q) {
     const dem_world *w = r->w;
     const dem_vec3 mid = demi_middle(k->arm_a, old->arm_a);
-    const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
+    const dem_real *coef = k->coef, slope = k->slope;    /* d overlap/d approach */
     int e;
     for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = k->memory[e];
     demi_row_put(t->rows.normal, q, k->normal);
@@ -207,8 +214,8 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
     demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
 }
-/* The last group of a tile is filled up with copies of its last contact, in every row that is
-   fetched: nobody reads what comes of it, but it is arithmetic like any other. */
+/* Pads the last vector group of a tile with copies of its last contact, in every row that was
+   filled. The padded results are ignored; copies avoid arithmetic on undefined values. */
 static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->share, t->grip, t->lift, t->couple, t->outset,
@@ -227,7 +234,7 @@ static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
         for (q = last + 1; q < full; q++)
             demi_rows_put(triples[k], q, demi_rows_at(triples[k], last));
 }
-/* 1/mass that a force along n, at its arm, feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
+/* Inverse mass, 1/kg, that a force along n finds at its arm: 1/m + (arm x n).I^-1 (arm x n). */
 DEM_INLINE dem_real demi_kept_give(demi_kept_tile *DEMI_RESTRICT t, int side, int q) {
     const dem_vec3 c = demi_cross(demi_rows_at(&t->felt[side], q), demi_row(t->rows.normal, q));
     const dem_vec3 v = dem_quat_unrotate(dem_quat_make(t->q[side][0][q], t->q[side][1][q],
@@ -235,13 +242,14 @@ DEM_INLINE dem_real demi_kept_give(demi_kept_tile *DEMI_RESTRICT t, int side, in
     return t->inv[side][q] + (v.x*v.x/t->I[side][0][q] + v.y*v.y/t->I[side][1][q] +
                               v.z*v.z/t->I[side][2][q]);
 }
-/* m*, of two bodies and where they touch, but where it is known. */
+/* Effective mass m* of a contact, kg: from both bodies at the contact point, unless already
+   known. */
 DEM_INLINE void demi_kept_mass_one(demi_kept_tile *DEMI_RESTRICT t, int q) {
     const dem_real known = t->rows.coef[DEMI_M_EFF][q];
     const dem_real m = 1/(demi_kept_give(t, 0, q) + demi_kept_give(t, 1, q));
     t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
 }
-/* How the two move against each other where they touch: now, and over the step just taken. */
+/* Relative motion at the contact: now, and (following) averaged over the step just taken. */
 DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                      int following) {
     const dem_vec3 n = demi_row(t->rows.normal, q);
@@ -255,7 +263,7 @@ DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi
     demi_rows_put(&t->rows.apart, q, apart);
     t->rows.coef[DEMI_CN][q] += t->root[0][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
     t->rows.coef[DEMI_CT][q] += t->root[1][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
-    /* a moment about the normal does work, too */
+    /* the moment about the normal also does work */
     t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
     if (following) {
         const dem_real per = s->dt > 0 ? 1/s->dt : 0;
@@ -273,7 +281,7 @@ DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi
         t->rows.twist[q] = demi_dot(demi_add(sa, sb), n)/2;
     }
 }
-/* Forces and moments, each part as often as it counts. */
+/* Force and torques of a contact, each part times its weight. */
 DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int rolls) {
     const dem_vec3 n = demi_row(t->rows.normal, q);
     const dem_real press = t->share[q]*t->rows.repulsion[q] + t->lift[q]*t->still[q];
@@ -305,11 +313,11 @@ DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
 #pragma GCC pop_options
 #endif
 
-/* Whether the elastic force counts more, or less, than what dissipates. */
+/* True if the weight of the elastic force differs from that of the dashpot. */
 DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
     return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
 }
-/* Row q as a law sees it that is called by itself. */
+/* Fills a dem_contact from row q for a law that is called contact by contact. */
 static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
                           dem_contact *c) {
     const demi_kept *k = t->contact[q];
@@ -323,7 +331,7 @@ static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run 
     c->user = w->desc.law_user;
     if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
 }
-/* Laws contact by contact: the user's, or where they are few. */
+/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
 static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
     dem_real m[DEMI_MEMORY];
     dem_contact_force f;
@@ -331,7 +339,7 @@ static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run
     int q;
     for (q = 0; q < t->count; q++) {
         t->still[q] = 0;
-        if (demi_kept_lifted(t->contact[q])) {  /* as if it stood still, with a copy of memory */
+        if (demi_kept_lifted(t->contact[q])) {  /* at rest, with a copy of its history */
             demi_kept_see(w, t, r, q, &c);
             demi_recall(&t->rows, q, 0, r->keep, m);
             c.closing_speed = 0;
@@ -347,7 +355,8 @@ static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run
         demi_rolling_put(&t->rows, &r->same, q, &f, 2);
     }
 }
-/* The elastic force alone, N: what the normal law answers where nothing moves. */
+/* Evaluates the normal law at zero closing speed: the elastic force alone, N. History is
+   restored. */
 static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
     const int at = r->same.at_normal;
     dem_real closing[DEMI_TILE], memory[DEMI_MEMORY][DEMI_TILE];
@@ -367,7 +376,8 @@ static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
 DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
     sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
-/* What a force at a place, with a moment, adds to its wall's sums. */
+/* Adds a force and a moment on a body at point `at` to the sums of its wall, with opposite sign.
+   surface: velocity of the wall there, m/s. */
 DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
                               dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
     const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
@@ -378,13 +388,13 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->torque[2] -= (double)torque.z;
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
 }
-/* m/s, by how much a and b (or a wall: < 0) closed faster than predicted */
+/* Velocity, m/s, by which a and b (b < 0: a wall) closed faster than predicted. */
 DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
     const dem_vec3 late = demi_at(w->bodies.late + 4*a);
     return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
 }
-/* What the contact of row q did with energy. Friction and rolling may count differently from the
-   rest: demi_kept_lift. */
+/* Adds the energies of the contact of row q to the ledger. Friction and rolling may have another
+   weight than the rest: see demi_kept_lift. */
 static void demi_kept_book(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
     const demi_tile *rows = &t->rows;
     const demi_kept *c = t->contact[q];
@@ -401,7 +411,7 @@ static void demi_kept_book(const dem_world *w, const demi_kept_tile *t, int q, d
     energy[DEMI_E_ROLL] += (double)(grip*rows->part[5][q]);
 }
 
-/* What a law has answered for the users' numbers of contact c: as often as it counts. */
+/* Adds the rates that a law returned for user-defined numbers, times the weight of contact c. */
 static DEMI_APART void demi_kept_rates(dem_world *w, int d, const demi_kept *c,
                                        const dem_real *rates) {
     const int n = w->bodies.real_count;
@@ -417,7 +427,7 @@ static DEMI_APART void demi_kept_rates(dem_world *w, int d, const demi_kept *c,
         else wall[k] += (double)gain;
     }
 }
-/* A body that a contact will soon read and push. */
+/* Prefetches a body that a later contact will read and change. */
 DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.vel + 4*body);
     DEMI_FETCH(w->bodies.half_vel + 4*body);
@@ -426,7 +436,8 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
 }
-/* The force across the normal on the contact's ball, which goes round something: to both. */
+/* Adds the tangential force of merged contacts (c->aside). It acts on a at the centre of its
+   sphere, and on b at the point that the normal rotates about, 1/bend or 1/along away. */
 static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
     const demi_kept *c = t->contact[q];
     const dem_vec3 aside = demi_scale(c->aside, t->still[q]);
@@ -443,13 +454,13 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
                  demi_sub(demi_row(t->rows.torque[1], q),
                           demi_add(demi_cross(c->arm_b, aside), moment)));
 }
-/* The force of row q to both ends. */
+/* Adds the force of row q to both bodies, or to body a and the sums of its wall. */
 static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     const demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
     demi_force_add(w->bodies.force + 4*c->a, force);
     demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
-    if (c->b >= 0) {                            /* several may go by one near pair */
+    if (c->b >= 0) {                            /* several contacts may share a slot */
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
         demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
         demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
@@ -457,8 +468,8 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
         demi_wall_sum_add(w, &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall],
                           c->wall, t->at[q], force, demi_row(t->rows.moment, q), t->surface[q]);
 }
-/* Fills in what the tile's contacts answer. Where they are few, one by one, since a group costs as
-   much for one as for all that fit in. Bits are the same. */
+/* Evaluates the contacts of a tile. Fewer than four are evaluated one by one, since a vector group
+   costs as much for one contact as for all that fit. Results are the same to the bit. */
 static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
     const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     const int few = t->count < 4, rolls = w->desc.law || w->laws.rolling->law;
@@ -482,7 +493,7 @@ static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_ke
     }
     (rolls ? demi_kept_answer_rolling : demi_kept_answer)(t, r, full);
 }
-/* The whole tile: law, forces on both ends, walls' sums, energies, memory. */
+/* Evaluates a tile, then adds forces to both sides, updates sums of walls, energies and history. */
 static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_kept_tile *t) {
     demi_domain *domain = &w->domains[d];
     demi_tile *rows = &t->rows;
@@ -499,7 +510,8 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
     }
     t->count = t->lifted = t->shaped = 0;
 }
-/* What a contact that is asked about counts for its domain; fresh: it begins to touch. */
+/* Counts a contact that a law is evaluated for: materials that have touched, largest overlap,
+   numbers of contacts. fresh: it begins to touch in this step. */
 static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) {
     demi_domain *domain = &w->domains[d];
     const int touches = c->overlap > 0;
@@ -517,14 +529,14 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* What a contact will soon take over. */
+/* Prefetches the old contact that k continues. */
 DEM_INLINE void demi_kept_fetch_old(const demi_kept *k) {
     DEMI_FETCH(&k->normal);
     DEMI_FETCH(k->coef);
     DEMI_FETCH(k->coef + 8);
     DEMI_FETCH(k->memory);
 }
-/* All contacts of one domain, in the order of their list. */
+/* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
@@ -539,8 +551,8 @@ static void demi_kept_respond(dem_world *w, int d) {
     for (q = 0; q < DEMI_TILE && q < domain->kept_next + DEMI_LANES; q++) {
         tile.rows.touch[q] = 1;
         tile.rows.memory[DEMI_MEMORY][q] = 0;
-        tile.still[q] = 0;                      /* where none is lifted */
-        demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* where no law answers it */
+        tile.still[q] = 0;                      /* if none is lifted */
+        demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* if no law sets it */
         tile.rows.slope[0][q] = tile.rows.slope[1][q] = tile.rows.kt[1][q] = (dem_real)NAN;
     }
     if (run.ledger) memset(tile.rows.part, 0, sizeof tile.rows.part);
@@ -552,7 +564,7 @@ static void demi_kept_respond(dem_world *w, int d) {
             if (c[2].from >= 0) demi_kept_fetch_old(now + c[2].from);
         }
         old = demi_kept_recall(w, now, c);
-        if (!demi_kept_asked(w, c)) {           /* under way through a reduced hole */
+        if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */
             c->force = demi_v(0, 0, 0);
             domain->kept_walls += c->b < 0;
             continue;
@@ -567,7 +579,7 @@ static void demi_kept_respond(dem_world *w, int d) {
     }
     if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
 }
-/* Slots of far ends are summed into: cleared before. */
+/* Clears the slots for forces on bodies of later work groups: contacts add to them. */
 static void demi_kept_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
@@ -579,7 +591,7 @@ static void demi_kept_clear(dem_world *w, int d) {
         memset(w->cross_rate + rates*first, 0, rates*(size_t)pairs*sizeof(dem_real));
 }
 
-/* The far ends of pairs that lead into domain d from domains before it. */
+/* Adds the forces that pairs of earlier work groups left in slots for bodies of work group d. */
 static void demi_cross_gather(dem_world *w, int d) {
     const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
     const int stride = w->cross.stride;
