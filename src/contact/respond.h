@@ -1,19 +1,21 @@
 /* ---------------------------------------------------------------------------------------------
    >>respond
-   The loops that bring near pairs, touch and law together. Grain-grain, a tile of pairs at a
-   time: what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
-   numbers that lie together is cheaper than three gathers); then stages run over the rows, one
-   after the other: touch, motion, normal law, friction, rolling, answer (vectorised: groups of a
-   constant length, which compilers turn into vectors at -O2 too); pushes are added to both bodies.
-   A scene runs the stages that it calls for, so that any combination of laws costs the sum of its
-   parts; the commonest ones have a stage for all of it, which saves the rows in between. Pairs that
-   lead out of a domain leave that force in a slot of its own; the other domain fetches it after all
-   are done, in the order of the list. So every body's sum has one order whatever the number of
-   threads.
+   Contact forces between spheres, computed for a tile of candidate pairs at a time. First the data
+   of both bodies are copied into rows, pair after pair (a copy of three adjacent numbers is cheaper
+   than three gathers). Then stages run over the rows, one after the other: contact detection,
+   relative motion, normal law, friction, rolling, force and torques. They work on vector groups of
+   constant length, which compilers vectorise at -O2 too. Finally the forces are added to both
+   bodies.
+
+   A scene runs only the stages that it needs, so any combination of laws costs the sum of its
+   parts. The most common combinations have one stage for all laws, which avoids the rows in
+   between. A pair with a body of a later work group stores that force in a slot; the other work
+   group adds it once all are done, in list order. The order of every sum is thus independent of the
+   number of threads.
    --------------------------------------------------------------------------------------------- */
-/* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. */
-/* What is copied one by one. For gcc with x and y side by side, which one instruction moves (5 % of
-   a step in single precision, 2 in double); clang takes such rows apart badly. */
+/* Sums and differences are of the two bodies of a pair: a + b and a - b. */
+/* Rows that are filled one by one. gcc gets x and y side by side, which one instruction moves
+   (saves 5 % of a step in single precision, 2 % in double); clang vectorises that layout badly. */
 #if defined(__GNUC__) && !defined(__clang__)
 typedef struct demi_rows { dem_real xy[DEMI_ROOM][2], z[DEMI_ROOM]; } demi_rows;
 #define DEMI_XY(rows, e, q) (rows)->xy[q][e]
@@ -22,43 +24,43 @@ typedef struct demi_rows { dem_real xy[2][DEMI_ROOM], z[DEMI_ROOM]; } demi_rows;
 #define DEMI_XY(rows, e, q) (rows)->xy[e][q]
 #endif
 typedef struct demi_tile {
-    /* fetched */
+    /* filled from bodies */
     demi_rows gap;                 /* m, from a to b */
-    demi_rows rate, gone;          /* m/s, difference of velocities: now, over the last step */
-    demi_rows late;                /* m/s, difference of what predictions fell short by: ledger */
-    demi_rows around, turned;      /* rad/s, sum of spins: the same */
-    demi_rows apart, parted;       /* rad/s, difference of spins: the same */
+    demi_rows rate, gone;          /* m/s, relative velocity: now; over the last step */
+    demi_rows late;                /* m/s, difference of prediction errors: ledger */
+    demi_rows around, turned;      /* rad/s, sum of spins: likewise */
+    demi_rows apart, parted;       /* rad/s, difference of spins: likewise */
     dem_real radius[2][DEMI_ROOM];
-    dem_real memory[DEMI_MEMORY + 1][DEMI_ROOM];           /* the last: where sliding is not kept */
+    dem_real memory[DEMI_MEMORY + 1][DEMI_ROOM];           /* last: if `sliding` is not kept */
     dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROOM];
-    /* touch and motion */
+    /* contact detection and relative motion */
     dem_real length[DEMI_ROOM], over_d[DEMI_ROOM], overlap[DEMI_ROOM], deep[DEMI_ROOM];
-    dem_real touch[DEMI_ROOM];      /* 1 where the two touch, or are within a law's range; else 0 */
+    dem_real touch[DEMI_ROOM];      /* 1: in contact, or within a law's range; else 0 */
     dem_real normal[3][DEMI_ROOM], turn[3][DEMI_ROOM];      /* unit, 1/s */
     dem_real slip[3][DEMI_ROOM], slip_step[3][DEMI_ROOM];   /* m/s */
-    dem_real lean[DEMI_ROOM];       /* m, from the middle to the contact, towards b */
+    dem_real lean[DEMI_ROOM];       /* m, from midway between the centres to the contact, to b */
     dem_real closing[DEMI_ROOM], twist[DEMI_ROOM];
-    /* laws: what each leaves for the next (see dem_contact_force), what does not touch included */
+    /* what each law passes to the next (see dem_contact_force), also for pairs without contact */
     dem_real repulsion[DEMI_ROOM], load[DEMI_ROOM], slope[2][DEMI_ROOM], kt[2][DEMI_ROOM];
     dem_real ct[DEMI_ROOM], tangent[3][DEMI_ROOM], moment[3][DEMI_ROOM];
     dem_real part[7][DEMI_ROOM];                           /* energies */
-    /* answer */
-    dem_real force[3][DEMI_ROOM], torque[2][3][DEMI_ROOM];  /* torque on a, on b */
-    /* the last, so that rows begin on cache lines (3 % of a step) */
-    int row;                       /* of species_coef: all of coef holds it; -1: no row does */
-    dem_real gains[DEMI_ROOM][2*DEM_BODY_REALS];   /* 1/s, of the user's numbers */
+    /* force and torques */
+    dem_real force[3][DEMI_ROOM], torque[2][3][DEMI_ROOM];  /* torque: on a, on b */
+    /* these are last, so that rows begin on cache lines (3 % of a step) */
+    int row;                       /* the row of species_coef in all of coef; -1: none */
+    dem_real gains[DEMI_ROOM][2*DEM_BODY_REALS];   /* 1/s, of user-defined numbers */
 } demi_tile;
-/* Where the pairs of a tile stand in the near list. */
+/* Up to a tile of consecutive entries of the pruned neighbour list. */
 typedef struct demi_span {
     const int32_t *a, *b;
     const unsigned char *image;
     dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
-    const int32_t *row;            /* of the table of species, or null: */
-    const dem_real *coef;          /* columns likewise; neither where all are alike */
+    const int32_t *row;            /* of the table of species, or null */
+    const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
     size_t stride;
     int count;
 } demi_span;
-/* Where `count` near pairs of domain d, from entry p on, have their numbers. */
+/* Returns the span of `count` pairs of work group d from entry p on. */
 static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     const demi_near *near = &w->near;
     const size_t stride = (size_t)near->stride, at = (size_t)d*stride + (size_t)p;
@@ -74,7 +76,7 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     return s;
 }
 
-/* Coefficients of pair q. */
+/* Copies the coefficients of pair q. */
 static void demi_span_coefs(const dem_world *w, const demi_span *s, int q, dem_real *coef) {
     const int row = s->row ? s->row[q] : 0;
     int e;
@@ -89,14 +91,14 @@ DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROOM], int q) {
 DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROOM], int q, dem_vec3 v) {
     rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
 }
-/* count: whole groups */
+/* count: a multiple of DEMI_LANES */
 static void demi_row_copy(dem_real *DEMI_RESTRICT to, const dem_real *DEMI_RESTRICT from,
                           int count) {
     int q, l;
     for (q = 0; q < count; q += DEMI_LANES)
         for (l = 0; l < DEMI_LANES; l++) to[q + l] = from[q + l];
 }
-/* Rows of a tile are filled from bodies here and below: a - b, a + b, a - b + shift. */
+/* Fill row q from the bodies: a - b, a + b, a - b + shift. */
 DEM_INLINE void demi_rows_minus(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
                                 const dem_real *b) {
     const dem_real x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -123,38 +125,37 @@ DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
     return demi_v(DEMI_XY(rows, 0, q), DEMI_XY(rows, 1, q), rows->z[q]);
 }
 
-/* A law sees predicted velocities, and a ledger wants those of the path (demi_late_note). By how
-   much faster than predicted do two close, as a share of how fast? As the last prediction had it,
-   for the forces of this step are not known yet. */
+/* Laws use predicted velocities, but the ledger needs those of the actual path (demi_late_note).
+   Returns the relative excess of the actual closing speed over the predicted one. It uses the error
+   of the last prediction, since the forces of this step are not known yet. */
 DEM_INLINE dem_real demi_late_share(dem_vec3 late, dem_vec3 normal, dem_real closing) {
     return demi_dot(late, normal)/(closing > 0 || closing < 0 ? closing : 1);
 }
 
-/* What is the same for all pairs of a run: a stage takes a copy, so that compilers see that nothing
-   changes it. */
+/* Constants of a run. A stage takes a copy, so that compilers see that nothing changes them. */
 typedef struct demi_same {
     dem_real dt, radius, inv_radius;
-    dem_real range, range_radii;   /* m: of a law that is asked before touch; else 0 */
+    dem_real range, range_radii;   /* m; factor: the range of a law, or 0 */
     int tension, friction_load, slider;
-    int at_rolling, at_normal;     /* where their memory begins */
-    int at_sliding;                /* the row of memory that says whether friction slides */
+    int at_rolling, at_normal;     /* where their history begins */
+    int at_sliding;                /* row of memory that holds `sliding` */
 } demi_same;
-/* What a scene calls for. */
+/* What a scene needs: a run is a list of stages with their settings. */
 typedef struct demi_run demi_run;
 typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full);
 enum { DEMI_STAGES = 6 };
 struct demi_run {
     const dem_world *w;
-    const demi_span *span;         /* the pairs under work; null: kept contacts are */
-    int alike, ledger, keep;       /* are the two of a pair alike? keep: reals of memory */
-    int turning, parting;          /* are spins, differences of spins wanted? */
-    int following;                 /* is the motion over the last step wanted? */
-    int ranged;                    /* is the law asked before touch? */
+    const demi_span *span;         /* the pairs; null: persistent contacts */
+    int alike, ledger, keep;       /* are both bodies alike? keep: reals of history */
+    int turning, parting;          /* are spins, differences of spins needed? */
+    int following;                 /* is the motion over the last step needed? */
+    int ranged;                    /* does the law have a range? */
     demi_same same;
-    demi_stage stage[DEMI_STAGES]; /* in this order; null: the end */
+    demi_stage stage[DEMI_STAGES]; /* in this order, up to the first null */
 };
 
-/* Copies what the stages will see of the bodies into the rows. */
+/* Copies the data of bodies that the stages need into the rows. */
 DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t, int uniform,
                            int turning, int parting, int following) {
     const dem_world *w = r->w;
@@ -170,7 +171,7 @@ DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRIC
         uint32_t i, j;
         DEMI_ONE_BY_ONE(q);
         i = (uint32_t)la[q]; j = (uint32_t)lb[q];
-        if (n + DEMI_TILE/2 < count) {          /* neighbours may lie far apart */
+        if (n + DEMI_TILE/2 < count) {          /* neighbours may be far apart in memory */
             const uint32_t next = (uint32_t)lb[q + DEMI_TILE/2];
             DEMI_FETCH(DEMI_AT(u, next));
             if (turning) DEMI_FETCH(DEMI_AT(s, next));
@@ -188,39 +189,39 @@ DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRIC
         if (parting) demi_rows_minus(&t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
     }
 }
-/* What the scene asks for is known before the tile: a copy of the loop for each case, without a
-   question inside. */
+/* Calls a copy of demi_fetch that is compiled for the needs of the scene, without branches
+   inside. */
 static void demi_tile_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t) {
-    /* where differences of spins are wanted, radii cost little, even those of alike bodies */
+    /* if differences of spins are needed, radii cost little, even those of alike bodies */
     if (r->parting && r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
     else if (r->parting) demi_fetch(r, count, t, 0, 1, 1, 0);
     else if (r->following) demi_fetch(r, count, t, 1, 1, 0, 1);
     else demi_fetch(r, count, t, r->alike, r->turning, 0, 0);
 }
 
-/* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
-   means of the step, so the normal they are taken across is that of its middle. Rigid motion of
-   both gives zero. */
+/* Slip velocity, m/s, over the step just taken, in the present tangent plane. Velocity and spin
+   (times arm) are means of the step, so they are projected with the normal at mid-step. It is 0 for
+   a rigid motion of both bodies. */
 DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone, dem_vec3 around) {
     const dem_vec3 t = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
     const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
 
-/* --- stages: each runs over all pairs of a tile before the next begins. Processors then have
-   several pairs under way at once, where one long chain of roots and quotients would keep them
-   waiting. `full` is a whole number of groups; pairs to fill up the last one are nobody's. --- */
+/* --- stages: each runs over all pairs of a tile before the next begins. Processors then overlap
+   several pairs, instead of waiting for one long chain of roots and divisions. `full` is a multiple
+   of DEMI_LANES; the results of pairs that pad the last group are ignored. --- */
 #define DEMI_ROWS(full) { int g, l; \
     for (g = 0; g < (full); g += DEMI_LANES) { \
         DEMI_VECTOR \
         for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
 #define DEMI_ROWS_END }}}
 
-/* m: gap up to which a law is asked about pair q. */
+/* Gap, m, up to which a law is called for pair q. */
 DEM_INLINE dem_real demi_tile_range(const demi_tile *t, const demi_same *s, int q, int uniform) {
     return s->range + s->range_radii*(uniform ? 2*s->radius : t->radius[0][q] + t->radius[1][q]);
 }
-/* touch: distance, normal, overlap; ranged: is the law asked before the two touch? */
+/* Contact detection: distance, normal, overlap. ranged: the law has a range. */
 DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
                                int ranged) {
     const dem_vec3 gap = demi_rows_at(&t->gap, q);
@@ -242,7 +243,7 @@ DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, i
     t->touch[q] = overlap > least ? DEM_R(1) : DEM_R(0);
     t->overlap[q] = overlap > least ? overlap : 0;
 }
-/* motion: how the two move at the contact, now and over the step just taken */
+/* Relative motion at the contact, now and over the step just taken. */
 DEM_INLINE void demi_motion_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
                                 int turning, int following) {
     const dem_vec3 n = demi_row(t->normal, q), rate = demi_rows_at(&t->rate, q);
@@ -281,7 +282,7 @@ DEMI_MOTION_STAGE(alike_following, 1, 1, 1, 0)
 DEMI_MOTION_STAGE(mixed_following, 0, 1, 1, 0)
 DEMI_MOTION_STAGE(mixed_ranged, 0, 1, 1, 1)
 
-/* Pair q as a law sees it; compilers leave out what the law does not look at. */
+/* Fills a dem_contact from row q; compilers leave out what the law does not use. */
 DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                   dem_contact *c) {
     c->normal = demi_row(t->normal, q);
@@ -308,7 +309,8 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
     c->slider = s->slider;
     c->wall = 0;
 }
-/* A law's memory of pair q: `count` reals from `at` on. What does not touch forgets. */
+/* Copy the contact history of pair q, `count` reals from `at` on. It is cleared if the two are
+   apart. */
 #define DEMI_RECALL(e) m[e] = e < count ? t->memory[at + e][q] : 0
 #define DEMI_KEEP(e) if (e < count) t->memory[at + e][q] = m[e]*t->touch[q]
 DEM_INLINE void demi_recall(demi_tile *DEMI_RESTRICT t, int q, int at, int count, dem_real *m) {
@@ -324,7 +326,7 @@ DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
 }
 #undef DEMI_RECALL
 #undef DEMI_KEEP
-/* What a law says of energy, for the ledger. */
+/* Keep the energies that a law returns, for the ledger. */
 DEM_INLINE void demi_normal_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
     t->part[0][q] = f->energy.dashpot*t->touch[q];
     t->part[6][q] = f->energy.sag*t->touch[q];
@@ -335,7 +337,8 @@ DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem
     t->part[3][q] = f->energy.slide*t->touch[q];
     t->part[4][q] = f->energy.shear_stored*t->touch[q];
 }
-/* What a law has answered, for the next; `all`: 1: also what only some ask for, 2: and energies. */
+/* Store what a law returned, for the next stages. all: 1 adds values that few laws need, 2
+   energies. */
 DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                 const dem_contact_force *f, int all) {
     (void)s;
@@ -349,7 +352,7 @@ DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, 
     t->slope[1][q] = f->slope_step;
     if (all > 1) demi_normal_energy(t, q, f);
 }
-/* What the normal law has told, for the laws that come after it. */
+/* Passes what the normal law returned to the laws after it. */
 DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_force *f) {
     demi_force_clear(f);
     f->load = t->load[q];
@@ -370,9 +373,10 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
     demi_row_put(t->moment, q, f->moment);
     t->part[5][q] = f->energy.roll*t->touch[q];
 }
-/* A stage of one law, whose memory begins at AT. Normal and friction laws have one for what is
-   common (ALL 0) and one for all choices (2); normal laws one for what is common, with slopes (1),
-   too. (A normal law overwrites all that it gets.) */
+/* Defines the stage of one law, whose history begins at AT. A normal or friction law has one stage
+   for the usual choices (ALL 0) and one for all choices (2); a normal law has one more, for the
+   usual choices with slopes (1). A normal law overwrites all fields of f that demi_normal_get
+   sets. */
 #define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
         const demi_same s = r->same; \
@@ -400,7 +404,7 @@ DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
 DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
 DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGES)
 
-/* answer: force and torques. What does not touch answers zero. */
+/* Force and torques of pair q; zero if the two are apart. */
 DEM_INLINE void demi_answer_one(demi_tile *DEMI_RESTRICT t, int q, dem_real repulsion,
                                 dem_vec3 tangent, dem_vec3 moment, int uniform, int turning,
                                 int parting) {
@@ -435,8 +439,8 @@ DEMI_ANSWER_STAGE(answer_mixed, 0, 1, 1, 0)
 DEMI_ANSWER_STAGE(answer_alike_rolling, 1, 1, 1, 1)
 DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
 
-/* All laws and the answer at once, for the commonest scenes. Memory: friction's FRICTION reals,
-   then rolling's. */
+/* Defines a stage with all laws, force and torques, for the most common scenes. History: FRICTION
+   reals of friction, then those of rolling. */
 #define DEMI_WHOLE_STAGE(NAME, NORMAL, TANGENT, FRICTION, ROLLING, MEMORY, UNIFORM, TURNING, \
                          ROLLS, LEDGER) \
     DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
@@ -477,7 +481,7 @@ DEMI_WHOLE_ROLLING(rolling_alike_ledger, 1, 1)
 DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 #endif
 
-/* Who the two of pair q are, for a law that wants to know. */
+/* Fills in c->who for pair q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
     const dem_world *w = r->w;
@@ -495,7 +499,7 @@ static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int 
     c->who.time = w->clock.time;
     demi_who_reals(w, a, b, 0, rates, &c->who);
 }
-/* Pair q as the user's law sees it. */
+/* Fills a dem_contact from row q for a user-defined law. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
                               int q, int who, dem_contact *c) {
     const dem_world *w = r->w;
@@ -506,8 +510,8 @@ DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, con
     c->user = w->desc.law_user;
     if (who) demi_tile_who(t, r, q, t->gains[q], c);
 }
-/* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it, but
-   for one that asks who touches. */
+/* Evaluates the user-defined law for pair q. It is inlined into the loop if DEM_LAW names it,
+   unless it needs c->who. */
 DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
                              int q, int who, int keep, int alike, int ledger, dem_law_fn law,
                              dem_contact *c) {
@@ -520,12 +524,12 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
     demi_keep(t, q, 0, keep, m);
     t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, alike, 1, 1);
-    if (!ledger) return;                        /* what the law says of it */
+    if (!ledger) return;                        /* energies that the law returned */
     demi_normal_energy(t, q, &f);
     demi_tangent_energy(t, q, &f);
     t->part[5][q] = f.energy.roll*t->touch[q];
 }
-/* A law of the user's own is asked pair by pair, and only about those that touch. */
+/* Calls a user-defined law pair by pair, and only for pairs in contact or within its range. */
 static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     const demi_same same = r->same;
     dem_contact c;
@@ -545,8 +549,8 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
         for (e = 0; e < 7; e++) t->part[e][q] = 0;
     }
 }
-/* The same for the law that DEM_LAW names, in loops that compilers may turn into vector code: one
-   for each number of reals that is common, and one for all others. */
+/* The same for the law that DEM_LAW names, in loops that compilers may vectorise: one for each
+   common number of history reals, and one for all others. */
 #ifdef DEM_LAW
 #define DEMI_OWN_ROWS(KEEP, ALIKE, LEDGER) \
     DEMI_ROWS(full) \
@@ -565,7 +569,7 @@ DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const
 }
 #endif
 
-/* --- which stages a scene runs --- */
+/* --- choice of stages --- */
 typedef struct demi_stage_row { demi_stage common, all, precise; } demi_stage_row;
 #define DEMI_STAGE_ROW_NORMAL(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     {demi_stage_##LAW, demi_stage_##LAW##_all, demi_stage_##LAW##_precise},
@@ -581,7 +585,7 @@ static const demi_stage_row demi_tangent_stages[] = {{0, 0, 0}, {0, 0, 0},
 static const demi_stage_row demi_rolling_stages[] = {{0, 0, 0}, {0, 0, 0},
     DEMI_ROLLING_LAWS(DEMI_STAGE_ROW_ROLLING) {0, 0, 0}};
 
-/* The stage that does all for the laws in force, or null. */
+/* Returns the one stage that evaluates all laws of the scene, or null if there is none. */
 static demi_stage demi_whole_stage(const dem_world *w, int alike) {
     (void)alike;
 #ifdef DEM_LAW
@@ -604,7 +608,7 @@ static demi_stage demi_whole_stage(const dem_world *w, int alike) {
 #endif
     return 0;
 }
-/* The stages of the laws in force, from stage k on; answers where they end. */
+/* Appends the stages of the scene's laws from stage k on. Returns the number of stages then. */
 static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
     const demi_stage_row *normal = &demi_normal_stages[w->normal];
     const demi_stage_row *tangent = &demi_tangent_stages[w->effects.tangent];
@@ -614,7 +618,8 @@ static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
     if (w->laws.rolling->law) r->stage[k++] = demi_rolling_stages[w->effects.rolling].common;
     return k;
 }
-/* What the laws in force ask of a run, but for its stages. dt 0: looking only. */
+/* Returns a run for the laws in force, without stages. dt 0: forces only, history does not
+   advance. */
 static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     const demi_laws *laws = &w->laws;
     const int own = w->desc.law != 0, rolls = laws->rolling->law != 0;
@@ -636,7 +641,8 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.dt = dt;
     return r;
 }
-/* The run of two spheres' contacts. Bits of pairs of alike bodies are the same either way. */
+/* Returns the run for contacts of two spheres. alike: for pairs of identical bodies; it gives the
+   same bits as the general one. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const demi_stage whole = demi_whole_stage(w, alike);
     const int rolls = w->laws.rolling->law != 0;
@@ -657,7 +663,8 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
     return r;
 }
-/* Rows that no stage fills: coefficients that are the same for all pairs, friction of none. */
+/* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
+   friction. */
 static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     const demi_domain *domain = &w->domains[d];
     const int first = demi_near_first(domain);
@@ -677,11 +684,11 @@ static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     memset(t->tangent, 0, sizeof t->tangent);
     memset(t->memory[DEMI_MEMORY], 0, sizeof t->memory[0]);
 }
-/* Coefficients of a tile's pairs, but those that never vary (demi_species_vary, laid once by
-   demi_tile_begin). Answers the run they are for: of the two, that for pairs that differ, or that
-   for pairs that are alike, which needs no radii, no difference of spins and one torque for both.
-   What a tile of one row fills in is left for the tiles after it, and not copied again; it is
-   filled in to the tile's end, because those may be longer. */
+/* Copies the coefficients of a tile's pairs, except those that never vary (species_vary), which
+   demi_tile_begin has set. Returns the run to use: run[0] for pairs of different bodies, run[1] for
+   pairs of identical ones, which needs no radii, no differences of spins and one torque for both.
+   If all pairs share one row of the table, later tiles with the same row skip the copy. Such a row
+   is therefore copied to the end of the tile, since those tiles may be longer. */
 static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int full,
                                  demi_tile *DEMI_RESTRICT t, demi_run *run) {
     const int32_t *DEMI_RESTRICT row = span->row;
@@ -705,7 +712,7 @@ static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int 
     return run + 1;
 }
 
-/* What dashpots took goes with the velocities of the path. */
+/* Corrects the energy that dashpots took to the velocities of the actual path. */
 static void demi_tile_late(const dem_world *w, const demi_span *span, int full,
                            demi_tile *DEMI_RESTRICT t) {
     const dem_real *DEMI_RESTRICT late = w->bodies.late;
@@ -717,7 +724,7 @@ static void demi_tile_late(const dem_world *w, const demi_span *span, int full,
                                              t->closing[q]);
     DEMI_ROWS_END
 }
-/* What the contacts of a tile did with energy, for the ledger, in order. */
+/* Adds the energies of a tile's contacts to the ledger, in list order. */
 static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *energy) {
     int q;
     for (q = 0; q < count; q++) {
@@ -729,7 +736,7 @@ static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *
         energy[DEMI_E_ROLL] += (double)t->part[5][q];
     }
 }
-/* The whole tile, by one of two runs, which is answered. */
+/* Evaluates a tile with one of two runs, and returns that run. */
 static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
                                    demi_tile *DEMI_RESTRICT t, double *energy) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
@@ -747,9 +754,9 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     return r;
 }
 
-/* What a tile adds up to besides forces. */
+/* Results of tiles other than forces: largest relative overlap, number of contacts. */
 typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
-/* Pairs that fill up the last group are left out here: `count` is that of the real ones. */
+/* count: without the pairs that pad the last group. */
 static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
     int q;
     for (q = 0; q < count; q++) {
@@ -757,7 +764,7 @@ static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_ta
         sum->contacts += t->touch[q];
     }
 }
-/* Pairs of a tile that a law was asked about and that do not touch. */
+/* Number of a tile's pairs within the range of the law that do not touch. */
 static int demi_tile_apart(const demi_tile *t, int count) {
     int q, apart = 0;
     for (q = 0; q < count; q++) apart += t->touch[q] > 0 && !(t->overlap[q] > 0);
@@ -767,7 +774,7 @@ DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) 
     x += sum[0]; y += sum[1]; z += sum[2];
     sum[0] = x; sum[1] = y; sum[2] = z;
 }
-/* Adds a tile's pushes to both bodies. */
+/* Adds a tile's forces to both bodies. */
 DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                              dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
                              int turning, int second) {
@@ -787,7 +794,7 @@ DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                      t->torque[second][2][q]);
     }
 }
-/* Forces of a tile to both bodies, in the order of the list: it decides the bits of their sums. */
+/* Adds a tile's forces to both bodies in list order, which decides the bits of the sums. */
 static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                               const demi_run *r, dem_real *DEMI_RESTRICT force,
                               dem_real *DEMI_RESTRICT torque) {
@@ -795,7 +802,7 @@ static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
     else demi_scatter(t, span, force, torque, 0, 0);
 }
-/* The same for pairs that lead out: the far ends' pushes stay in slots, six reals each. */
+/* The same for pairs with later work groups: forces on b stay in slots, six reals each. */
 static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                                const demi_run *r, dem_real *DEMI_RESTRICT force,
                                dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT out) {
@@ -814,8 +821,8 @@ static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     }
 }
 
-/* What a law has answered for the users' numbers of a tile's pairs: to both bodies, or, where the
-   pairs lead out, the far ends' to slots, of which `out` is the first. */
+/* Adds the rates that a law returned for user-defined numbers to both bodies. out: the first slot
+   for those of b, if b is of a later work group. */
 static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
                                        dem_real *out) {
     const int n = w->bodies.real_count;
@@ -831,10 +838,10 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     }
 }
 
-/* All pairs of one domain: those inside it, then those that lead out. */
+/* Computes all pairs of a work group: those within it, then those with later ones. */
 static void demi_pairs(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: looking only */
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
     demi_run run[2];
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
@@ -867,7 +874,7 @@ static void demi_pairs(dem_world *w, int d) {
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
 }
 
-/* Sets the loop over pairs for the laws in force; answers what reports call it. */
+/* Sets the force loop for the laws in force. Returns its name in reports. */
 static const char *demi_kernel_choose(dem_world *w) {
     w->kernel = demi_pairs;
 #ifdef DEM_LAW
