@@ -1,25 +1,26 @@
 /* ---------------------------------------------------------------------------------------------
    >>touch
-   Geometry only: where a sphere, and what else is put in its place, meets a wall element, and
-   which of the elements it overlaps count. (Where two spheres meet is demi_tile_touch; which of
-   them are near is known from the candidates.) Knows no law and no material, works in the wall's
-   frame, and finds places: normal, point, overlap, share. A place that several facets name is
-   one; those whose weights cancel are gone before a law is asked. Room for places was counted
-   when the list was made.
+   Geometry of contact points: where a sphere, or a body mapped to one, touches a wall element, and
+   which of the overlapped elements count. (Two spheres: see demi_touch_one in >>respond;
+   candidates: see >>lists.) It uses no law and no material, works in the frame of the wall, and
+   returns contact points: normal, point, overlap, weight (`share`). Several facets with the same
+   contact point give one; contact points whose weights cancel are removed before a law is called.
+   The memory was reserved when the candidate list was built.
    --------------------------------------------------------------------------------------------- */
 
-/* --- surfaces of facets: which places are nearest, and how often each counts (>>facets) --- */
+/* --- surfaces of facets: nearest contact points and their weights (>>facets) --- */
 
-/* The point of a triangle (n = 3) or segment nearest the origin [ERI05] 5.1.5. *where: 0 inside,
-   1 + k on the side from corner k to the next, 4 + k corner k. Rounding may put it on one side of a
-   border or the other, which moves the point by no more than that. */
+/* Returns the point of the segment from a (corner k) to b (corner l) that is nearest to the origin.
+   *where: 1 + k inside the segment, 4 + k or 4 + l at a corner. Rounding may choose either side of
+   a border; this moves the point by no more than the rounding. */
 DEM_INLINE dem_vec3 demi_side_point(dem_vec3 a, dem_vec3 b, int k, int l, int *where) {
     const dem_vec3 ab = demi_sub(b, a);
     const dem_real t = -demi_dot(a, ab), ll = demi_dot(ab, ab);
     *where = t <= 0 ? 4 + k : t >= ll ? 4 + l : 1 + k;
     return t <= 0 ? a : t >= ll ? b : demi_add(a, demi_scale(ab, t/ll));
 }
-/* A triangle so thin that it has no plane: the nearest of its sides. */
+/* Returns the nearest point of a triangle so thin that it has no plane: that of its nearest
+   side. */
 static dem_vec3 demi_sides_point(const dem_vec3 *y, int *where) {
     dem_vec3 best = demi_side_point(y[0], y[1], 0, 1, where), d;
     int k, at;
@@ -31,15 +32,15 @@ static dem_vec3 demi_sides_point(const dem_vec3 *y, int *where) {
     }
     return best;
 }
-/* Closest point of a segment (n = 2) or triangle (n = 3) to the origin [ERI05, 5.1.5]. where: 0:
-   inside, 1 .. 3: on a side, 4 .. 6: at a corner. */
+/* Returns the point of a segment (n = 2) or triangle (n = 3) nearest to the origin [ERI05, 5.1.5].
+   *where: 0 inside, 1 .. 3 on a side, 4 .. 6 at a corner. */
 DEM_INLINE dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
     dem_vec3 ab, ac, normal;
     dem_real d1, d2, d3, d4, d5, d6, nn;
     if (n == 2) {
         const dem_vec3 p = demi_side_point(y[0], y[1], 0, 1, where);
         if (*where != 1) return p;
-        *where = 0;                             /* in the plane: along the normal, exactly */
+        *where = 0;                             /* in the plane: exactly along the normal */
         ab = demi_sub(y[1], y[0]);
         if (y[0].z < 0 || y[0].z > 0 || ab.z < 0 || ab.z > 0) return p;
         normal = demi_v(-ab.y, ab.x, 0);
@@ -57,7 +58,7 @@ DEM_INLINE dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
     if (d5*d2 - d1*d6 <= 0 && d2 >= 0 && d6 <= 0) return demi_side_point(y[2], y[0], 2, 0, where);
     if (d3*d6 - d5*d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
         return demi_side_point(y[1], y[2], 1, 2, where);
-    *where = 0;                                 /* along the normal, exact however large it is */
+    *where = 0;                                 /* along the normal, exact for any size */
     normal = demi_cross(ab, ac);
     nn = demi_dot(normal, normal);
     if (!(nn > (DEMI_SINGLE ? DEM_R(1e-10) : DEM_R(1e-20))*demi_dot(ab, ab)*demi_dot(ac, ac)))
@@ -65,16 +66,16 @@ DEM_INLINE dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
     return demi_scale(normal, demi_dot(normal, y[0])/nn);
 }
 
-/* Places found so far for one body and one wall. `point` is from the body's centre, `overlap` is
-   the distance; both in the body's own measure (an ellipsoid's is that in which it is the unit
-   sphere). Few are looked through one by one, many by a table of their numbers. */
+/* Contact points found so far for one body and one wall. `point` is relative to the body's centre;
+   `overlap` is the distance. Both are in the body's measure: an ellipsoid is scaled to the unit
+   sphere. A few are searched one by one, many by a hash table of their numbers. */
 typedef struct demi_places {
     demi_touching *at;
-    int32_t *table;                /* mask + 1 of them: 1 + index into at, 0: free; or null */
+    int32_t *table;                /* mask + 1 entries: 1 + index into at, 0: free; or null */
     uint32_t mask;
-    int count, offset;             /* what numbers begin with: an image of the body each */
+    int count, offset;             /* offset: added to numbers, one range per image */
 } demi_places;
-/* One more facet says that place `number` is at d and counts so much: places add up. */
+/* Adds contact point `number` at d with a weight. If it is known, only the weights are added. */
 static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d,
                             dem_real d2) {
     uint32_t slot = (uint32_t)(number + p->offset)*UINT32_C(2654435769) & p->mask;
@@ -94,8 +95,8 @@ static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem
     p->at[i].overlap = DEMI_SQRT(d2);
     p->count++;
 }
-/* What is left: those that cancel go, those that are one place to the eye of rounding (a side and
-   a cut of it) become one. */
+/* Removes contact points whose weights cancel, and merges those that coincide to rounding (a side
+   and a cut of it). */
 static void demi_places_merge(demi_places *p, dem_real near_by) {
     int i, k, count = 0;
     for (i = 0; i < p->count; i++) {
@@ -106,20 +107,20 @@ static void demi_places_merge(demi_places *p, dem_real near_by) {
             if (demi_dot(d, d) <= near_by*near_by) break;
         }
         if (k == count) { p->at[count++] = t; continue; }
-        p->at[k].share += t.share;              /* the lower number: the same from step to step */
+        p->at[k].share += t.share;              /* the lower number: stable from step to step */
         p->at[k].element = DEMI_MIN(p->at[k].element, t.element);
     }
     for (i = k = 0; i < count; i++)
         if (p->at[i].share < DEM_R(-1e-3) || p->at[i].share > DEM_R(1e-3)) p->at[k++] = p->at[i];
     p->count = k;
 }
-/* A vector in the measure in which an ellipsoid is the unit sphere. */
+/* A vector in the measure in which the ellipsoid is the unit sphere. */
 DEM_INLINE dem_vec3 demi_in_measure(const demi_part *part, dem_vec3 v) {
     v = dem_quat_unrotate(part->q, v);
     return demi_v(v.x/part->axes.x, v.y/part->axes.y, v.z/part->axes.z);
 }
-/* Corners of an element as seen from a body at x: in the body's measure, where part is an
-   ellipsoid. Segments go on along z without end: there only what is across z counts. */
+/* Corners of an element relative to a body at x, in the body's measure if `part` (an ellipsoid) is
+   not null. Segments are infinite along z: only components across z count. */
 DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
                                const demi_part *part, dem_vec3 *y) {
     const int n = demi_wall_corners(wall, element, y);
@@ -135,13 +136,14 @@ DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
     }
     return n;
 }
-/* The number of an element's nearest place. */
+/* The number of the contact point of element e, from `where` of demi_facet_point. */
 DEM_INLINE int32_t demi_facet_number(const demi_wall *wall, int e, int n, int where) {
     const int edges = wall->element_count;
     return where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
         : edges + wall->edge_count + wall->corners[n*e + where - 4];
 }
-/* An element none of whose neighbours is within reach: no edge or corner is that counts. */
+/* Adds the contact point of an element whose neighbours are all out of reach. No correction for
+   edges and corners is needed. */
 DEM_INLINE void demi_facet_alone(const demi_wall *wall, int e, dem_vec3 x, dem_real within,
                                  demi_places *p) {
     dem_vec3 y[3];
@@ -152,7 +154,8 @@ DEM_INLINE void demi_facet_alone(const demi_wall *wall, int e, dem_vec3 x, dem_r
     if (d2 < within*within && wall->weight[e] > 0)
         demi_places_add(p, demi_facet_number(wall, e, n, where), wall->weight[e], d, d2);
 }
-/* Adds what element `e` and the edges and corners it looks after give, nearer than `within`. */
+/* Adds the contact points nearer than `within` of element e and of the edges, corners and cuts that
+   it owns. */
 DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                                   dem_real within, demi_places *p) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
@@ -197,17 +200,19 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
         if (d2 < most) demi_places_add(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
     }
 }
-/* --- rings. Where what a ball reaches of a surface closes to a ring, on the rim of a hole or in a
-       funnel, Euler's number is 0 and nothing would push. A ring is one place, so there
+/* --- rings. If the part of a surface within reach of a sphere closes to a ring, at the rim of a
+   hole or in a funnel, its Euler characteristic is 0 and there would be no force. A ring counts as
+   one contact, so there
            E = integral of pieces(s) U'(r - s) ds = U(facets) - U(links of a forest)
-       pieces: chi and the rings that are open; a forest: of the sides and corners that join facets,
-       nearest first, those that join what was not joined yet (Kruskal's). With U1 the nearest's,
-       X the energy by >>facets and P that by pieces, D = P - X >= 0 is what rings took away, and
+   pieces: connected pieces, that is chi plus the number of open rings; forest: the sides and
+   corners that join facets, nearest first, of which only those count that join what was not yet
+   joined (Kruskal). With U1 the energy of the nearest facet, X the energy by >>facets and P that by
+   pieces, D = P - X >= 0 is what rings removed, and
            E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = 2 q - 1/2 within 0 .. 1
-       A dimple that is reached to its tip is a ring that is all but closed: D is small, and E is
-       X, smooth; an open ring counts as one piece, and which of its sides are nearest may change
-       from one moment to the next, as on the medial line of a single wall. Energy is conserved in
-       either. Rings through a seam of two walls are not seen. --- */
+   A dimple that is reached down to its tip is an almost closed ring: D is small, and E is X, which
+   is smooth. An open ring counts as one piece; which of its sides are nearest may change at any
+   moment, as on the medial line of a single wall. Energy is conserved in both cases. Rings across a
+   seam of two walls are not detected. --- */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
     if (a->corner != b->corner) return a->corner < b->corner ? -1 : 1;
@@ -223,16 +228,16 @@ static int demi_link_root(demi_link *link, int i) {
     while (link[i].root != i) i = link[i].root = link[link[i].root].root;
     return i;
 }
-/* Facets that are reached, and their nearest place. */
+/* The facets within reach, and the nearest contact point. */
 typedef struct demi_ring {
     int facets;
     int32_t number;
     dem_real distance;
     dem_vec3 point;
 } demi_ring;
-/* Adds a side (b: its other end) or corner of the facet under work, if it is reached: its numbers,
-   and where it is nearest. From whichever facet, the same side gives the same, to the bit: a has
-   the lower number. */
+/* Adds a side (b: its other end) or corner (b null) of a facet, if it is within reach: its numbers
+   and nearest point. The result is the same, to the bit, from every facet at the side: it is
+   computed from the end with the lower number. Returns the new number of links. */
 static int demi_link_add(demi_link *link, int count, int facet, dem_real within, int32_t number,
                          const dem_vec3 *a, const dem_vec3 *b, const int32_t *ends) {
     demi_link *to = &link[count];
@@ -248,8 +253,8 @@ static int demi_link_add(demi_link *link, int count, int facet, dem_real within,
     to->sides[0] = to->sides[1] = -1;
     return count + 1;
 }
-/* The number of the side of element e that begins or ends at a corner: of its cut there, if it is
-   cut. */
+/* Returns the number of the side of element e that ends at `corner`, or of the piece that ends
+   there if the side is cut. */
 static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t corner) {
     int k = wall->cut_start ? wall->cut_start[e] : 0;
     for (; wall->cut_start && k < wall->cut_start[e + 1]; k++) {
@@ -258,8 +263,8 @@ static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t co
     }
     return wall->element_count + wall->edges[3*e + side];
 }
-/* Pieces of element e's sides, and the corners of others between them; *sides: which sides those
-   are. */
+/* Adds the pieces of the cut sides of element e, and the corners of other elements between them.
+   *sides receives one bit per cut side. Returns the new number of links. */
 static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                           dem_real within, demi_link *link, int count, int facet, int *sides) {
     int k, m, q;
@@ -271,7 +276,7 @@ static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_p
         for (q = 0; q < 2 && part; q++) end[q] = demi_in_measure(part, end[q]);
         *sides |= 1 << c->side;
         count = demi_link_add(link, count, facet, within, c->number, end, end + 1, c->end);
-        for (q = 0; q < 2; q++)                 /* where the next piece goes on */
+        for (q = 0; q < 2; q++)                 /* the corner to the next piece */
             for (m = k + 1; m < wall->cut_start[e + 1]; m++) {
                 const demi_cut *o = &wall->cuts[m];
                 const int before = count;
@@ -285,7 +290,8 @@ static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_p
     }
     return count;
 }
-/* Sides and corners of element e, if it is reached. Answers how many links there are then. */
+/* Adds the sides and corners of element e, if it is within reach. Returns the new number of
+   links. */
 static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                           dem_real within, demi_link *link, int count, demi_ring *ring) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
@@ -324,8 +330,8 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
     ring->facets++;
     return count;
 }
-/* chi's weight of a corner, from the facets at it that are links first .. end - 1: 1 + facets -
-   sides (meshes), 1 - facets (profiles). */
+/* Returns the weight of a corner in chi, from the facets at it (links first .. end - 1): 1 + facets
+   - sides for meshes, 1 - facets for profiles. */
 static int demi_links_corner(const demi_link *link, int first, int end) {
     int i, k, j, sides = 0;
     if (link[first].sides[0] < 0) return 1 - (end - first);
@@ -338,7 +344,8 @@ static int demi_links_corner(const demi_link *link, int first, int end) {
         }
     return 1 + (end - first) - sides;
 }
-/* Corrects the places of one body and wall for open rings. power: of U in the overlap. */
+/* Corrects the contact points of one body and wall for open rings. power: exponent of
+   U(overlap). */
 static void demi_places_rings(const demi_wall *wall, const int32_t *element, int candidates,
                               dem_vec3 x, const demi_part *part, dem_real within, dem_real power,
                               demi_link *link, demi_places *p) {
@@ -350,7 +357,7 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
         count = demi_links_add(wall, element[i], x, part, within, link, count, &ring);
     if (ring.facets < 2) return;
     qsort(link, (size_t)count, sizeof *link, demi_link_compare);
-    for (i = 1; i < count; i++)                 /* one side, one distance, whatever the rounding */
+    for (i = 1; i < count; i++)                 /* one distance per side, despite rounding */
         if (link[i].number == link[i - 1].number) link[i].distance = link[i - 1].distance;
     qsort(link, (size_t)count, sizeof *link, demi_link_nearer);
     for (i = 0; i < ring.facets; i++) link[i].root = i;
@@ -379,55 +386,56 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
     demi_places_add(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
 }
 
-/* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
-       middle, wires and holes in rows along x and y. Only what is near is looked at, found from the
-       sphere's place: the cost does not depend on how many holes there are.
-         rows    wires, bars, and the strips between square holes or slots: convex, endless or cut
-                 off by a disc. Rows of set 0 go along y, of set 1 along x
-         round   plates with round holes: the face, or the nearest point of the rim and the one
-                 across, so that a grain too large for the hole sits on it
+/* --- sieves: a sphere against a whole sieve, in the sieve's frame: z across the sheet, the middle
+   of a hole at x = y = 0, wires and holes in rows along x and y. Only nearby wires or holes are
+   examined, found from the sphere's position; the cost does not depend on the number of holes.
+         rows    wires, bars, and the strips between square holes or slots: convex, infinite or cut
+                 off by a disc. Rows of set 0 run along y, those of set 1 along x
+         round   plates with round holes: the face, or the nearest point of the rim and the opposite
+                 one, so that a grain too large for the hole rests on it
          ring    plates and reduced holes cut out as a disc lie in a thin ring
-       Where two rows cross, a grain that reaches both at one place reaches one thing. With d the
-       distances of rows and those of what two rows share (their crossings), U(d) the energy of one
-       contact and its overlap r - d,
+   Where two rows cross, a grain that reaches both at the same point touches one body. With d the
+   distances of rows and of their crossings (what two rows share), and U(d) the energy of a contact
+   of overlap r - d,
            E = sum of U(rows) - sum of U(those crossings that join, nearest first, what was not
                joined yet)
-       which is the sum over separate pieces of what is reached, as it grows (Kruskal's forest, as
-       for rings of facets): never less than the nearest row's, and force is its gradient, so that
-       energy is kept; a plate pushes as one however fine its holes. A crossing at a row's own
-       nearest point takes that away: above a crossing there is one contact, half way between two
-       rows, two. One that does not takes away by itself, as a contact of share -1.
-       Every row, crossing and side has an element number of its own, for contact memory. Tests:
-       tests/surface/test_sieve.c, tests/hard/hard_impacts.c. --- */
+   This sums over the separate pieces within reach as the reach grows (Kruskal's forest, as for
+   rings of facets). E is never below that of the nearest row, and the force is its gradient, so
+   energy is conserved; a plate repels as one body however fine its holes. A crossing at a row's own
+   nearest point cancels that row: above a crossing there is one contact, half way between two rows
+   there are two. Any other crossing is a contact of its own with share -1. Each row, crossing and
+   side has its own element number for the contact history. Tests: tests/surface/test_sieve.c,
+   tests/hard/hard_impacts.c. --- */
 enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1,
        DEMI_SIEVE_ROWS = 13 };                  /* rows of both sets, and the ring */
-/* What the last three bits of a row's number say; of round holes, 0 .. 5: side, lattice. */
+/* The last three bits of a row's number; for round holes they are 0 .. 5: side, lattice. */
 enum { DEMI_SIEVE_SET = 1, DEMI_SIEVE_ABOVE = 2, DEMI_SIEVE_CROSS = 4 };
 typedef struct demi_sieve_row {
     int32_t number;
-    int set, root;                 /* 2: the ring; of the forest */
-    double i;                      /* which of its set */
-    dem_real at, half;             /* m, its middle, and half its width (or diameter) */
-    dem_real distance, edge;       /* m, of the sphere's centre; around foot */
-    dem_vec3 foot;                 /* m, nearest point, or that of a wire's axis */
+    int set, root;                 /* set 2: the ring; root: in the forest */
+    double i;                      /* its index within its set */
+    dem_real at, half;             /* m, its middle; half its width */
+    dem_real distance, edge;       /* m, from the sphere's centre; radius around foot */
+    dem_vec3 foot;                 /* m, nearest point, of the axis for a wire */
 } demi_sieve_row;
-/* Where rows a and b cross: nearest point and its distance, m. */
+/* A crossing of rows a and b: its nearest point and the distance of that, m. */
 typedef struct demi_sieve_shared { dem_real distance; int a, b; dem_vec3 foot; } demi_sieve_shared;
 
-/* Is a sieve made of round wires? Others are plates. */
+/* True if a sieve consists of round wires or bars; others are plates. */
 static int demi_sieve_wires(const dem_sieve_desc *s) {
     return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
 }
-/* Half of how thick it is. */
+/* Half its thickness, m. */
 static dem_real demi_sieve_half(const dem_sieve_desc *s) {
     return (demi_sieve_wires(s) ? s->bar + s->lift : s->thickness)/2;
 }
-/* A number that tells rows and holes apart; far ones repeat, which does no harm. */
+/* Element number of a row or hole. Distant ones share numbers, which does no harm. */
 static int32_t demi_sieve_number(double i, double j, int side) {
     const int32_t a = (int32_t)(i - floor(i/16384)*16384), b = (int32_t)(j - floor(j/8192)*8192);
     return (int32_t)(((uint32_t)a << 16) | ((uint32_t)b << 3) | (uint32_t)side);
 }
-/* Adds the contact with what lies `edge` around foot, if there is one. */
+/* Adds the contact with the ball of radius `edge` around foot, if they overlap. Returns the new
+   count. */
 static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_vec3 x,
                           dem_real r, dem_vec3 foot, dem_real edge) {
     const dem_vec3 d = demi_sub(foot, x);
@@ -441,7 +449,7 @@ static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_ve
     c->share = 1;
     return count + 1;
 }
-/* The sheet of a sieve as if it had no holes. */
+/* The contact with the sieve as a plate without holes. Returns 1 if there is one. */
 static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
                            demi_touching *out) {
     const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
@@ -455,8 +463,8 @@ static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
 DEM_INLINE dem_real demi_clamp(dem_real x, dem_real lo, dem_real hi) {
     return x < lo ? lo : x > hi ? hi : x;
 }
-/* The point of a strip at - half .. at + half across u, cut off by a disc of radius R (0: not),
-   that is nearest to (u, v). 0: there is none. */
+/* Moves (*u, *v) to the nearest point of a strip, at - half .. at + half across u, cut off by a
+   disc of radius R (0: not cut off). Returns 0 if there is no such point. */
 static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u, dem_real *v) {
     const dem_real x = *u, y = *v, lo = at - half, hi = at + half;
     const dem_real S = DEMI_SQRT(x*x + y*y), within = demi_clamp(x, lo, hi);
@@ -464,7 +472,7 @@ static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u,
     int k;
     *u = within;
     if (!(R > 0) || within*within + y*y <= R*R) return 1;
-    *u = x*R/S; *v = y*R/S;                     /* the disc's, if the strip has it */
+    *u = x*R/S; *v = y*R/S;                     /* on the disc's edge, if within the strip */
     if (S > R && *u >= lo && *u <= hi) return 1;
     for (k = 0; k < 2; k++) {                   /* a corner, where the strip's side ends */
         const dem_real side = k ? hi : lo, long2 = R*R - side*side;
@@ -475,7 +483,7 @@ static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u,
     }
     return best >= 0;
 }
-/* Which rows of one set a sphere reaches. */
+/* Adds the rows of one set that a sphere reaches. Returns the new count. */
 static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
                           demi_sieve_row *row, int count) {
     const int wires = demi_sieve_wires(s);
@@ -488,7 +496,7 @@ static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real
     const double home = floor((double)((R > 0 && S > R ? u*R/S : u)/pitch));
     int k;
     if (!(far2 > 0) || !(hole > 0)) return count;
-    for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
+    for (k = -2; k <= 3; k++) {                 /* enough: a far larger grain rests on these */
         demi_sieve_row *one = &row[count];
         const dem_real at = (dem_real)(home + k + 0.5)*pitch, off = u - at;
         dem_real a = u, b = v;
@@ -510,9 +518,9 @@ static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real
     }
     return count;
 }
-/* What two wires share, X^2 + (Z - h)^2 <= q^2 and Y^2 + (Z + h)^2 <= q^2: its point nearest to p,
-   outside of both, where they meet. It is p drawn to both axes, by as much as puts it on either
-   surface: Newton's method for these two. */
+/* Returns the point nearest to p, outside both, of the intersection of two wires, X^2 + (Z - h)^2
+   <= q^2 and Y^2 + (Z + h)^2 <= q^2. It is p moved towards both axes until it is on both surfaces:
+   Newton's method for the two multipliers. */
 static dem_vec3 demi_wires_point(dem_vec3 p, dem_real q, dem_real h) {
     double m = sqrt((double)(p.x*p.x + (p.z - h)*(p.z - h)))/(double)q - 1;
     double n = sqrt((double)(p.y*p.y + (p.z + h)*(p.z + h)))/(double)q - 1;
@@ -539,8 +547,8 @@ static dem_vec3 demi_wires_point(dem_vec3 p, dem_real q, dem_real h) {
     }
     return demi_v((dem_real)x, (dem_real)y, (dem_real)z);
 }
-/* The nearest point of what rows a and b share (a of set 0 or 1, b of a later one). Answers 2 when
-   it is a's own nearest point, 3 when b's, else 1; 0: they share nothing. */
+/* Finds the nearest point of the crossing of rows a and b (a of set 0 or 1, b of a later one).
+   Returns 2 if it is a's own nearest point, 3 if it is b's, otherwise 1; 0: they do not cross. */
 static int demi_sieve_crossing(const dem_sieve_desc *s, const demi_sieve_row *a,
                                const demi_sieve_row *b, dem_vec3 x, dem_vec3 *foot) {
     const dem_real R = s->radius, half = s->thickness/2;
@@ -570,7 +578,7 @@ static int demi_sieve_crossing(const dem_sieve_desc *s, const demi_sieve_row *a,
         const dem_real q = s->bar/2, h = s->lift/2;
         const dem_vec3 at = demi_v(a->at, b->at, 0), p = demi_sub(x, at);
         const dem_vec3 f = demi_sub(demi_add(x, demi_scale(demi_sub(a->foot, x), a->distance/
-                              (a->distance + q))), at);      /* on a, is it in b, too? */
+                              (a->distance + q))), at);      /* nearest point of a: inside b too? */
         const dem_vec3 g = demi_sub(demi_add(x, demi_scale(demi_sub(b->foot, x), b->distance/
                               (b->distance + q))), at);
         const int in_b = f.y*f.y + (f.z + h)*(f.z + h) <= q*q;
@@ -588,7 +596,7 @@ static int demi_sieve_root(demi_sieve_row *row, int i) {
     while (row[i].root != i) i = row[i].root;
     return i;
 }
-/* Contacts with rows, less their crossings, as above. */
+/* Contacts with rows, less their crossings, as above. Returns their number. */
 static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
     demi_sieve_row row[DEMI_SIEVE_ROWS];
     demi_sieve_shared all[DEMI_SIEVE_ROWS*DEMI_SIEVE_ROWS/2];
@@ -646,8 +654,8 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
     }
     return count;
 }
-/* A plate with round holes: the hole that the centre is over, and of its rim the nearest place and
-   the one across. Over a bar: the sheet. */
+/* Contacts with a plate with round holes: the nearest and the opposite point on the rim of the hole
+   below the centre; over a bar, the plate. */
 static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real half = s->thickness/2, z = demi_clamp(x.z, -half, half);
     const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
@@ -659,7 +667,7 @@ static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem
     int k, side, count = 0;
     if (R > 0 && S > 0 && S > R - r)
         count = demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
-    if (R > 0 && S > R) return count;           /* off the disc */
+    if (R > 0 && S > R) return count;           /* beyond the disc */
     for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
         const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
         const double ix = floor((double)(x.x/pitch - shift) + 0.5);
@@ -674,19 +682,19 @@ static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem
     if (best >= a*a) return demi_sieve_face(s, x, r, out);
     l = DEMI_SQRT(best);
     way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
-    for (side = 0; side < 2; side++) {          /* nearest, and across */
+    for (side = 0; side < 2; side++) {          /* nearest, opposite */
         to = demi_add(demi_v(centre.x, centre.y, z), demi_scale(way, side ? -a : a));
         if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
         count = demi_sieve_put(out, count, number + side, x, r, to, 0);
     }
     return count;
 }
-/* Contacts that are in truth one, where rims meet: each counts as far as its point
-   stands out of the plane that touches at the other, towards the grain. L_a: how far a's point
-   stands out of b's plane.
+/* Weights of contacts that are really one, where rims come together. Each counts by how far its
+   point projects, towards the grain, beyond the tangent plane at the other. L_a: how far a's point
+   projects beyond b's plane.
        share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
-   Half way between the two each bears half, and where L is far more than the overlap, each bears
-   all: no jump on the way. */
+   Half way between the two each bears half; if L is far larger than the overlap, each bears all.
+   The transition has no jump. */
 static void demi_sieve_share(demi_touching *c, int count, dem_real range) {
     int a, b;
     for (a = 0; a < count; a++)
@@ -697,16 +705,17 @@ static void demi_sieve_share(demi_touching *c, int count, dem_real range) {
             lb = lb > 0 ? lb : 0;
             sa = la + lb > 0 ? la/(la + lb) : 1;
             sb = 1 - sa;
-            la /= DEMI_MAX(c[a].overlap - range, DEMI_TINY);    /* those that do not touch: all */
+            la /= DEMI_MAX(c[a].overlap - range, DEMI_TINY);    /* those that do not touch: weight
+                                                                   1 */
             lb /= DEMI_MAX(c[b].overlap - range, DEMI_TINY);
             c[a].share *= DEMI_MAX(sa, DEMI_MIN(la, DEM_R(1)));
             c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));
         }
 }
-/* [ALK07] eq 4.20 to 4.25: 1 when a grain over (x, y) falls through. Half a hole is w, the reduced
-   one w - b, b = zeta (w - r) or zeta w; model 1 wants the grain's edge within, model 2 its centre
-   and r < w. [ALK07] leaves open what "c_x" does for grains that fit in no hole: here they never
-   fall. */
+/* [ALK07] eqs. 4.20 to 4.25: 1 if a grain over (x, y) falls through. Half a hole is w; the reduced
+   one is w - b, with b = zeta (w - r) or zeta w. Model 1 requires the grain's edge within it, model
+   2 its centre and r < w. [ALK07] leaves open what "c_x" does for grains that fit in no hole: here
+   they never fall. */
 static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
     const dem_real w = s->aperture/2, pitch = s->aperture + s->bar;
     const dem_real room = (1 - s->clearance)*(s->model == 2 ? w : w - r);
@@ -714,10 +723,9 @@ static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
     const dem_real v = x.y - (dem_real)floor((double)(x.y/pitch) + 0.5)*pitch;
     return r < w && DEMI_ABS(u) < room && DEMI_ABS(v) < room;
 }
-/* All contacts of a sphere at x with a sieve: at most DEMI_SIEVE_MOST; body and wall are the
-   caller's to fill in. r: its radius and a law's range, of which it then touches what overlaps by
-   more. One of share 0 pushes nobody: a grain under way through a reduced
-   hole. */
+/* Finds all contacts of a sphere at x with a sieve: at most DEMI_SIEVE_MOST; the caller fills in
+   body and wall. r: its radius plus the range of a law; overlaps above `range` are real. A contact
+   of share 0 has no force: the grain is on its way through a reduced hole. */
 static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem_real range,
                             demi_touching *out) {
     const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y);
@@ -739,11 +747,12 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem
     return count;
 }
 
-/* --- one sphere against one element, all in the wall's frame: fills in normal (grain -> wall) and
-       point, answers the overlap (negative: apart). Candidates are told by it, too. --- */
+/* --- one sphere against one element, in the frame of the wall: sets normal (grain -> wall) and
+   point, and returns the overlap, m (negative: apart). The search for candidates uses these too.
+   --- */
 typedef dem_real (*demi_near_fn)(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                  dem_vec3 *normal, dem_vec3 *point);
-/* z = 0 of the wall's frame, grains above. */
+/* z = 0 of the frame of the wall, grains above. */
 DEM_INLINE dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                 dem_vec3 *normal, dem_vec3 *point) {
     (void)wall; (void)element;
@@ -751,7 +760,7 @@ DEM_INLINE dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3
     *point = demi_v(x.x, x.y, 0);
     return r - x.z;
 }
-/* About z; a grain on the axis is pushed along x, for want of anything better. */
+/* About z. A grain on the axis is arbitrarily pushed along x. */
 DEM_INLINE dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                    dem_vec3 *normal, dem_vec3 *point) {
     const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
@@ -761,9 +770,9 @@ DEM_INLINE dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_v
     *normal = wall->inside ? d : demi_scale(d, -1);
     return wall->inside ? r + l - wall->radius : r + wall->radius - l;
 }
-/* How a place, `out` from the axis and at a height, lies to piece k of a surface of revolution: its
-   distance, m; the nearest point of the piece, and whether that is its first end (-1), its last (1)
-   or between (0). */
+/* Distance, m, of a point (`out` from the axis, at a height) from piece k of a surface of
+   revolution. *r, *h receive the nearest point of the piece, *end whether that is its first end
+   (-1), its last (1) or between (0). */
 static dem_real demi_ring_piece(const demi_wall *wall, int k, dem_real out, dem_real height,
                                 dem_real *r, dem_real *h, int *end) {
     const dem_real *R = wall->ring_radius + k, *H = wall->ring_height + k;
@@ -791,18 +800,18 @@ static dem_real demi_revolved_near(const demi_wall *wall, int element, dem_vec3 
     *normal = least > 0 ? demi_scale(*normal, 1/least) : d;
     return r - least;
 }
-/* The sheet that a sieve lies in, holes or not. */
+/* The plate that a sieve lies in, with or without holes. */
 static dem_real demi_sieve_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                 dem_vec3 *normal, dem_vec3 *point) {
     dem_real l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
     (void)element;
-    if (wall->radius > 0)                       /* ends of wires stand out of it */
+    if (wall->radius > 0)                       /* ends of wires project from it */
         l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius - wall->sieve.bar/2);
     *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
     *point = demi_v(x.x, x.y, 0);
     return r - l;
 }
-/* A place `d` away that a ball of radius `reach`, the grain's own included, may touch. */
+/* Overlap, m, with a point at d from the centre; reach: the radii of both. */
 DEM_INLINE dem_real demi_point_near(dem_vec3 d, dem_real reach, dem_vec3 *normal) {
     const dem_real l = demi_length(d);
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
@@ -824,8 +833,8 @@ static dem_real demi_grain_near(const demi_wall *wall, int element, dem_vec3 x, 
 #define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND) NEAR,
 static const demi_near_fn demi_nears[] = {0, DEMI_WALLS(DEMI_WALL_NEAR)};
 
-/* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane
-   is too far off is dropped at once. */
+/* Distance, m, from a point to an element. If it is `enough` or more it need not be exact: a
+   triangle whose plane is too far away is rejected at once. */
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough) {
     dem_vec3 n, p;
@@ -840,8 +849,8 @@ static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 
     return -demi_nears[wall->kind](wall, element, local, 0, &n, &p);
 }
 
-/* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
-   share of the chord that the segment covers. */
+/* [MIL] Fig 5.19: the segment acts like its infinite line, with the fraction a^2(3-2a) of the
+   force, where a is the fraction of the chord that the segment covers. Returns that fraction. */
 static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                    dem_vec3 *normal,
                                    dem_vec3 *point, dem_real *overlap) {
