@@ -275,8 +275,8 @@ static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
         if (all > c[k].grip) c[k].held *= c[k].grip/all;
     }
 }
-/* Splits contact c of two polyhedra into the corners of the rectangle that its pressure is spread
-   over; c->spread and c->aside are its two half edges. Returns 0 if the list is full. */
+/* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
+   pressure is spread; c->spread and c->aside are its half edges. Returns 0 if the list is full. */
 static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
     const dem_vec3 one = c->spread, two = c->aside;
     int k;

@@ -1,29 +1,30 @@
 /* ---------------------------------------------------------------------------------------------
    >>on-walls
-   Where parts of bodies touch walls: geometry only; first spheres, clusters being many of them;
-   then ellipsoids, which share what is done on surfaces of facets; and how the normals turn there.
-   What becomes of the places that are found stands in >>kept.
+   Contact points of parts of bodies with walls: geometry only. First spheres (and clusters, which
+   are many spheres), then ellipsoids, which share the code for surfaces of facets; finally how the
+   normals rotate there as a sphere moves. >>kept makes contacts of the contact points.
    --------------------------------------------------------------------------------------------- */
 
-/* m: which gaps, of when the list was made, may have closed, or come within the law's range: any
-   grain and any wall may have come so far towards each other since. */
+/* m: candidates with gaps up to this, as of when the list was built, may touch now or be within the
+   range of the law. Any grain and any wall may have moved that far towards each other since. */
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
-/* The candidates of one body on one wall, which it may touch. In a periodic world several
-   images of the body may be near the wall; demi_view_next steps through them in list order. */
+/* The candidates of one body on one wall. In a periodic world several images of the body may be
+   near the wall; demi_view_next steps through them in list order. */
 typedef struct demi_view {
     const dem_world *w;
     const demi_wall *wall;
-    int d;                         /* domain */
-    dem_real gone;                 /* m: a candidate with a larger gap is not near yet */
-    dem_vec3 at;                   /* m, centre of the part of the body, in the world */
-    const int32_t *element;        /* of the candidates of this image, count of them */
+    int d;                         /* work group */
+    dem_real gone;                 /* m: candidates with larger gaps are skipped */
+    dem_vec3 at;                   /* m, centre of the part of the body, in world axes */
+    const int32_t *element;        /* of the candidates of this image; `count` of them */
     const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
-    int count, left;               /* left: count and those of the images to come */
-    dem_vec3 shift, x;             /* m: from body to image; the part in the wall's frame */
+    int count, left;               /* left: count, plus those of later images */
+    dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
-/* The view of candidates first .. last - 1 of domain d, before its first image; `at` is not set. */
+/* Returns the view of candidates first .. last - 1 of work group d, before its first image. The
+   caller sets `at`. */
 DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last) {
     const int k = d*w->wall_stride + first;
     demi_view v;
@@ -38,7 +39,7 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     v.left = last - first;
     return v;
 }
-/* Goes on to the next image; 0: there is none. */
+/* Advances to the next image; 0: there is none. */
 DEM_INLINE int demi_view_next(demi_view *v) {
     v->element += v->count;
     v->gap += v->count;
@@ -54,7 +55,7 @@ DEM_INLINE int demi_view_next(demi_view *v) {
                          demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
     return 1;
 }
-/* Room (at) in which the places of one body and one wall are found. */
+/* Prepares the room `at` for the contact points of one body and one wall. */
 DEM_INLINE demi_places demi_places_begin(const demi_view *v, demi_touching *at) {
     demi_places p;
     memset(&p, 0, sizeof p);
@@ -68,17 +69,17 @@ DEM_INLINE demi_places demi_places_begin(const demi_view *v, demi_touching *at) 
     }
     return p;
 }
-/* Can candidate k, a facet, be nearer than `within`? No where its gap has not closed, or its plane
-   is farther off. */
+/* True if candidate k, a facet, may be nearer than `within`: its gap may have closed, and its plane
+   is near enough. */
 DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     const dem_real *plane = DEMI_AT(v->wall->planes, v->element[k]);
     const dem_real off = plane[0]*v->x.x + plane[1]*v->x.y + plane[2]*v->x.z - plane[3];
     return !(v->gap[k] > v->gone) &&
            !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
-/* Where an ellipsoid (part; null: a sphere of radius r) touches a surface of facets: normals,
-   points and shares, and what is left of its measure, r less the distance or 1 - W0, as overlaps;
-   range: what is nearer than that, too, with overlaps below 0. In the world. */
+/* Finds the contact points of a sphere of radius r, or of an ellipsoid (`part` not null), with a
+   surface of facets, in world axes. Overlaps are r minus the distance, or 1 - W0. Points within
+   `range` (m) are included, with negative overlaps. Returns their number. */
 static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part *part,
                              dem_real range, demi_touching *out) {
     demi_view v = *start;
@@ -100,14 +101,14 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
             if (p.count > from) p.at[from].shift = v.shift;
             continue;
         }
-        for (q = one; q < v.count; q++)         /* spheres have a copy of the code for them */
+        for (q = one; q < v.count; q++)         /* spheres have specialised code */
             if (demi_facet_near(&v, q, within))
                 demi_facet_places(wall, v.element[q], v.x, 0, within, &p);
         for (q = 0; q < v.count && part; q++)
             if (!(v.gap[q] > v.gone))
                 demi_facet_places(wall, v.element[q], v.x, part, within, &p);
         for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
-        if (q < p.count)                        /* something takes away: more than it should? */
+        if (q < p.count)                        /* a negative weight: is it an open ring? */
             demi_places_rings(wall, v.element, v.count, v.x, part, within,
                               demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
                               v.w->touching_links + v.w->domains[v.d].touching_first, &p);
@@ -131,25 +132,27 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
     }
     return p.count;
 }
-/* --- where one part of a body touches one wall, from its view before the first image: normals,
-       points, overlaps (of an ellipsoid 1 - W0) and shares, in the world, into `out`, the room of
-       its domain. --- */
+/* --- contact points of one part of a body with one wall. `v` is before its first image. Each
+   function writes normals, points, overlaps (for an ellipsoid 1 - W0) and weights, in world axes,
+   to `out`, the room of its work group, and returns their number. --- */
 typedef int (*demi_touch_fn)(const demi_view *v, const demi_part *part, demi_touching *out);
 static int demi_facets_spheres(const demi_view *v, const demi_part *part, demi_touching *out) {
     return demi_facets_touch(v, part->radius, 0, demi_range(v->w, part->radius), out);
 }
-/* Where a sphere touches a surface of revolution: pieces between their ends, rings where it lies
-   beyond the ends of all pieces that meet there; a ring between two pieces that it touches takes
-   away, as where rows of a sieve cross: so the second begins, in an inner corner, without a jump
-   however deep the sphere is in the first. Elements: pieces, then rings. */
+/* Finds the contact points of a sphere with a surface of revolution. A piece (a cone between two
+   meridian points) counts if the nearest point is between its ends. An edge circle ("ring") counts
+   if the sphere is beyond the ends of all pieces at it. A ring between two pieces that both count
+   has negative weight, as where rows of a sieve cross: the second contact then begins without a
+   jump in an inner corner, however deep the sphere is in the first. Elements: pieces, then
+   rings. */
 static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
     const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
     const int pieces = wall->ring_count - 1;
-    int k, end, part, before = 1, count = 0;    /* before: did the last piece end in this ring? */
+    int k, end, part, before = 1, count = 0;    /* before: did the last piece end here? */
     for (k = 0; k <= pieces; k++) {
         dem_real a = wall->ring_radius[k], b = wall->ring_height[k], dist = 0;
-        int how;                                /* 1: it counts, -1: it takes away, 0: neither */
+        int how;                                /* sign of the weight; 0: does not count */
         end = -1;
         if (k < pieces) dist = demi_ring_piece(wall, k, l, x.z, &a, &b, &end);
         for (part = 0; part < 2; part++) {      /* the piece, then the ring where it begins */
@@ -173,10 +176,10 @@ static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, de
     }
     return count;
 }
-/* A sphere and a wall each of whose elements it may touch, or be within the range of (as a sphere
-   of so much larger a radius finds them); how: 0: as it is near to them, 1: as
-   segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
-   are. */
+/* Finds the contact points of a sphere with a wall; each element gives at most one. A law's range
+   is added to the radius and taken off the overlaps. how: 0 by `near`; 1 segments, which exert a
+   fraction of the force; 2 a sieve and 3 a surface of revolution: one candidate with several
+   contacts. */
 DEM_INLINE int demi_spheres_touch(const demi_view *start, dem_real radius, demi_touching *out,
                                   int how, demi_near_fn near) {
     demi_view v = *start;
@@ -232,12 +235,12 @@ static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_to
     return demi_spheres_touch(v, part->radius, out, 2, 0);
 }
 
-/* --- an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
+/* --- an ellipsoid and a wall element, in the frame of the wall; Q: its matrix there --- */
 
-/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or of
-   n.x - h (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse
-   of Q's first two rows about x: by Newton's method, uphill where the curve bends up. n: the
-   direction. */
+/* Returns a maximum, near a start angle, of n.x + h (out = 1: distance from the origin of the
+   farthest point) or of n.x - h (out = -1: that of the nearest), where h = sqrt(n.Q n) and n =
+   (cos, sin), for the ellipse of Q's first two rows about x. n receives the direction. Newton's
+   method, with steps uphill where the curvature is positive. */
 static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
                                  double *n) {
     int k;
@@ -254,12 +257,13 @@ static double demi_ellipse_far(const double *Q, double x, double y, int out, dou
         n[0] = c;
         n[1] = s;
         if (k == 60 || (still && bend < 1e-9*size)) return best;
-        /* where it bends up: away from the lowest point, never more than half a radian */
+        /* positive curvature: away from the minimum, never more than half a radian */
         step = still ? 0.01 : bend < 0 ? -slope/bend : slope > 0 ? 0.3 : -0.3;
         angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
     }
 }
-/* Height of an ellipsoid in direction n, and the arm to its surface point there: Q n/h. */
+/* Returns the support height of an ellipsoid in direction n, m. *arm: from its centre to the
+   surface point there, Q n/h. */
 static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm) {
     const dem_vec3 e = dem_quat_unrotate(p->q, n), a = p->axes;
     const dem_vec3 s = demi_v(a.x*e.x, a.y*e.y, a.z*e.z);
@@ -267,15 +271,16 @@ static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm
     *arm = demi_scale(dem_quat_rotate(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
     return h;
 }
-/* Half its width along n, across the axis. */
+/* Half its width along n, in the plane across the axis, m. */
 static double demi_ellipse_height(const double *Q, const double *n) {
     return sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
 }
-/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
-   outside, beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis.
-   Newton's method on W, whose far end goes with its height there; from W = 1, where n has been
-   found. Once the centre has come to the wall it is next to a point there: W0 falls on below 0
-   behind the wall, so that what has gone through is seen. */
+/* Returns 1 - W0, where W0 is the scale at which an ellipsoid about x just touches a cylinder of
+   radius R (out = 1: from inside; -1: from outside). n: the direction of the contact point across
+   the axis. Newton's method on W, starting at W = 1 with `far` and n; the distance of the far end
+   changes with W at the rate of the support height. If the centre has reached the wall, the result
+   is that of the wall point next to it: W0 then decreases below 0 behind the wall, so that
+   penetration is detected. */
 static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
                                   double far, double *n) {
     const double from_axis = sqrt(x*x + y*y);
@@ -297,15 +302,15 @@ static double demi_ellipse_shrink(const double *Q, double x, double y, int out, 
     }
     return 1 - W;
 }
-/* --- one ellipsoid, turned into the wall's frame, against one element, centre x: fills in normal
-       and point, answers 1 - W0, 0 or less when apart; farther than `range` (m) off, any number
-       that says so: below 1 - W0 of there --- */
+/* --- one ellipsoid, rotated into the frame of the wall, against one element, with its centre at x.
+   Each function sets normal and point and returns 1 - W0, which is 0 or less if the two are apart.
+   If they are farther apart than `range` (m), it may return any smaller value. --- */
 typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
                                       dem_vec3 x, dem_real range, dem_vec3 *normal,
                                       dem_vec3 *point);
-/* 1 - W0 of what is farther off than any range. */
+/* Returned if the gap exceeds any range. */
 #define DEMI_FAR_OFF DEM_R(-1e30)
-/* Its lowest point; W0 is the height of its centre over its own. */
+/* At its lowest point. W0 is the height of its centre over its support height. */
 static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
                                         dem_vec3 x, dem_real range, dem_vec3 *normal,
                                         dem_vec3 *point) {
@@ -317,7 +322,7 @@ static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, cons
     *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
     return 1 - x.z/h;
 }
-/* Inside, either end of a long body may touch: element 0 and 1. */
+/* Inside a cylinder both ends of a long body may touch: elements 0 and 1. */
 static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
                                            dem_vec3 x, dem_real range, dem_vec3 *normal,
                                            dem_vec3 *point) {
@@ -358,7 +363,7 @@ static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, cons
                                 (dem_real)((1 - m.l)*m.a[2])));
     return (dem_real)(1 - sqrt(m.f));
 }
-/* A part as a frame of axes R, a wall's or a wire's, sees it. */
+/* A part as seen in a frame of axes R, such as that of a wall or a wire. */
 static demi_part demi_part_local(const dem_real *R, const demi_part *p) {
     demi_part local = *p;
     double turn[3][3];
@@ -371,7 +376,7 @@ static int demi_facets_ellipsoid(const demi_view *v, const demi_part *part, demi
     const demi_part local = demi_part_local(v->wall->pose.rotation, part);
     return demi_facets_touch(v, 0, &local, demi_range(v->w, part->radius), out);
 }
-/* An ellipsoid and a wall, element by element. */
+/* Contact points of an ellipsoid with a wall, element by element. */
 static int demi_ellipsoid_touch(const demi_view *start, const demi_part *part, demi_touching *out,
                                 demi_ellipsoid_fn on) {
     demi_view v = *start;
@@ -407,16 +412,16 @@ static int demi_grain_ellipsoid(const demi_view *v, const demi_part *part, demi_
     return demi_ellipsoid_touch(v, part, out, demi_ellipsoid_on_grain);
 }
 
-/* --- how the normal of a ball's contact with a wall turns as the ball moves, all in the wall's
-       frame. It turns by `turn` times the way that the ball goes, but for ways along the normal and
-       along the axis, if there is one; there by `along`. among: the elements where the contact,
-       with this number, was found. --- */
+/* --- rotation of the normal of a sphere's contact with a wall as the sphere moves, in the frame of
+   the wall. The normal rotates by `turn` times the displacement of the sphere, except for
+   components along the normal and along `axis`, if it is not 0; for the latter the rate is `along`.
+   among: the elements in which this contact was found. --- */
 typedef struct demi_bend {
     int number;
-    dem_real dist;                 /* m, > 0: from the ball's centre to the surface */
+    dem_real dist;                 /* m, > 0: from the sphere's centre to the surface */
     dem_vec3 normal, point;        /* unit, towards the wall; m, nearest point of the surface */
-    dem_real turn, along;          /* 1/m; zeros before */
-    dem_vec3 axis;                 /* unit, or 0: none; 0 before */
+    dem_real turn, along;          /* 1/m; initially 0 */
+    dem_vec3 axis;                 /* unit, or 0: none; initially 0 */
 } demi_bend;
 typedef void (*demi_bend_fn)(const demi_wall *wall, const int32_t *among, int count, demi_bend *b);
 static void demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int count,
@@ -426,8 +431,8 @@ static void demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int 
     b->axis.z = 1;
     b->turn = out < 0 || out > 0 ? -1/out : 0;
 }
-/* About the axis of revolution pieces and rings turn the normal as it points outward; up and down
-   the surface rings do, as corners. */
+/* Pieces and rings rotate the normal about the axis of revolution, as far as it points outwards.
+   Rings also rotate it along the meridian, as corners do. */
 static void demi_revolved_bend(const demi_wall *wall, const int32_t *among, int count,
                                demi_bend *b) {
     const dem_vec3 x = demi_sub(b->point, demi_scale(b->normal, b->dist));
@@ -439,19 +444,19 @@ static void demi_revolved_bend(const demi_wall *wall, const int32_t *among, int 
     b->along = b->number < wall->ring_count - 1 ? 0 : -1/b->dist;
     b->turn = l > 0 ? out/l : 0;
 }
-/* Grains, and what else goes round a point. */
+/* Grains of a wall, and anything else round about a point. */
 static void demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
     demi_cylinder_bend(wall, among, count, b);
     b->axis.z = 0;
 }
-/* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
+/* Lines do not rotate the normal. Corners do, about the direction of extrusion of the profile. */
 static void demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
                               demi_bend *b) {
     (void)among; (void)count;
     b->axis.z = 1;
     b->turn = b->number < wall->element_count ? 0 : -1/b->dist;
 }
-/* Faces do not turn the normal; an edge does, about itself; a corner, every way. */
+/* Faces do not rotate the normal. An edge rotates it about itself, a corner in all directions. */
 static void demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
     const int edges = wall->element_count, corners = edges + wall->edge_count, number = b->number;
     int k, q, found = 0;
@@ -471,24 +476,25 @@ static void demi_mesh_bend(const demi_wall *wall, const int32_t *among, int coun
                 b->axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
     }
 }
-/* On a curve the normal n turns by -1/dist across it; along it, with K the curve's second
-   derivative by its length, the nearest point goes 1/(1 + dist n.K) of the way, so that n turns by
-   -n.K/(1 + dist n.K); below 0 where that point is the farthest one. tangent: unit; nK: 1/m. */
+/* At a curve the normal n rotates by -1/dist for displacements across it. Along it, with K the
+   second derivative of the curve by its arc length, the nearest point moves 1/(1 + dist n.K) times
+   the displacement, so n rotates by -n.K/(1 + dist n.K). That is negative where the point is the
+   farthest one. tangent: unit; nK = n.K, 1/m. */
 static void demi_curve_bend(demi_bend *b, dem_vec3 tangent, dem_real nK) {
     const dem_real left = 1 + b->dist*nK;
     b->turn = -1/b->dist;
     b->axis = tangent;
     b->along = -nK/(left < 0 ? DEMI_MIN(left, DEM_R(-0.1)) : DEMI_MAX(left, DEM_R(0.1)));
 }
-/* The rim of radius R about (0, 0) of what is `at` the nearest point; where that is the upright
-   side of a plate, there is nothing to turn about but the rim's own axis. */
+/* At the rim of radius R about (0, 0) with nearest point `at`. On the upright side of a plate the
+   normal rotates only about the axis of the rim. */
 static void demi_rim_bend(demi_bend *b, dem_real R, dem_vec3 at, int upright) {
     const dem_real nK = -(b->normal.x*at.x + b->normal.y*at.y)/(R*R);
     demi_curve_bend(b, demi_v(-at.y/R, at.x/R, 0), nK);
     if (upright) b->turn = 0;
 }
-/* The edge where the surfaces X^2 + (Z - h)^2 = q^2 and Y^2 + (Z + h)^2 = q^2 of two wires meet: of
-   their gradients g and f its tangent t is the cross product, and along it
+/* At the edge where the surfaces X^2 + (Z - h)^2 = q^2 and Y^2 + (Z + h)^2 = q^2 of two wires
+   intersect. Its tangent t is the cross product of their gradients g and f, and along it
        K.g = t_y^2 - 1,   K.f = t_x^2 - 1 */
 static void demi_wires_bend(demi_bend *b, const dem_sieve_desc *s) {
     const dem_real pitch = s->aperture + s->bar, h = s->lift/2, q2 = s->bar*s->bar/4;
@@ -505,8 +511,8 @@ static void demi_wires_bend(demi_bend *b, const dem_sieve_desc *s) {
         demi_curve_bend(b, t, ((ng*q2 - nf*gf)*Kg + (nf*q2 - ng*gf)*Kf)/det);
     }
 }
-/* Rows turn it about themselves and not at all where they are flat, ends of wires and corners of
-   plates every way, upright corners about themselves. */
+/* Wires rotate the normal about themselves and flat rows not at all; ends of wires and corners of
+   plates in all directions; upright corners about themselves. */
 static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
     const dem_sieve_desc *s = &wall->sieve;
     const dem_vec3 n = b->normal, p = b->point;
@@ -522,7 +528,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
     const int end = R > 0 && !(foot.x*foot.x + foot.y*foot.y < R*R*DEM_R(0.999999));
     (void)among; (void)count;
     if (b->number == DEMI_SIEVE_FACE) return;
-    if (!ring && s->kind == DEM_SIEVE_ROUND) {         /* its hole's middle lies against n */
+    if (!ring && s->kind == DEM_SIEVE_ROUND) {         /* the hole's centre is opposite to n */
         const dem_real l = DEMI_SQRT(n.x*n.x + n.y*n.y), a = s->aperture/2;
         if (l > 0) demi_rim_bend(b, a, demi_v(n.x*a/l, n.y*a/l, 0), upright);
     } else if (wires && cross) demi_wires_bend(b, s);
@@ -537,7 +543,8 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
 }
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
-/* By the table of kinds. point: of the wall's surface, for the body's image that the wall meets. */
+/* Sets c->bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
+   point: of the wall's surface, for the image of the body that touches it. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
                            dem_vec3 point, demi_kept *c) {
     const dem_real *R = wall->pose.rotation;
