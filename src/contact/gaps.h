@@ -1,25 +1,29 @@
 /* ---------------------------------------------------------------------------------------------
    >>gaps
-   How far two convex bodies are apart, or how deep in each other, and the points by which they keep
-   each other off: what impulses, and laws that reach beyond touch, ask of polyhedra. Geometry only,
-   told by corners: for x of body A and y of body B the differences y - x fill a polytope D; the two
-   touch where D has the origin in it, and the point of D's surface nearest to the origin tells gap
-   and normal. Apart, it is reached over simplexes of D's corners, each step adding the one farthest
-   towards the origin [GJK88]; overlapping, a polytope of such corners grows about the origin until
-   its face nearest to the origin is one of D's [BER03]: the least way that parts the two. Both end
-   at a corner that is there already, so that no tolerance decides but that of rounding; normals are
-   those of faces of D, not of the short vector to the origin, and hold where a gap is 0. Where a
-   face of one lies square to the normal, the other's is cut to its outline; no more than four of
-   those points are the contact. Checked against all separating planes, and against portals, by
-   tests/contact/test_convex.c.
+   Distance or penetration depth of two convex polyhedra, and their contact manifold: what impulses,
+   and laws with a range, need of polyhedra. Geometry only, from the corners. For x of body A and y
+   of body B the differences y - x fill a polytope D (the Minkowski difference). The bodies overlap
+   if D contains the origin, and the point of D's surface nearest to the origin gives gap and
+   normal.
+
+   If they are apart, that point is found by iterating over simplexes of D's corners, adding the
+   corner farthest towards the origin each time [GJK88]. If they overlap, a polytope of such corners
+   grows about the origin until its face nearest to the origin is one of D's [BER03], which gives
+   the shortest separating translation. Both iterations end at a corner that is already included, so
+   the only tolerance is rounding. Normals are those of faces of D, not of the short vector to the
+   origin, and remain valid at gap 0. If a face of one body is perpendicular to the normal, the
+   opposite face of the other is clipped to its outline; at most four of the resulting points make
+   the contact. tests/contact/test_convex.c checks this against all separating planes, and against
+   portals.
    --------------------------------------------------------------------------------------------- */
 
-/* A corner of D: B's corner b less A's corner a. */
+/* A support vertex, that is a corner of D: corner b of B minus corner a of A. */
 typedef struct demi_lead { demi_d3 x; int a, b; } demi_lead;
-/* Corners of D; the point nearest to the origin is the sum of part x, parts are 1 in all. */
+/* Up to four corners of D. The point nearest to the origin is the sum of part x; the parts add up
+   to 1. */
 typedef struct demi_simplex { int count; demi_lead at[4]; double part[4]; } demi_simplex;
 
-/* The corner of a body that is farthest along n. */
+/* Returns the corner of a body that is farthest along n. */
 static int demi_solid_far(const demi_solid *s, demi_d3 n) {
     double most = -1e300;
     int i, far = 0;
@@ -29,7 +33,7 @@ static int demi_solid_far(const demi_solid *s, demi_d3 n) {
     }
     return far;
 }
-/* The corner of D that is farthest along n. */
+/* Returns the corner of D that is farthest along n. */
 static demi_lead demi_lead_along(const demi_solid *a, const demi_solid *b, demi_d3 n) {
     demi_lead lead;
     lead.a = demi_solid_far(a, demi_d3_scale(n, -1));
@@ -37,16 +41,17 @@ static demi_lead demi_lead_along(const demi_solid *a, const demi_solid *b, demi_
     lead.x = demi_d3_sub(b->corner[lead.b], a->corner[lead.a]);
     return lead;
 }
-/* Parts of the corners of a segment in its point nearest to the origin; how far off it is, squared.
-   */
+/* Sets the parts of both ends of a segment in its point nearest to the origin. Returns the squared
+   distance of that point. */
 static double demi_near_segment(demi_d3 p, demi_d3 q, double *part) {
     const demi_d3 e = demi_d3_sub(q, p);
     const double t = -demi_d3_dot(p, e)/demi_d3_square(e);
-    part[1] = t > 0 ? t < 1 ? t : 1 : 0;        /* 0 of a point */
+    part[1] = t > 0 ? t < 1 ? t : 1 : 0;        /* 0 for a point */
     part[0] = 1 - part[1];
     return demi_d3_square(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q));
 }
-/* The point of a triangle with these parts; and the parts of the one nearest to the origin. */
+/* The point of a triangle with the given parts; then the parts of the point nearest to the
+   origin. */
 static demi_d3 demi_triangle_point(const double *part, demi_d3 p, demi_d3 q, demi_d3 r) {
     return demi_d3_plus(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q), part[2], r);
 }
@@ -59,7 +64,7 @@ static void demi_near_triangle(demi_d3 p, demi_d3 q, demi_d3 r, double *part) {
     int i;
     part[0] = part[1] = part[2] = 0;
     if (!(demi_d3_square(demi_d3_cross(e, f)) >
-          1e-16*demi_d3_square(e)*demi_d3_square(f))) {         /* a line */
+          1e-16*demi_d3_square(e)*demi_d3_square(f))) {         /* collinear */
         double least = 1e300;
         for (i = 0; i < 3; i++) {
             double t[2];
@@ -85,10 +90,10 @@ static void demi_near_triangle(demi_d3 p, demi_d3 q, demi_d3 r, double *part) {
         part[2] = c/(a + b + c);
     }
 }
-/* Of a tetrahedron: the corners of each side, and the one opposite. */
+/* The sides of a tetrahedron: three corners and the opposite one. */
 static const int demi_sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
-/* The point of a simplex nearest to the origin, which corners without part in it leave; how far off
-   it is, squared. All four stay where the origin is inside. */
+/* Finds the point v of a simplex nearest to the origin and drops corners that do not contribute to
+   it. Returns its squared distance, or 0 with all four corners if the origin is inside. */
 static double demi_simplex_near(demi_simplex *s, demi_d3 *v) {
     double part[4] = {1, 0, 0, 0}, tried[3], least = 1e300;
     int i, k, left = 0;
@@ -102,7 +107,7 @@ static double demi_simplex_near(demi_simplex *s, demi_d3 *v) {
         const double high = demi_d3_dot(n, d);
         double d2;
         if (high*high > 1e-20*demi_d3_square(n)*demi_d3_square(d) &&   /* not flat */
-            -demi_d3_dot(n, p)*high > 0) continue;      /* on the fourth one's side */
+            -demi_d3_dot(n, p)*high > 0) continue;      /* on the same side as the fourth corner */
         demi_near_triangle(p, q, r, tried);
         d2 = demi_d3_square(demi_triangle_point(tried, p, q, r));
         if (!(d2 < least)) continue;
@@ -121,7 +126,7 @@ static double demi_simplex_near(demi_simplex *s, demi_d3 *v) {
     s->count = left;
     return demi_d3_square(*v);
 }
-/* The normal of a simplex's triangle where it has three corners, to the side of v; else v itself,
+/* Returns the unit normal of a simplex of three corners, on the side of v; of others v itself, made
    unit. */
 static demi_d3 demi_simplex_normal(const demi_simplex *s, demi_d3 v) {
     if (s->count == 3) {
@@ -135,7 +140,8 @@ static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
     for (i = 0; i < count; i++) if (at[i].a == w->a && at[i].b == w->b) return 1;
     return 0;
 }
-/* Are the two apart, by more than tiny, m? n: where to begin, then from a to b, unit. */
+/* True if the two bodies are apart by more than tiny, m. n: on entry a direction to start with, on
+   return the unit normal from a to b. GJK. */
 static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, demi_d3 *n,
                              demi_simplex *s) {
     demi_d3 v = *n, had_v;
@@ -167,21 +173,21 @@ static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double ti
     return fabs(n->x) <= 1 && fabs(n->y) <= 1 && fabs(n->z) <= 1;
 }
 
-/* --- overlapping: a polytope that grows about the origin --- */
+/* --- overlap: a polytope that grows about the origin (EPA) --- */
 
 enum { DEMI_POLYTOPE = 120 };
 typedef struct demi_polytope {
     int corners, faces;
-    double size;                   /* m, of both bodies: round-off of corners goes by it */
+    double size;                   /* m, of both bodies: scale of round-off */
     demi_lead at[DEMI_POLYTOPE];
     struct {
-        demi_d3 n;                 /* unit, outward; 0 of a face without an area */
+        demi_d3 n;                 /* unit, outward; 0: the face has no area */
         double at;                 /* n.x */
-        double blur;               /* error of n, rad: large where the face is thin or small */
+        double blur;               /* error of n, rad: large if thin or small */
         int corner[3];
     } face[2*DEMI_POLYTOPE];
 } demi_polytope;
-/* A face; one without an area is never the nearest, and seen from nowhere. */
+/* Sets face i. One without area never counts as the nearest and is visible from nowhere. */
 static void demi_polytope_face(demi_polytope *p, int i, int a, int b, int c) {
     const demi_d3 e = demi_d3_sub(p->at[b].x, p->at[a].x), f = demi_d3_sub(p->at[c].x, p->at[a].x);
     const demi_d3 n = demi_d3_cross(e, f);
@@ -198,7 +204,7 @@ static void demi_polytope_face(demi_polytope *p, int i, int a, int b, int c) {
         p->face[i].blur = 1e-15*p->size*sqrt(DEMI_MAX(ee, DEMI_MAX(ff, gg)))/area;
     }
 }
-/* How far x is from the point, the line or the plane of the first corners. */
+/* Distance, m, of x from the point, line or plane of the first corners. */
 static double demi_polytope_off(const demi_polytope *p, demi_d3 x) {
     const demi_d3 d = demi_d3_sub(x, p->at[0].x);
     if (p->corners == 1) return demi_d3_length(d);
@@ -206,7 +212,7 @@ static double demi_polytope_off(const demi_polytope *p, demi_d3 x) {
     if (p->corners == 2) return sqrt(demi_d3_square(demi_d3_cross(e, d))/demi_d3_square(e));
     return fabs(demi_d3_dot(demi_d3_unit(demi_d3_normal(p->at[0].x, p->at[1].x, p->at[2].x)), d));
 }
-/* The first tetrahedron, from the simplex at which the walk has ended. 0: D is flat. */
+/* Makes the first tetrahedron from the simplex at which GJK ended. Returns 0 if D is flat. */
 static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const demi_simplex *s,
                                double size, demi_polytope *p) {
     int i;
@@ -243,15 +249,15 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
     p->faces = 4;
     return 1;
 }
-/* m: how far a corner is over the plane of face i beyond what round-off may put it there. Of faces
-   that are coplanar with it some would see it otherwise and some not, and what joins it to their
-   rim would be folded. most: of that, m. */
+/* Height, m, of a corner above the plane of face i, minus an allowance for round-off. Without it,
+   coplanar faces could disagree on whether they see the corner, and the faces that join it to their
+   rim would fold. most: largest allowance, m. */
 static double demi_polytope_over(const demi_polytope *p, int i, const demi_lead *w, double most) {
     const demi_d3 d = demi_d3_sub(w->x, p->at[p->face[i].corner[0]].x);
     return demi_d3_dot(p->face[i].n, d) - DEMI_MIN(p->face[i].blur*demi_d3_length(d), most);
 }
-/* Takes a corner in: faces that see it, the nearest at least, give way to those that join it to
-   their rim. 0: no room. */
+/* Adds a corner: the faces that see it, and always the nearest one, are replaced by faces that join
+   it to their rim. Returns 0 if there is no room. */
 static int demi_polytope_take(demi_polytope *p, int nearest, const demi_lead *w) {
     int rim[2*DEMI_POLYTOPE][2], count = 0, left = 0, i, k, e;
     unsigned char seen[2*DEMI_POLYTOPE];
@@ -259,7 +265,7 @@ static int demi_polytope_take(demi_polytope *p, int nearest, const demi_lead *w)
     for (i = 0; i < p->faces; i++) {
         seen[i] = i == nearest || demi_polytope_over(p, i, w, 1e300) > 1e-14*p->size;
         if (!seen[i]) { left++; continue; }
-        for (k = 0; k < 3; k++) {               /* sides that two of them have go */
+        for (k = 0; k < 3; k++) {               /* a side of two such faces is not on the rim */
             const int from = p->face[i].corner[k], to = p->face[i].corner[(k + 1)%3];
             for (e = 0; e < count && !(rim[e][0] == to && rim[e][1] == from); e++) continue;
             if (e < count) { count--; rim[e][0] = rim[count][0]; rim[e][1] = rim[count][1]; }
@@ -275,8 +281,9 @@ static int demi_polytope_take(demi_polytope *p, int nearest, const demi_lead *w)
     p->faces = left + count;
     return 1;
 }
-/* The least way that parts two that overlap: n, from a to b. What ends it early (rounding, no room)
-   leaves the least one seen, which parts them, too. */
+/* Sets n, from a to b, to the direction of the shortest translation that separates two overlapping
+   bodies (EPA). If it ends early (rounding, no room), n is the best found, which also separates
+   them. */
 static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, demi_d3 *n,
                              demi_simplex *s) {
     demi_polytope p;
@@ -302,12 +309,12 @@ static void demi_solids_part(const demi_solid *a, const demi_solid *b, double si
     s->count = 3;
     demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, s->part);
 }
-/* Width of the slab across n that keeps them apart, m; < 0: by how much none does. */
+/* Width, m, of the slab perpendicular to n between the bodies; negative: their overlap along n. */
 static double demi_solids_slab(const demi_solid *a, const demi_solid *b, demi_d3 n) {
     const int far_a = demi_solid_far(a, n), far_b = demi_solid_far(b, demi_d3_scale(n, -1));
     return demi_d3_dot(n, demi_d3_sub(b->corner[far_b], a->corner[far_a]));
 }
-/* m: how far the farthest corner is from the centre. */
+/* Distance of the farthest corner from the centre, m. */
 static double demi_solid_radius(const demi_solid *s) {
     double far2 = 0;
     int i;
@@ -315,8 +322,8 @@ static double demi_solid_radius(const demi_solid *s) {
         far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(s->corner[i], s->centre)));
     return sqrt(far2);
 }
-/* How far the two are apart, m, < 0: how deep in each other; n: in: where to begin, or 0; out:
-   unit, from a to b. s: corners that tell it. */
+/* Returns the gap between the two, m; negative: their penetration depth. n: on entry a direction to
+   start with, or 0; on return the unit normal from a to b. s: the corners that define it. */
 static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 *n,
                               demi_simplex *s) {
     const double ra = demi_solid_radius(a), rb = demi_solid_radius(b), size = ra + rb;
@@ -328,16 +335,16 @@ static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 
     return demi_solids_slab(a, b, *n);
 }
 
-/* --- the points by which two keep each other off --- */
+/* --- contact manifold --- */
 
-/* No more than four: x in the middle between both surfaces, gaps along the normal. */
+/* Up to four contact points: x midway between both surfaces, gaps along the normal. */
 typedef struct demi_spots {
     int count;
     demi_d3 normal, x[4];          /* unit, from a to b; m */
-    double gap[4];                 /* m */
+    double gap[4];                 /* m; negative: overlap */
 } demi_spots;
-/* Of many points across n those that keep most: the deepest, the farthest from it, and on either
-   side of the line through both the farthest from that. */
+/* Picks up to four of many points in a plane across n: the deepest, the farthest from it, and on
+   either side of the line through both the farthest from that line. Returns their number. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
     double most = -1, side[2] = {0, 0};
@@ -362,7 +369,7 @@ static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_
     for (k = 0; k < 2; k++) if (far[k] >= 0) out[picked++] = far[k];
     return picked;
 }
-/* Those of count points across n whose gaps are below range, at most four. Answers how many. */
+/* Keeps those of `count` points whose gaps are below range, at most four. Returns their number. */
 static int demi_spots_take(demi_spots *out, demi_d3 *x, double *gap, int count, double range,
                            demi_d3 n) {
     int i, left = 0, picked[4];
@@ -378,7 +385,7 @@ static int demi_spots_take(demi_spots *out, demi_d3 *x, double *gap, int count, 
     }
     return out->count;
 }
-/* The face whose normal is most along n; by how much. */
+/* Returns the face whose normal is most nearly along n. *along: the cosine. */
 static int demi_solid_facing(const demi_solid *s, demi_d3 n, double *along) {
     int f, best = -1;
     *along = -2;
@@ -388,10 +395,10 @@ static int demi_solid_facing(const demi_solid *s, demi_d3 n, double *along) {
     }
     return best;
 }
-/* Faces that are square to a normal up to 1.8 degrees. */
+/* Cosine of 1.8 degrees: faces this nearly perpendicular to a normal are in face contact. */
 #define DEMI_FLUSH 0.9995
-/* Of body b's face that faces face f of a most, what lies over f: points, and gaps over its plane.
-   */
+/* Clips the face of b opposite to face f of a to the outline of f. Returns the number of points;
+   gap: their gaps from the plane of f. */
 static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi_d3 *x,
                            double *gap, demi_d3 *n) {
     const demi_d3 up = *n = demi_d3_scale(a->face[f].slope, a->face[f].high);
@@ -411,8 +418,9 @@ static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi
     }
     return count;
 }
-/* The contact of two that are no farther apart than range: 0: they are. facet: b is flat, and its
-   plane comes first. guess: normal of a step ago, or 0. s: corners that told the gap. */
+/* Finds the contact manifold of two bodies. Returns the number of points, 0 if they are farther
+   apart than `range`. facet: b is flat, and its plane takes precedence. guess: the normal of the
+   last step, or 0. s: the corners that define the gap. */
 static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
                              demi_d3 guess, demi_simplex *s, demi_spots *out) {
     demi_d3 x[DEMI_SECTION], n = guess, back;
