@@ -1,17 +1,18 @@
 /* ---------------------------------------------------------------------------------------------
    >>meets
-   Where parts of two bodies touch: geometry only, into a contact that >>kept has begun. Spheres by
-   their centres, ellipsoids by Perram and Wertheim's point, polyhedra by what they share
-   (>>polyhedra) or by gaps (>>gaps), and what is unlike by the nearest point. Then the table of who
-   meets whom.
+   Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
+   Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
+   polyhedra their common volume (>>polyhedra) or their gaps (>>gaps), and unlike parts the nearest
+   point. At the end, the table of functions by kinds of parts.
    --------------------------------------------------------------------------------------------- */
 
-/* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown. spots: several
-       points, from p's centre, where the contact has a gap for each; else its count stays 0 --- */
+/* --- Each function returns 1 if two parts touch, and writes the geometry to c. gap: m, from p's
+   centre to q's; lambda: a start value, 0: unknown. spots: set if the contact has several points,
+   each with its own gap, relative to p's centre; otherwise its count stays 0. --- */
 typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
                             dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots);
-/* Two spheres of radii r and s, about places x and y from the centres of their bodies, share the
-   distance as their radii do. */
+/* Two spheres of radii r and s, at x and y from the centres of their bodies. The contact point
+   divides their distance in the ratio of the radii. */
 DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_vec3 y, dem_real s,
                                dem_vec3 gap, demi_kept *c) {
     const dem_real d = demi_length(gap), sum = r + s;
@@ -31,9 +32,9 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. Apart, their gap is that
-   of the points of either that come to it when both are scaled by W0, d (1 - 1/W0): never less
-   than the distance, by which lists are made. */
+/* Two ellipsoids, or one and a sphere, by Perram and Wertheim's contact point. If they are apart,
+   their gap is the distance of the two surface points that coincide when both are scaled by W0: d
+   (1 - 1/W0). It is never less than the true distance, which the candidate lists use. */
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
@@ -66,14 +67,15 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - m.l)*m.a[0]),
         (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
-    /* from b's centre to the same point, to the bit: angular momentum */
+    /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
-/* An ellipsoid's overlap and arm at a normal, by what is `left` of it, 1 - W0, as it shrinks: as
-   with other ellipsoids, l (1 - W0), with the sphere of a wall's grain, of radius edge, in l, or
-   along the normal. The arm is to the point that lies deepest, as a sphere's is; what is
-   l (1 - W0)'s gradient passes through the point of the wall, at W0 of it. */
+/* Sets overlap and arm of an ellipsoid at its normal, from left = 1 - W0: with a plane or a
+   polyhedron (edge 0) or a grain of a wall (edge: its radius). As for two ellipsoids, the overlap
+   is l (1 - W0), where l includes `edge`, or is measured along the normal. The arm leads to the
+   deepest point, as for a sphere. The gradient of l (1 - W0) passes through the point of the wall,
+   at W0 times the arm. */
 static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real left, dem_real edge,
                              demi_kept *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
@@ -87,8 +89,7 @@ static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real le
         c->inset = 1 - left;
     }
 }
-/* A sphere and a polyhedron, whose nearest point it is pushed away from; the sphere's radius is R*,
-   as on a plane. */
+/* A sphere and a polyhedron, at the nearest point; R* is the sphere's radius, as on a plane. */
 static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_BALL;
@@ -112,8 +113,8 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
     }
     return 1;
 }
-/* An ellipsoid and a polyhedron: as it touches walls, at the point that comes to it first when it
-   is scaled, by W0. */
+/* An ellipsoid and a polyhedron, as with walls: at the point that the ellipsoid touches first when
+   it is scaled, by W0. */
 static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                 dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
@@ -131,7 +132,7 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
     c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
-    /* the gradient passes through the polyhedron's point */
+    /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(egg->q, at);
     c->inset = 1;
     if (!first) {
@@ -149,8 +150,9 @@ static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const 
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
-/* Two polyhedra by the points that keep them off: all that impulses ask; for a law with a range,
-   while nothing presses, the nearest one, four times, as many as a pressure will have. */
+/* Two polyhedra by the points of least gap: always with impulses; with springs only for a law with
+   a range, while there is no overlap. Then the nearest point is repeated four times, since contact
+   by pressure has four points. */
 static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const demi_part *q,
                                dem_vec3 gap, demi_kept *c, demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q);
@@ -175,7 +177,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     spots->count = 4;
     return spots->gap[0] > 0;
 }
-/* Two polyhedra, by what they share; the first of four points by which they touch. */
+/* Two polyhedra by their common volume. c becomes the first of four contact points. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                 dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
@@ -189,7 +191,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
-    if (w->desc.planar)                         /* whichever: the same as long as they touch */
+    if (w->desc.planar)                         /* either one, but always the same */
         demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
     overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &at)
         ? demi_shared_overlap(s.shared, r_eff) : 0;
@@ -207,7 +209,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
-/* Who meets whom: kinds of parts, the later one first. */
+/* The function for two kinds of parts; the table is indexed by the higher kind first. */
 #define DEMI_SHAPE_MEET(KIND, NAME, WORD, GAP, TOUCH) DEMI_LIST TOUCH,
 static const demi_meet_fn demi_meets[][DEMI_SHAPE_KINDS] = {DEMI_SHAPES(DEMI_SHAPE_MEET)};
 DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {

@@ -1,25 +1,26 @@
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra
-   What two convex polyhedra, or one and a rigid surface, share, and how that pushes them apart;
-   geometry only. A polyhedron about O is pyramids over its faces with their tips in O; in that of
-   face f, of height h_f and outward normal n_f,
-       u(x) = 1 - n_f.(x - O)/h_f,         1 at O, 0 on the surface:
-   how far in x lies, and the pressure there of an elastic body on a rigid core (a pressure field,
-   [ELA19]). Where two overlap, the deeper inside one, the less inside the other; they meet in the
-   surface S on which both u are the same. What they share is
+   Common volume of two convex polyhedra, or of one and a rigid surface, and the contact force that
+   follows from it: geometry only. A polyhedron about O consists of pyramids over its faces with
+   their apexes in O. In that of face f, of height h_f and outward normal n_f,
+       u(x) = 1 - n_f.(x - O)/h_f,         1 at O, 0 on the surface
+   is the relative depth of x. It is taken as the pressure at x, that of an elastic body on a rigid
+   core (a pressure field, [ELA19]). If two polyhedra overlap, points deeper inside one are less
+   deep inside the other. The surface S on which both u are equal separates them. From
        I = integral over both of the smaller u,             overlap = sqrt(I/((4 pi/3)^(1/3) R*))
-   with R* of the spheres of their volumes. As A moves against B, only S counts, and that gives
-       dI = integral over S of u dA n . (way of A's points), n unit, from A to B:
-   forces and moments of the pressure u on S, equal and opposite, and the gradient of U(overlap):
-   faces, edges and corners pass into each other without a jump, and energy is conserved. A cube on
-   a plane or on its like has the overlap by which the two overlap. I itself follows from S: in each
-   pyramid g = 1 - u is linear, and the field (x - O)(1/3 - g/4 - 1/(12 g^3)) has the divergence u
-   and is 0 on the surface; over a triangle with g1, g2, g3 the mean of 1/g^3 is 1/(g1 g2 g3). (The
-   law of the overlap's volume, [FEN12], conserves energy, too; but there a face that lies on
-   another one is free to tilt.) A rigid wall has u without limit behind its surface, and S is that.
+   where R* is that of spheres of the same volumes. As A moves relative to B, only S contributes:
+       dI = integral over S of u dA n . (displacement of A's points), n unit, from A to B.
+   The forces and moments of the pressure u on S are therefore equal and opposite, and they are the
+   gradient of U(overlap): energy is conserved, and contacts of faces, edges and corners pass into
+   each other without a jump. A cube that lies on a plane or on a cube has an overlap equal to the
+   depth of penetration. I follows from S as well: in each pyramid g = 1 - u is linear, and the
+   field (x - O)(1/3 - g/4 - 1/(12 g^3)) has the divergence u and is 0 on the surface; over a
+   triangle with g1, g2, g3 the mean of 1/g^3 is 1/(g1 g2 g3). (The law of the overlap's volume,
+   [FEN12], conserves energy too, but there a face that lies on another one is free to tilt.) Behind
+   the surface of a rigid wall u is infinite, and S is that surface.
    --------------------------------------------------------------------------------------------- */
 
-/* A polyhedron where it is now, about some origin, in some axes. */
+/* A polyhedron in its present position and orientation, in some frame. */
 typedef struct demi_solid {
     int faces, corners;
     const int32_t *rim;            /* faces + 1 starts, then the corners of each face */
@@ -27,13 +28,15 @@ typedef struct demi_solid {
     struct { demi_d3 slope; double high; } face[DEM_POLYHEDRON_FACES];  /* n/h, 1/m; h, m */
     demi_d3 corner[DEMI_HULL_CORNERS];
 } demi_solid;
-/* The number of corner i of a face, rim[f] <= i <= rim[f + 1]: after the last comes the first. */
+/* Returns the number of corner i of a face, rim[f] <= i <= rim[f + 1]; the first follows the
+   last. */
 DEM_INLINE int32_t demi_solid_number(const demi_solid *s, int f, int i) {
     return s->rim[s->faces + 1 + (i < s->rim[f + 1] ? i : s->rim[f])];
 }
 DEM_INLINE demi_d3 demi_solid_corner(const demi_solid *s, int f, int i) {
     return s->corner[demi_solid_number(s, f, i)];
 }
+/* Sets s to polyhedron p with its centre at `centre`. */
 static void demi_solid_of(const demi_part *p, dem_vec3 centre, demi_solid *s) {
     const demi_shape *shape = p->shape;
     const double *plane = shape->hull, *corner = shape->hull + 4*shape->faces;
@@ -52,7 +55,7 @@ static void demi_solid_of(const demi_part *p, dem_vec3 centre, demi_solid *s) {
     for (i = 0; i < s->corners; i++, corner += 3)
         s->corner[i] = demi_d3_plus(s->centre, scale, demi_d3_rotate(R, demi_d3_at(corner)));
 }
-/* u of face f's pyramid at x. */
+/* u at x in the pyramid of face f. */
 static double demi_solid_in(const demi_solid *s, int f, demi_d3 x) {
     return 1 - demi_d3_dot(s->face[f].slope, demi_d3_sub(x, s->centre));
 }
@@ -61,13 +64,13 @@ static double demi_solid_in(const demi_solid *s, int f, demi_d3 x) {
 
 typedef struct demi_pressure {
     double shared;                 /* m3: I */
-    double sum, wide[6];           /* of u dA: 1; x x (xx yy zz xy xz yz) */
-    demi_d3 at, force, torque;     /* of u dA: x; n; x cross n */
+    double sum, wide[6];           /* m2, m4: integrals over S of u, u x x (xx yy zz xy xz yz) */
+    demi_d3 at, force, torque;     /* integrals over S of u x, u n, u x cross n */
     double deep;                   /* largest u */
 } demi_pressure;
 enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
-/* A polygon of count corners x in the pyramid over face f of a body; unit: normal of S; height: m,
-   of the polygon over the centre, of a pair the sum of both. */
+/* Adds a polygon of `count` corners x in the pyramid of face f. unit: normal of S; height: m, of
+   the polygon above the centre, for a pair the sum of both. */
 static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int f, const demi_d3 *x,
                                   int count, demi_d3 unit, double height) {
     double force = 0, at[3] = {0, 0, 0}, a[3], b[3], c[3], u[DEMI_SECTION];
@@ -100,7 +103,7 @@ static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int 
     s->force = demi_d3_plus(s->force, force, unit);
     s->torque = demi_d3_add(s->torque, demi_d3_cross(demi_d3_at(at), unit));
 }
-/* A point there that stands for so much of S. */
+/* Adds a point of S that represents an area. */
 static void demi_pressure_point(demi_pressure *s, const demi_solid *body, int face, demi_d3 x,
                                 double area, demi_d3 unit, double height) {
     const double u = DEMI_MAX(demi_solid_in(body, face, x), 0), f = area*u, g = 1 - u;
@@ -135,11 +138,11 @@ static void demi_pressure_scale(demi_pressure *s, double by) {
     for (k = 0; k < 6; k++) s->wide[k] *= by;
 }
 
-/* --- sections: where a plane cuts a pyramid, or half spaces leave something of a polygon --- */
+/* --- sections: a plane through a pyramid, and polygons clipped by half spaces --- */
 
-typedef struct demi_half { demi_d3 n, o; } demi_half;  /* where n.(x - o) >= 0 */
-/* Where the plane level = 0 cuts the pyramid over face f: level at the centre, and at the corners
-   of the face in their order. Answers how many corners there are. */
+typedef struct demi_half { demi_d3 n, o; } demi_half;  /* n.(x - o) >= 0 */
+/* Cuts the pyramid over face f with the plane level = 0. centre, level: levels at the centre and at
+   the corners of the face in their order. Returns the number of corners of the section. */
 static int demi_pyramid_section(const demi_solid *s, int f, double centre, const double *level,
                                 demi_d3 *x) {
     const int first = s->rim[f], n = s->rim[f + 1] - first, inside = centre > 0;
@@ -155,7 +158,7 @@ static int demi_pyramid_section(const demi_solid *s, int f, double centre, const
     }
     return count;
 }
-/* What is left of a convex polygon where n.(x - o) >= 0. */
+/* Clips a convex polygon to n.(x - o) >= 0. Returns its number of corners. */
 static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
     demi_d3 out[DEMI_SECTION];
     double d[DEMI_SECTION];
@@ -175,7 +178,7 @@ static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
     memcpy(x, out, (size_t)left*sizeof *out);
     return left;
 }
-/* What is left of it in the pyramid over face f. */
+/* Clips it to the pyramid over face f. */
 static int demi_pyramid_clip(const demi_solid *s, int f, demi_d3 *x, int count) {
     int i;
     for (i = s->rim[f]; i < s->rim[f + 1] && count > 2; i++) {
@@ -185,13 +188,13 @@ static int demi_pyramid_clip(const demi_solid *s, int f, demi_d3 *x, int count) 
     }
     return count;
 }
-/* How deep below a face each corner is, m. */
+/* Depth of each corner of s below a face of the other, m. */
 static void demi_solid_depths(const demi_solid *s, const demi_solid *other, int face, double *in) {
     int i;
     for (i = 0; i < s->corners; i++)
         in[i] = demi_solid_in(other, face, s->corner[i])*other->face[face].high;
 }
-/* Leaves out faces all corners of which are deeper, or less deep, than at. */
+/* Excludes faces whose corners are all deeper (or all less deep) than `at`. */
 static void demi_solid_leave(const demi_solid *s, const double *in, double at, int deeper,
                              unsigned char *alive) {
     const int32_t *loops = s->rim + s->faces + 1;
@@ -202,9 +205,9 @@ static void demi_solid_leave(const demi_solid *s, const double *in, double at, i
         if (i == s->rim[f + 1]) alive[f] = 0;
     }
 }
-/* Which faces of a and b may have a piece of S, to begin with all. Of b's faces, a's centre being
-   beyond, that below which a comes least: none of a's that lie wholly beyond it, none of b's that
-   lie wholly deeper than a comes. 0: some face keeps the two apart. */
+/* Excludes faces of a and b that cannot have a piece of S. Of b's faces with a's centre outside, it
+   chooses the one below which a is least deep. Faces of a entirely outside it, and faces of b
+   entirely deeper than a, are excluded. Returns 0 if some face separates the two. */
 static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned char *of_a,
                             unsigned char *of_b) {
     double in[DEMI_HULL_CORNERS], least = 1e300;
@@ -228,7 +231,7 @@ static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned c
     demi_solid_leave(b, in, least*(1 + 1e-9), 1, of_b);
     return 1;
 }
-/* The piece of S between faces f and g. */
+/* Adds the piece of S between faces f and g. */
 static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, int g,
                               demi_pressure *s) {
     const int n = a->rim[f + 1] - a->rim[f];
@@ -240,7 +243,7 @@ static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, i
         above += (level[i] = demi_solid_in(b, g, demi_solid_corner(a, f, a->rim[f] + i))) > 0;
     if (above == (centre > 0 ? n : 0)) return;
     unit = demi_d3_sub(a->face[f].slope, b->face[g].slope);
-    if (!(demi_d3_length(unit)*a->face[f].high > 1e-9)) return;         /* the same face */
+    if (!(demi_d3_length(unit)*a->face[f].high > 1e-9)) return;         /* the same plane */
     unit = demi_d3_unit(unit);
     count = demi_pyramid_section(a, f, centre, level, x);
     count = demi_pyramid_clip(b, g, x, count);
@@ -248,14 +251,14 @@ static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, i
         demi_pressure_polygon(s, a, f, x, count, unit,
                               demi_d3_dot(demi_d3_sub(b->centre, a->centre), unit));
 }
-/* Is x inside? */
+/* True if x is inside. */
 static int demi_solid_holds(const demi_solid *s, demi_d3 x) {
     int f;
     for (f = 0; f < s->faces; f++) if (!(demi_solid_in(s, f, x) > 0)) return 0;
     return 1;
 }
-/* The centre has gone through a surface: there is no pressure any more, but something that pushes
-   back along n and, by its depth, stops the run. */
+/* Handles a centre that has passed through a surface. The pressure is undefined there; it is
+   replaced by some force along n, and the depth of 2 stops the run. */
 static void demi_pressure_beyond(const demi_solid *a, demi_d3 n, demi_pressure *s) {
     const double h = a->face[0].high;
     s->deep = 2;
@@ -268,9 +271,9 @@ static void demi_pressure_beyond(const demi_solid *a, demi_d3 n, demi_pressure *
     s->at = demi_d3_scale(a->centre, s->sum);
     s->torque = demi_d3_cross(a->centre, s->force);
 }
-/* Polygons of a plane are prisms; where two end at one height there is a volume in which both u are
-   those of the ends, the same, and S may pass through it anywhere, so that neither force nor energy
-   is told. So one of the two is taken to be half as high again. Their centres are at z = 0. */
+/* Stretches a prism to 1.5 times its height; its centre is at z = 0. Polygons of a planar world are
+   prisms. If two end at the same height, there is a volume in which both u are those of the ends
+   and equal, so S, force and energy are undefined. One of the two is therefore stretched. */
 static void demi_solid_stretch(demi_solid *s) {
     int i;
     for (i = 0; i < s->corners; i++) s->corner[i].z *= 1.5;
@@ -279,7 +282,7 @@ static void demi_solid_stretch(demi_solid *s) {
         s->face[i].high = 1/demi_d3_length(s->face[i].slope);
     }
 }
-/* All of S; 0: there is none. */
+/* Integrates over all of S. Returns 0 if the two do not overlap. */
 static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
     unsigned char fs[DEM_POLYHEDRON_FACES], gs[DEM_POLYHEDRON_FACES];
     int f, g;
@@ -293,7 +296,7 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
         demi_pressure_beyond(a, demi_d(0, 0, 1), s);
     return s->shared > 0 && s->sum > 0;
 }
-/* Gauss's rules of three and four points on 0 to 1: where they are, and their weights. */
+/* Gauss-Legendre rules with three and four points on 0 .. 1: positions and weights. */
 static const double demi_gauss3_at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
 static const double demi_gauss3[3] = {5.0/18, 8.0/18, 5.0/18};
 static const double demi_gauss4_at[4] = {0.06943184420297371, 0.33000947820757187,
@@ -304,8 +307,8 @@ static int demi_double_order(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
 }
-/* Part of the ray from o in direction (c, sn) that is inside a polygon across z which turns left
-   (side 1) or right (-1): lo to hi, which come as its ends. */
+/* Clips the ray from o in direction (c, sn), from *lo to *hi, to a polygon across z that is
+   counter-clockwise (side 1) or clockwise (-1). */
 static void demi_polygon_ray(const demi_d3 *x, int count, int side, const double *o, double c,
                              double sn, double *lo, double *hi) {
     int e;
@@ -318,8 +321,10 @@ static void demi_polygon_ray(const demi_d3 *x, int count, int side, const double
         else if (over < 0) *hi = -1;
     }
 }
-/* The polygon of face f's pyramid, across z, outside of a hole (x, y, radius): along rays from its
-   middle, between those to corners and to where sides cross its rim. 0: nothing of it is in it. */
+/* Adds the part outside a circular hole (x, y, radius) of a polygon across z in the pyramid of face
+   f. It integrates along rays from the hole's centre, in sectors between those to corners and those
+   to intersections of sides with the hole's rim. Returns 0, and adds nothing, if the two do not
+   overlap. */
 static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, const demi_d3 *x,
                                int count, demi_d3 unit, double height, const double *hole) {
     double angle[3*DEMI_SECTION + 1], area = 0;
@@ -341,7 +346,8 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, con
             angle[angles++] = demi_atan2(v + t*dv, u + t*du);
         }
     }
-    if (!near_by && left < count && right < count) return 0;    /* nor is its middle inside */
+    if (!near_by && left < count && right < count) return 0;    /* nor is the centre of the hole
+                                                                   inside */
     qsort(angle, (size_t)angles, sizeof *angle, demi_double_order);
     angle[angles] = angle[0] + 2*DEMI_PI;
     for (i = 0; i < angles; i++) {
@@ -363,10 +369,10 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, con
     }
     return 1;
 }
-/* S on a flat piece of a rigid wall: beyond n.x = at, n unit, into the wall; on that side of all
-   half spaces that bound it; hole: null, or x, y and radius of one in it,
-   across z. Without bounds the polyhedron's centre must be on this side; a piece may be seen from
-   behind, where it takes from what others share. */
+/* Adds S on a flat piece of a rigid wall: the part of the plane n.x = at (n unit, into the wall)
+   that is within all half spaces `sides`. hole: null, or x, y and radius of a hole in it, across z.
+   Without sides the polyhedron's centre must be in front. A piece with sides may be seen from
+   behind; it then reduces what other pieces contribute. */
 static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const demi_half *sides,
                                int side_count, const double *hole, demi_pressure *s) {
     const double centre = demi_d3_dot(n, a->centre) - at;
@@ -387,18 +393,19 @@ static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const 
     }
 }
 
-/* --- the contact that a pressure is --- */
+/* --- the contact that follows from a pressure --- */
 
-/* Where friction and damping act: four points about the centre of pressure that spread as wide as
-   the pressure does, so that what lies on a face does not turn about one point. */
+/* Friction and damping act at four points about the centre of pressure, as far apart as the
+   pressure is spread (its second moments), so that a body that lies on a face does not rotate about
+   one point. */
 typedef struct demi_patch {
     dem_vec3 normal, point;        /* unit, a -> b; m: centre of pressure */
-    dem_vec3 spread[2];            /* m: corners are at point +- one +- the other */
-    dem_real couple;               /* m: moment about the normal over the force */
-    double force;                  /* m2: of u */
+    dem_vec3 spread[2];            /* m: the points are at point +- one +- the other */
+    dem_real couple;               /* m: moment about the normal, over the force */
+    double force;                  /* m2: integral of u n */
 } demi_patch;
-/* Not where it does not push. The two directions of the spread: any, but the same from step to
-   step. */
+/* Sets the patch of a pressure. Returns 0 if it has no force. The directions of the spread are
+   arbitrary but stay the same from step to step. */
 static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
     const double *m = s->wide, F = demi_d3_length(s->force), sum2 = s->sum*s->sum;
     demi_d3 n, e, t, Ce, Ct;
@@ -420,7 +427,7 @@ static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
     ee = DEMI_MAX(demi_d3_dot(e, Ce), 0);
     tt = DEMI_MAX(demi_d3_dot(t, Ct), 0);
     et = demi_d3_dot(e, Ct);
-    root = sqrt(DEMI_MAX(ee*tt - et*et, 0));    /* the root of a 2 x 2 tensor, Cayley-Hamilton */
+    root = sqrt(DEMI_MAX(ee*tt - et*et, 0));    /* square root of a 2 x 2 tensor, Cayley-Hamilton */
     size = sqrt(ee + tt + 2*root);
     if (!(size > 0)) size = 1;
     out->normal = demi_d3_real(n);
@@ -432,13 +439,14 @@ static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
     out->force = F;
     return 1;
 }
-/* From the centre of pressure to corner k. Seen from the other body, whose normal is the opposite
-   one, corner k is k ^ 1. */
+/* From the centre of pressure to corner k. For the other body, whose normal is opposite, corner k
+   is k ^ 1. */
 static dem_vec3 demi_patch_spread(const demi_patch *p, int k) {
     const dem_vec3 one = demi_scale(p->spread[0], k & 2 ? DEM_R(-1) : DEM_R(1));
     return demi_add(one, demi_scale(p->spread[1], k & 1 ? DEM_R(-1) : DEM_R(1)));
 }
-/* sqrt(I/((4 pi/3)^(1/3) R*)), m; and how it grows where a force F (of u) gives way, per m. */
+/* Overlap sqrt(I/((4 pi/3)^(1/3) R*)), m; and its derivative with respect to a displacement along a
+   force F (of u). */
 static double demi_shared_overlap(double shared, double r_eff) {
     return sqrt(shared/(DEMI_POLYHEDRON_SCALE*r_eff));
 }
@@ -446,10 +454,10 @@ static double demi_shared_slope(double force, double r_eff, double overlap) {
     return force/(2*DEMI_POLYHEDRON_SCALE*r_eff*overlap);
 }
 
-/* --- points that are nearest --- */
+/* --- nearest points --- */
 
-/* The point q of a polyhedron nearest to x, and how far off it is, m; below 0 inside, where it is
-   on the nearest face. */
+/* Finds the point q of a polyhedron nearest to x. Returns its distance, m; if x is inside, q is on
+   the nearest face and the distance is negative. */
 static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
     double inside = -1e300, least = 1e300;
     int f, i;
@@ -482,7 +490,8 @@ static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
     }
     return least < 1e299 ? least : inside;
 }
-/* A polyhedron in the measure in which an ellipsoid at `at` is the unit sphere about the origin. */
+/* Sets s to polyhedron p scaled so that the ellipsoid `egg` at `at` is the unit sphere about the
+   origin. */
 static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
                                demi_solid *s) {
     const demi_d3 axes = demi_d3_of(egg->axes);
@@ -499,7 +508,7 @@ static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec
     for (k = 0; k < 3; k++) { back[k] *= axes.x; back[3 + k] *= axes.y; back[6 + k] *= axes.z; }
     for (i = 0; i < s->faces; i++) s->face[i].slope = demi_d3_rotate(back, s->face[i].slope);
 }
-/* How far a part reaches from its centre along n (unit), m. */
+/* Extent of a part from its centre along n (unit), m. */
 static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
     if (p->kind == DEMI_BALL) return p->radius;
     return p->scale*demi_shape_rows[p->kind].support(p->shape, dem_quat_unrotate(p->q, n));
@@ -509,7 +518,7 @@ static dem_vec3 demi_face_normal(const demi_shape *s, int f) {
     const double *a = s->hull + 4*f;
     return demi_scale(demi_d3_real(demi_d3_at(a)), (dem_real)a[3]);
 }
-/* The farthest that a face of p keeps q off: no more than their distance. */
+/* Largest separation of q from a face of p, m: a lower bound of their distance. */
 static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 gap) {
     dem_real most = -DEM_R(1e30);
     int f;
@@ -521,8 +530,8 @@ static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 
     }
     return most;
 }
-/* Does the face of p that faces q's centre most keep all of q off? Most pairs that are apart are so
-   by one of the two. */
+/* True if the face of p that most faces q's centre separates p from q. This rejects most pairs that
+   are apart, from one side or the other. */
 static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap) {
     const demi_d3 own = demi_d3_of(dem_quat_unrotate(p->q, gap));
     const double scale = (double)p->scale, *a = p->shape->hull;
