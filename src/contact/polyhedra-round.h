@@ -1,17 +1,19 @@
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-round
-   Where polyhedra touch cylinders and surfaces of revolution, piece by piece: springs by what they
-   share with each line of a piece, summed over angles between those at which that is smooth (edges,
-   pyramids and faces that cross the piece or the rings at its ends); gaps by corners where the
-   piece bends round the body, by the plane along the nearest line where it bends away, and by
-   points of the rings at its ends.
+   Contacts of polyhedra with cylinders and surfaces of revolution, piece by piece. With springs,
+   the pressure is integrated along each line (generator) of a piece and summed over angles, in
+   intervals where the integrand is smooth; they are bounded by edges, pyramids and faces that cross
+   the piece or the rings at its ends. With gaps, the contact points are corners if the piece curves
+   around the body, points of the plane along the nearest line if it curves away, and points of the
+   rings at its ends.
    --------------------------------------------------------------------------------------------- */
 
-/* Lines of a surface of revolution about z, from radius a to b, height g to h: each with all that
-   shares it at its angle. The pyramids' sections along it are pieces on which u is linear. */
+/* A piece of a surface of revolution about z: lines from radius a to b, height g to h; side: which
+   side acts. demi_generator_press adds one line with its width in angle; the pyramids cut it into
+   sections on which u is linear. */
 typedef struct demi_generator {
     double a, b, g, h, side;
-    int open[2];                   /* 1: at that end the surface stops, or bends away */
+    int open[2];                   /* 1: the surface ends there, or bends away */
 } demi_generator;
 static void demi_generator_press(const demi_solid *s, const demi_generator *l, double angle,
                                  double width, demi_d3 x0, demi_pressure *out) {
@@ -32,7 +34,7 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
     for (from = lo; from < hi; ) {
         double to = hi, least = 1e300, steep = 0;
         int next = -1;
-        for (f = 0; f < s->faces && face < 0; f++) {    /* the one in force at its beginning */
+        for (f = 0; f < s->faces && face < 0; f++) {    /* the face whose pyramid it begins in */
             const double slope = -demi_d3_dot(s->face[f].slope, e);
             const double u = demi_solid_in(s, f, o) + slope*from;
             if (u < least - 1e-12 || (u < least + 1e-12 && slope < steep)) {
@@ -41,7 +43,7 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
         }
         if (face < 0) face = next;
         next = -1;
-        for (f = 0; f < s->faces; f++) {        /* until another one takes over */
+        for (f = 0; f < s->faces; f++) {        /* until the next pyramid */
             const double slope = demi_d3_dot(s->face[face].slope, e) -
                 demi_d3_dot(s->face[f].slope, e);
             const double over = demi_solid_in(s, f, o) - demi_solid_in(s, face, o);
@@ -59,7 +61,8 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
         if (next < 0) break;
     }
 }
-/* Angles at which the line from p to q crosses the surface, into angle: how many, 0 to 2. */
+/* Writes the angles at which the segment from p to q crosses the surface. Returns their number, 0
+   to 2. */
 static int demi_generator_cross(const demi_generator *l, demi_d3 p, demi_d3 q, double *angle) {
     const demi_d3 d = demi_d3_sub(q, p);
     const int level = !(l->h > l->g || l->h < l->g);
@@ -83,14 +86,15 @@ static int demi_generator_cross(const demi_generator *l, demi_d3 p, demi_d3 q, d
             angle[count++] = demi_atan2(p.y + t[i]*d.y, p.x + t[i]*d.x);
     return count;
 }
-/* Does the surface go on from a ring to another one into the wall, as a piece l's side has it? */
+/* True if the surface continues from a ring to the ring `to` into the wall, as seen from l's
+   side. */
 static int demi_ring_away(const demi_wall *wall, int ring, int to, const demi_generator *l) {
     const double out = (double)(wall->ring_radius[to] - wall->ring_radius[ring]);
     const double up = (double)(wall->ring_height[to] - wall->ring_height[ring]);
     return l->side*((l->h - l->g)*out - (l->b - l->a)*up) > 0;
 }
-/* Piece i of a wall, seen from this side. A cylinder as far as a body of this radius about x goes.
-   */
+/* Returns piece i of a wall, seen from this side. A cylinder is cut to the extent of a body of this
+   radius about x. */
 static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x, dem_real radius,
                                         double side) {
     demi_generator l;
@@ -111,17 +115,17 @@ static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x
     }
     return l;
 }
-/* How far off the axis, m. */
+/* Distance from the axis, m. */
 DEM_INLINE double demi_off_axis(demi_d3 x) { return sqrt(x.x*x.x + x.y*x.y); }
-/* The point of a line from (a, g) to (a + e, g + f), out and up, nearest to a point that is u out
-   and v up from its beginning: how far off that is, squared. */
+/* Squared distance of a point from a line in the (radius, height) plane. u, v: from the line's
+   start to the point; e, f: from its start to its end. */
 static double demi_line_off2(double u, double v, double e, double f) {
     double t = (u*e + v*f)/(e*e + f*f);
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f);
 }
-/* The side of a surface of revolution on which x is: by the piece nearest to it, of equally near
-   ones by that from whose line it is farthest. */
+/* The side of a surface of revolution on which x is: by the nearest piece or, if several are
+   equally near, by the one whose infinite line is farthest away. */
 static double demi_rings_side(const demi_wall *wall, demi_d3 x) {
     const double out = demi_off_axis(x);
     double least = 1e300, far = 0, side = 1;
@@ -139,8 +143,8 @@ static double demi_rings_side(const demi_wall *wall, demi_d3 x) {
     }
     return side;
 }
-/* Does a surface of revolution end at its first ring (end 0) or last (1), near a body of this
-   radius about x? Not on its axis, nor where it closes. */
+/* True if a surface of revolution ends at its first ring (end 0) or last ring (1), near a body of
+   this radius about x. It does not end on its axis, nor where it closes. */
 static int demi_rings_end(const demi_wall *wall, int end, demi_d3 x, double radius) {
     const int ring = end ? wall->ring_count - 1 : 0, other = end ? 0 : wall->ring_count - 1;
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
@@ -149,8 +153,8 @@ static int demi_rings_end(const demi_wall *wall, int end, demi_d3 x, double radi
         !(fabs((double)wall->ring_radius[other] - r) + fabs((double)wall->ring_height[other] - z) <
           1e-9*r);
 }
-/* The curtain there, as at the end of a sheet: from the ring along the normal of its piece, seen
-   from this side, beyond what a body of this radius reaches, but not beyond the axis. */
+/* The curtain there, as at the border of a sheet: from the ring along the normal of its piece, seen
+   from this side, farther than a body of this radius reaches, but not across the axis. */
 static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double radius,
                                          double side) {
     const int i = end ? wall->ring_count - 2 : 0, ring = end ? i + 1 : 0;
@@ -168,24 +172,24 @@ static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double 
     l.open[0] = l.open[1] = 0;
     return l;
 }
-/* Does a body of this radius about x reach it? */
+/* True if a body of this radius about x reaches the piece. */
 static int demi_generator_near(const demi_generator *l, demi_d3 x, double radius) {
     const double out = demi_off_axis(x);
     return demi_line_off2(out - l->a, x.z - l->g, l->b - l->a, l->h - l->g) < radius*radius;
 }
-/* Is x on its far side? Then n is the way into the wall. */
+/* True if x is behind the piece. n receives the direction into the wall. */
 static int demi_generator_beyond(const demi_generator *l, demi_d3 x, demi_d3 *n) {
     const double out = demi_off_axis(x), e = l->b - l->a, f = l->h - l->g;
     const double size = sqrt(e*e + f*f), flat = l->side*f/size;
     *n = demi_d(flat*(out > 0 ? x.x/out : 1), flat*(out > 0 ? x.y/out : 0), -l->side*e/size);
     return l->side*((l->a - out)*f - (l->g - x.z)*e) < 0;
 }
-/* How far out the surface is at a height. */
+/* Radius of the surface at a height, m. */
 static double demi_generator_radius(const demi_generator *l, double z) {
     return l->h > l->g || l->h < l->g ? l->a + (l->b - l->a)/(l->h - l->g)*(z - l->g) : l->a;
 }
-/* Angles at which lines of the surface come into the plane of a face, at its lowest and highest
-   corners: how many, 0 to 4. */
+/* Writes the angles at which lines of the surface come into the plane of a face, at its lowest and
+   highest corners. Returns their number, 0 to 4. */
 static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f, demi_d3 x0,
                                double *angle) {
     const demi_d3 a = s->face[f].slope;
@@ -209,8 +213,8 @@ static int demi_generator_face(const demi_generator *l, const demi_solid *s, int
     }
     return count;
 }
-/* Angles at which a ring, where a piece ends, comes through a plane n.y = c, y from the centre,
-   within the body: how many, 0 to 2. */
+/* Writes the angles at which a ring, where a piece ends, crosses a plane n.y = c (y from the
+   centre) within the body. Returns their number, 0 to 2. */
 static int demi_ring_cross(const demi_solid *s, double r, double z, demi_d3 n, double c,
                            demi_d3 x0, double *angle) {
     const double to = r*demi_off_axis(n);
@@ -228,7 +232,7 @@ static int demi_ring_cross(const demi_solid *s, double r, double z, demi_d3 n, d
     }
     return count;
 }
-/* Those of all its faces, and of the sides of its pyramids; radius: of the body. */
+/* The same for all faces, and for the sides of the pyramids. radius: of the body. */
 static int demi_generator_end(const demi_solid *s, double r, double z, demi_d3 x0, double radius,
                               double *angle) {
     const double off = demi_off_axis(x0) - r, up = x0.z - z;
@@ -245,11 +249,12 @@ static int demi_generator_end(const demi_solid *s, double r, double z, demi_d3 x
     }
     return count;
 }
-/* Edges and lines to corners that cross, twice each; faces at two heights; two rings' planes. */
+/* Largest number of angles: edges and lines to corners, twice each; faces at two heights; planes at
+   two rings. */
 enum { DEMI_CROSSINGS = 2*(3*DEM_POLYHEDRON_FACES + DEMI_HULL_CORNERS) +
        4*DEM_POLYHEDRON_FACES + 4*4*DEM_POLYHEDRON_FACES + 4 };
-/* Is the body wholly above or below a piece, or beyond the plane that touches its widest ring where
-   that is nearest to the body's centre? */
+/* True if the body is entirely above or below a piece, or beyond the tangent plane of its widest
+   ring at the point nearest to the body's centre. */
 static int demi_generator_apart(const demi_solid *s, const demi_generator *l, demi_d3 x0) {
     const double wide = DEMI_MAX(l->a, l->b)*demi_off_axis(x0);
     int i, above = 0, below = 0, beyond = 0;
@@ -261,9 +266,9 @@ static int demi_generator_apart(const demi_solid *s, const demi_generator *l, de
     }
     return above == s->corners || below == s->corners || beyond == s->corners;
 }
-/* All of one piece of a surface of revolution: between the angles at which edges of the polyhedron,
-   or of its pyramids, cross it, what they share changes smoothly. Seen from inside, where it is
-   convex, only corners reach it, and what leads to them. x: of its centre; whole: it must not be
+/* Adds one piece of a surface of revolution. The integrand is smooth between the angles at which
+   edges of the polyhedron, or of its pyramids, cross it. From inside, where the surface is convex,
+   only corners and the lines to them reach it. x0: of the centre; whole: the centre must not be
    beyond. */
 static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, demi_d3 x0,
                                     int whole, int32_t element, demi_flats *flats) {
@@ -293,7 +298,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
             const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
-            if (a < b && (beyond[a] || beyond[b]))      /* once: two faces have it */
+            if (a < b && (beyond[a] || beyond[b]))      /* once per edge of two faces */
                 count += demi_generator_cross(l, p[a], p[b], angle + count);
         }
     for (i = 0; i < s->corners; i++)
@@ -302,7 +307,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         count += demi_generator_face(l, s, f, x0, angle + count);
     count += demi_generator_end(s, l->a, l->g, x0, radius, angle + count);
     count += demi_generator_end(s, l->b, l->h, x0, radius, angle + count);
-    for (i = 0; i < count; i++)                 /* of one turn */
+    for (i = 0; i < count; i++)                 /* modulo 2 pi */
         angle[i] -= 2*DEMI_PI*floor(angle[i]/(2*DEMI_PI));
     if (!count) angle[count++] = 0;
     qsort(angle, (size_t)count, sizeof *angle, demi_double_order);
@@ -310,19 +315,20 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     for (i = 0; i <= count; i++) {
         const double width = i < count ? angle[i + 1] - angle[i] : 0, had = press.sum;
         const int pieces = 1 + (int)(width/0.2);
-        for (f = 0; f < pieces && (!f || press.sum > had); f++)     /* none of its lines, or all */
+        for (f = 0; f < pieces && (!f || press.sum > had); f++)     /* no line, or all */
             for (k = 0; k < 4 && width > 1e-15; k++)
                 demi_generator_press(s, l, angle[i] + (f + demi_gauss4_at[k])*width/pieces,
                                      demi_gauss4[k]*width/pieces, x0, &press);
         if (width > 1e-9 && press.sum > had) continue;
-        if (width > 1e-9 || i == count) {       /* a gap: what is beyond is another contact */
+        if (width > 1e-9 || i == count) {       /* a gap: the rest is another contact */
             demi_flats_add(flats, element, &press);
             memset(&press, 0, sizeof press);
         }
     }
 }
-/* A point of a body near one piece of a surface of revolution, if it lies over it; its gap, m. n:
-   unit, into the wall, at the point's line; out, up, level: as below. */
+/* Adds a point of a body above one piece of a surface of revolution, and returns its gap, m; 1e300
+   if it is beside the piece. n: unit, into the wall, at the point's line; out, up, level: as
+   below. */
 static double demi_generator_add(const demi_generator *l, demi_d3 n, demi_d3 x0, demi_d3 x,
                                  double out, double up, double level, int32_t element,
                                  demi_gaps *gaps) {
@@ -332,16 +338,16 @@ static double demi_generator_add(const demi_generator *l, demi_d3 n, demi_d3 x0,
     const double r = across > 0 ? fabs(n.x*y.x + n.y*y.y)/across : demi_off_axis(y);
     const double gap = out*r + up*y.z - level, along = (r - l->a)*e + (y.z - l->g)*f;
     if (along < 0 || along > e*e + f*f) return 1e300;
-    /* deeper than it is far from an end: that one's ring, or the next piece, tells of it */
+    /* deeper than its distance from an end: the ring there, or the next piece, gives the gap */
     if (gap < 0 && ((l->open[0] && along < -gap*size) ||
                     (l->open[1] && e*e + f*f - along < -gap*size))) return 1e300;
     demi_gaps_add(gaps, element, n, demi_d3_plus(x, gap/2, n), gap);
     return gap;
 }
-/* One piece of a surface of revolution that bends away from the body: the plane through one of its
-   lines that keeps most of it off, sought by the side on which its nearest corner lies; then where
-   the body is cut by the plane through that line and the axis. x0: of the centre. m: of the
-   surface's normal, towards the body, out and up; level: m.x of its points. */
+/* Adds the gaps of one piece of a surface of revolution that curves away from the body. It finds
+   the plane through one of its lines that separates most, by bisection on the side of the body's
+   nearest corner, then the points where the plane through that line and the axis cuts the body. x0:
+   of the centre; out, up: the surface's normal m towards the body; level: m.x of its points. */
 static void demi_generator_line(const demi_solid *s, demi_d3 x0, double out, double up,
                                 double level, const demi_generator *l, int32_t element,
                                 demi_gaps *gaps) {
@@ -350,7 +356,7 @@ static void demi_generator_line(const demi_solid *s, demi_d3 x0, double out, dou
     const double ax = middle > 0 ? x0.x/middle : 1, ay = middle > 0 ? x0.y/middle : 0;
     demi_d3 at[DEMI_HULL_CORNERS], n;
     int i, f, turn, nearest = 0;
-    for (i = 0; i < s->corners; i++) {          /* seen from the axis: out, aside, up */
+    for (i = 0; i < s->corners; i++) {          /* radial, tangential, up */
         const demi_d3 y = demi_d3_add(x0, s->corner[i]);
         at[i] = demi_d(ax*y.x + ay*y.y, ax*y.y - ay*y.x, y.z);
         off[i] = demi_atan2(at[i].y, at[i].x);
@@ -384,10 +390,11 @@ static void demi_generator_line(const demi_solid *s, demi_d3 x0, double out, dou
                                      element, gaps);
             lowest = DEMI_MIN(lowest, gap);
         }
-    if (lowest > least + 1e-9*middle)           /* a corner that is cut nowhere */
+    if (lowest > least + 1e-9*middle)           /* a corner that the plane does not cut */
         demi_generator_add(l, n, x0, s->corner[nearest], out, up, level, element, gaps);
 }
-/* One piece of a surface of revolution: where it bends round the body, corners. */
+/* Adds the gaps of one piece of a surface of revolution. If it curves around the body: the
+   corners. */
 static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, demi_d3 x0,
                                 int32_t element, demi_gaps *gaps) {
     const double e = l->b - l->a, f = l->h - l->g, size = sqrt(e*e + f*f);
@@ -404,9 +411,9 @@ static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, de
         demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
     }
 }
-/* How far the point of a ring at an angle about the axis is from the body, m. Where tell is not
-   null, it is told as that element where neither piece that ends in the ring goes on towards the
-   body. */
+/* Returns the distance, m, from the body to the point of a ring at an angle about the axis. If tell
+   is not null, it is added as that element, unless a piece that ends in the ring continues towards
+   the body. */
 static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s, demi_d3 x0,
                               double angle, const int32_t *tell, demi_gaps *gaps) {
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
@@ -428,9 +435,9 @@ static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid 
     demi_gaps_add(gaps, *tell, n, demi_d3_scale(demi_d3_add(y, to), 0.5), off);
     return off;
 }
-/* A ring of a surface of revolution, at the end of a piece: points all round as far as a body of
-   this radius reaches, since a face may lie on it, and between those about one that is nearer, or
-   deeper, than its neighbours the one that is most so (golden section). */
+/* Adds the gaps of a ring of a surface of revolution: points all around within reach of a body of
+   this radius, since a face may lie on it; and next to each point that is nearer, or deeper, than
+   its neighbours, the local minimum (golden section). */
 enum { DEMI_RING_POINTS = 17 };
 static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, const demi_solid *s,
                            demi_d3 x0, double radius, demi_gaps *gaps) {
@@ -466,8 +473,8 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
         demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, gaps);
     }
 }
-/* All of a cylinder, or of a surface of revolution seen from one side, with the curtains at its
-   ends (bits: which). */
+/* Adds all of a cylinder, or of a surface of revolution seen from one side, with the curtains at
+   its ends (bits). */
 static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec3 x,
                              dem_real radius, double side, int ends, demi_flats *flats) {
     const int round = wall->kind == DEMI_WALL_CYLINDER, pieces = round ? 1 : wall->ring_count - 1;
@@ -485,7 +492,7 @@ static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec
         demi_solid_on_generator(s, &l, x0, 0, i ? 2*pieces : pieces, flats);
     }
 }
-/* A cylinder, or a surface of revolution, piece by piece. */
+/* A polyhedron and a cylinder or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
                                  demi_touching *out) {
     demi_view v = *start;
@@ -519,7 +526,7 @@ static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
         if (pressing && ends) demi_flats_sides(seen, &flats);
         for (i = 0; i < pieces && range > 0; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
-            if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */
+            if (wall->kind == DEMI_WALL_CYLINDER ||      /* also if deep inside */
                 demi_generator_near(&l, x0, (double)part->radius + range))
                 demi_generator_gaps(&s, &l, x0, i, &gaps);
         }

@@ -1,20 +1,22 @@
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-sieves
-   Where polyhedra touch sieves. To springs a wire is a cylinder without end, in a frame whose z
-   goes along it (>>polyhedra-round), and a plate is solid between its holes: they press on its
-   faces, strips and pieces between holes (round: the cell of a hole less the hole), and on the
-   walls of its holes; together these are a closed surface, so that energy is conserved. For gaps a
-   wire is a line with a radius; a corner of the body is told by the face, or wall of a hole, that
-   it is over or nearest to, and the rims of holes by the points of the body that lie on them. Where
-   wires cross, what they share counts twice. Reduced holes, sieves cut out as a disc, and to
-   springs sheets without thickness, which have no inside, know no polyhedra: demi_wall_why. Then
-   the table of who touches what.
+   Contacts of polyhedra with sieves. With springs, a wire is an infinite cylinder in a frame with z
+   along it (>>polyhedra-round), and a plate is solid between its holes. The plate acts by its
+   faces, as strips and pieces between holes (with round holes: the cell of a hole minus the hole),
+   and by the walls of its holes. Together these are a closed surface, so energy is conserved.
+
+   With gaps, a wire is a line with a radius. A corner of the body belongs to the face, or wall of a
+   hole, that it is above or nearest to; rims of holes have the points of the body that lie on them.
+   Where wires cross, the volume that they share counts twice. Polyhedra have no contacts with
+   reduced holes or sieves cut out as a disc, and with springs none with sheets without thickness,
+   which have no inside: see demi_wall_why. At the end, the table of functions by kinds of walls and
+   parts.
    --------------------------------------------------------------------------------------------- */
 
-/* Holes of a plate: half sizes across x and y, and from hole to hole; along x without end: 0. */
+/* The holes of a plate: half sizes along x and y, and periods. px 0: infinite along x. */
 typedef struct demi_plate {
-    int round, lattices;           /* 2: every other row is shifted by half a hole */
-    double a, b, px, py, half;     /* m; half: of the thickness */
+    int round, lattices;           /* lattices 2: every other row is shifted by half a period */
+    double a, b, px, py, half;     /* m; half: half the thickness */
 } demi_plate;
 static demi_plate demi_plate_of(const dem_sieve_desc *s) {
     const double bar = (double)s->bar, hole = (double)s->aperture;
@@ -28,7 +30,7 @@ static demi_plate demi_plate_of(const dem_sieve_desc *s) {
     p.half = (double)s->thickness/2;
     return p;
 }
-/* The middle of the hole in whose cell (u, v) lies; number: its own. */
+/* Writes the centre of the hole in whose cell (u, v) lies, and returns its number. */
 static int32_t demi_plate_hole(const demi_plate *p, double u, double v, double *c) {
     double best = 1e300;
     int32_t number = 0;
@@ -47,12 +49,13 @@ static int32_t demi_plate_hole(const demi_plate *p, double u, double v, double *
     }
     return number;
 }
-/* From the middle of the hole at c to x, rounded to dem_real. */
+/* From the centre of the hole at c to x, rounded to dem_real. */
 static demi_d3 demi_plate_from(demi_d3 x, const double *c) {
     return demi_d3_of(demi_d3_real(demi_d(x.x - c[0], x.y - c[1], x.z)));
 }
-/* Is (u, v) over solid? n: unit, at the wall of the hole in whose cell it lies, into the solid;
-   off: m, how far it is beyond that wall. Of a corner of a hole two walls: two: the other one's. */
+/* True if (u, v) is above solid. n: unit, at the wall of the hole in whose cell it lies, into the
+   solid; off: m, how far it is beyond that wall. The second of each is for the other wall of a
+   rectangular hole. */
 static int demi_plate_solid(const demi_plate *p, double u, double v, demi_d3 *n, double *off) {
     double c[2], x, y, r;
     demi_plate_hole(p, u, v, c);
@@ -72,17 +75,18 @@ static int demi_plate_solid(const demi_plate *p, double u, double v, demi_d3 *n,
     return off[0] > 0 || off[1] > 0;
 }
 
-/* --- for springs --- */
+/* --- springs --- */
 
-/* What is no farther than `far` from a point along n. */
+/* The half space up to `far` from a point along n. */
 static demi_half demi_half_of(demi_d3 middle, demi_d3 n, double far) {
     demi_half half;
     half.n = demi_d3_scale(n, -1);
     half.o = demi_d3_plus(middle, far, n);
     return half;
 }
-/* A rectangle of a surface: middle, half sizes along two axes of the frame, normal along the third
-   into the solid. half 0: without end. x: of the centre. */
+/* Adds a rectangle of a surface. middle: its centre; size: half sizes along two axes of the frame
+   (0: infinite); across: the third axis, with the normal along way times it into the solid; x: of
+   the body's centre. */
 static void demi_plate_flat(const demi_solid *s, demi_d3 x, demi_d3 middle, demi_d3 size,
                             int across, double way, int32_t element, demi_flats *flats) {
     static const demi_d3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -100,8 +104,8 @@ static void demi_plate_flat(const demi_solid *s, demi_d3 x, demi_d3 middle, demi
                        sides, count, 0, &press);
     demi_flats_add(flats, element, &press);
 }
-/* Solid of a plate with square holes or slots about the hole at c: half of the bars on both sides
-   of it, and the hole's walls. */
+/* Adds the solid of a plate around the square hole or slot at c: half of the bars on both sides,
+   and the walls of the hole. */
 static void demi_plate_press(const demi_plate *p, const demi_solid *s, demi_d3 x, const double *c,
                              int32_t number, demi_flats *flats) {
     const double bar_x = (p->px - 2*p->a)/4, bar_y = (p->py - 2*p->b)/4;
@@ -122,7 +126,7 @@ static void demi_plate_press(const demi_plate *p, const demi_solid *s, demi_d3 x
                             side, number + 2 + (side > 0), flats);
     }
 }
-/* The same about a round one: the faces of its cell less the hole's disc, and its wall. */
+/* The same for a round hole: the faces of its cell minus the disc of the hole, and its wall. */
 static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, demi_d3 x,
                                    const double *c, int32_t number, demi_flats *flats) {
     const demi_d3 middle = demi_d(c[0] - x.x, c[1] - x.y, 0);
@@ -149,10 +153,10 @@ static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, dem
     demi_solid_on_generator(s, &l, demi_plate_from(x, c), 0, number, flats);
 }
 
-/* --- for impulses, and laws with a range --- */
+/* --- impulses, and laws with a range --- */
 
-/* The corners of a body, x the place of its centre. A sheet has no inside: a corner is beyond it
-   where the way to it from the centre passes through solid. */
+/* Adds the gaps of the corners of a body centred at x. A sheet without thickness has no inside: a
+   corner is beyond it if the line to it from the centre passes through solid. */
 static void demi_plate_corners(const demi_plate *p, const demi_solid *s, demi_d3 x,
                                demi_gaps *gaps) {
     const int sheet = !(p->half > 0);
@@ -169,7 +173,7 @@ static void demi_plate_corners(const demi_plate *p, const demi_solid *s, demi_d3
         gap[1] = -off[1];
         gap[2] = -n[2].z*at.z - p->half;
         one = 2;
-        if (!solid) {                           /* in a hole: beside its walls, if there at all */
+        if (!solid) {                           /* in a hole: beside its walls, if at all */
             if (sheet || gap[2] > 0) continue;
             one = 0;
             count = p->round || !(p->px > 0) ? 1 : 2;
@@ -180,10 +184,11 @@ static void demi_plate_corners(const demi_plate *p, const demi_solid *s, demi_d3
             demi_gaps_add(gaps, DEMI_SIEVE_FACE, n[e], demi_d3_plus(c, gap[e]/2, n[e]), gap[e]);
     }
 }
-/* A line from a to b, in a body's frame, and what lies `thick` around it: a wire, or (0) the rim of
-   a hole, where neither the face, which goes on along out, nor the hole's wall, along down (a sheet
-   has none), goes on towards the body. A face of the body that lies along the line is held by both
-   ends of what it covers. */
+/* Adds the gaps of a line from a to b, in the frame of a body, with radius `thick`: a wire, or (0)
+   the rim of a hole. A rim gives a gap only where neither the face, which continues along `out`,
+   nor the wall of the hole, which continues along `down` (a sheet has none), extends towards the
+   body. A face of the body that lies along the line touches at both ends of the part that it
+   covers. */
 static void demi_line_gaps(const demi_solid *s, demi_d3 a, demi_d3 b, double thick, demi_d3 out,
                            demi_d3 down, int32_t element, demi_gaps *gaps) {
     const demi_d3 along = demi_d3_sub(b, a);
@@ -224,7 +229,8 @@ static void demi_line_gaps(const demi_solid *s, demi_d3 a, demi_d3 b, double thi
         demi_gaps_add(gaps, element, n, demi_d3_plus(x, -(thick + gap/2), n), gap);
     }
 }
-/* The rims of the hole at c, above and below; reach: how far a rim without end is followed, m. */
+/* Adds the gaps of the rims of the hole at c, above and below. reach: length of an infinite rim
+   that is considered, m. */
 static void demi_plate_rims(const demi_plate *p, const demi_solid *s, demi_d3 x, const double *c,
                             int32_t number, double reach, demi_gaps *gaps) {
     const double far = 2*p->a + reach;
@@ -259,15 +265,15 @@ static void demi_plate_rims(const demi_plate *p, const demi_solid *s, demi_d3 x,
 
 /* --- both --- */
 
-/* A plate, about x, up to reach from there: the cells of holes that the body lies over. A body that
-   ends within `hair` of a face lies on it: it does not catch at the rims of holes that it slides
-   over. */
+/* Adds the contacts of a plate with a body about x, of extent `reach`: all cells of holes that the
+   body covers. A body that ends within `hair` of a face lies on it, and does not catch on the rims
+   of holes that it slides over. */
 static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, demi_d3 x,
                              double reach, double hair, int pressing, demi_flats *flats,
                              demi_gaps *gaps) {
     const demi_plate p = demi_plate_of(sieve);
     const double r = gaps->range;
-    const demi_d3 cell = demi_d(0.6*p.px, 0.6*p.py, 0); /* of one with six sides, too */
+    const demi_d3 cell = demi_d(0.6*p.px, 0.6*p.py, 0); /* covers hexagonal cells too */
     const demi_d3 range = demi_d(r, r, r);
     demi_d3 lo = demi_d(0, 0, 0), hi = lo;
     double u, v, c[2];
@@ -295,8 +301,8 @@ static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, d
             }
     }
 }
-/* One set of parallel wires: each a cylinder about z of a frame of axes turn. x: of the centre, in
-   the sieve's. */
+/* Adds the contacts of one set of parallel wires, each a cylinder about z of a frame of axes
+   `turn`. x: of the centre, in the frame of the sieve. */
 static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_solid *s, dem_vec3 x,
                              double reach, int pressing, demi_flats *flats, demi_gaps *gaps) {
     const double pitch = (double)(sieve->aperture + sieve->bar), q = (double)sieve->bar/2;
@@ -355,10 +361,10 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
     return count;
 }
 
-/* Who touches what: walls by kind, and parts by theirs. */
+/* The functions by kind of wall and kind of part. */
 #define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
-/* Why a part does not know a wall, and what to do; 0: it does. */
+/* Returns why a part cannot touch a wall, and the remedy; 0 if it can. */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
     const dem_sieve_desc *s = &wall->sieve;
     if (!demi_touches[wall->kind][part])

@@ -1,21 +1,24 @@
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-walls
-   Where polyhedra touch walls: what >>polyhedra says of each flat piece, in the wall's frame.
-   Surfaces whose normals differ by more than 18 degrees are contacts of their own, with all the
-   wall's overlap, and as much of its energy as they have of its force; each is four places, the
-   corners that its pressure is spread over. A surface is seen from one side, that of the facet, or
-   piece, nearest to the body's centre; where it ends near the body, from that from which less of
-   the body is beyond, and curtains hang from its ends, so that what is beyond is closed. For
-   impulses, and for laws with a range where nothing presses, it is told by gaps in their place
-   (>>gaps), by up to four points a direction.
+   Contacts of polyhedra with flat walls: the integrals of >>polyhedra over each flat piece, in the
+   frame of the wall. Surfaces whose normals differ by more than 18 degrees are separate contacts.
+   Each has the overlap of the whole wall, and takes part in its energy in proportion to its force.
+   Each consists of four contact points, the corners of the patch that its pressure is spread over.
+
+   A surface acts on one side: that of the facet, or piece, nearest to the body's centre. If it ends
+   near the body, it acts on the side beyond which there is less of the body, and curtains extend
+   from its border along the normals into the wall, so that the volume beyond is closed. Impulses,
+   and laws with a range while there is no overlap, use gaps instead (>>gaps), with up to four
+   contact points per direction.
    --------------------------------------------------------------------------------------------- */
 
-/* Pressures on one wall, by the direction of their surfaces. */
+/* Pressures on one wall, grouped by the direction of the surface. */
 typedef struct demi_flats {
     int count;
-    int32_t element[DEMI_FLATS];               /* the first of each */
+    int32_t element[DEMI_FLATS];               /* the first of each group */
     demi_pressure press[DEMI_FLATS];
 } demi_flats;
+/* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
     const double size = demi_d3_length(s->force);
     double most = -2;
@@ -31,25 +34,26 @@ static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *
         f->press[f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
 }
-/* Energy of all that is pressed, m3; < 0: the body's centre is beyond. */
+/* Energy I of all groups, m3; < 0: the body's centre is beyond the surface. */
 static double demi_flats_energy(const demi_flats *f) {
     double energy = 0;
     int i;
     for (i = 0; i < f->count; i++) energy += f->press[i].shared;
     return energy;
 }
-/* A surface that ends, from that side from which less of the body is beyond; seen: from its two.
-   With energies a and b of these, q = a/(a + b) and t = 4 q - 2: E = (a + b) g(q), where
+/* Combines a surface that ends near the body, as seen from its two sides (seen[0], seen[1]): it
+   acts on the side beyond which there is less of the body. With the energies a and b of the two
+   sides, q = a/(a + b) and t = 4 q - 2, E = (a + b) g(q), where
        g = q for t < -1,    g = (3 - t^2)/8 for -1 < t < 1,    g = 1 - q for t > 1
-   so that E and its gradient go from the one to the other without a jump, and a plate that has
-   fallen onto an edge has its energy back when it leaves. */
+   E and its gradient therefore change from one side to the other without a jump, and a plate that
+   falls onto an edge gets its energy back when it leaves. */
 static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
     const double a = demi_flats_energy(seen), b = demi_flats_energy(seen + 1), all = a + b;
     double share[2];
     int i, k;
     share[1] = a < 0 || b < 0 ? a < 0 : 3*b < a;
     share[0] = 1 - share[1];
-    /* the centre is beyond: what is seen from the one side is at least what is left on the other */
+    /* the centre is beyond: one side has at least what is left on the other */
     if ((a < 0 && -2*a < b) || (b < 0 && -2*b < a)) share[0] = share[1] = 0;
     if (a > 0 && b > 0 && 3*a > b && 3*b > a) {
         const double t = 4*a/all - 2, g = (3 - t*t)/8;      /* dg/dq = -t */
@@ -60,11 +64,12 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
         for (i = 0; i < seen[k].count && share[k] > 0; i++) {
             demi_pressure press = seen[k].press[i];
             demi_pressure_scale(&press, share[k]);
-            if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: the end */
+            if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stops the
+                                                                           run */
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }
-/* Places of all of them, found in a frame of axes R. */
+/* Writes the contact points of all groups, found in a frame of axes R. Returns their number. */
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
                              const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
@@ -96,9 +101,9 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     }
     return count;
 }
-/* Writes the corners of an element, about an origin in the wall's frame, and returns their number.
-   A line of a profile, which goes on along z, gets a third one above its first, so that it has the
-   normal of a triangle. */
+/* Writes the corners of an element, about an origin in the frame of the wall, and returns their
+   number. A line of a profile, which extends along z, gets a third corner above its first, so that
+   it has the normal of a triangle. */
 static int demi_facet_corners(const demi_wall *wall, int element, dem_vec3 origin, demi_d3 *x) {
     const int corners = demi_wall_kinds[wall->kind].corners;
     dem_vec3 y[3];
@@ -110,9 +115,9 @@ static int demi_facet_corners(const demi_wall *wall, int element, dem_vec3 origi
     x[2] = demi_d(x[0].x, x[0].y, 1);
     return 2;
 }
-/* The sides of an element of a surface, as half spaces: how many; its plane into n and at, n along
-   or (way < 0) against the way its corners turn. 0: it is too thin. origin: of the axes, in the
-   wall's frame. */
+/* Writes the sides of an element as half spaces and its plane as n and at, with n along (way < 0:
+   against) the normal by the order of its corners. Returns the number of sides; 0: it is too thin.
+   origin: of the axes, in the frame of the wall. */
 static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, int way,
                             demi_d3 *n, double *at, demi_half *sides) {
     demi_d3 x[3], up;
@@ -121,7 +126,7 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
     up = demi_d3_normal(x[0], x[1], x[2]);
     for (i = 0; i < corners; i++) {
         const demi_d3 e = demi_d3_sub(x[(i + 1)%corners], x[i]);
-        sides[i].n = corners == 2 ? e : demi_d3_cross(up, e);   /* a line is drawn out along z */
+        sides[i].n = corners == 2 ? e : demi_d3_cross(up, e);   /* a line extends along z */
         sides[i].o = x[i];
     }
     if (!(demi_d3_length(up) > 0)) return 0;
@@ -129,23 +134,23 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
     *at = demi_d3_dot(*n, x[0]);
     return corners;
 }
-/* --- by how much a polyhedron is apart from walls, and the points that keep it off: for impulses,
-       and for laws that reach beyond touch, where no pressure is --- */
+/* --- gaps between a polyhedron and walls, and the contact points: for impulses, and for laws with
+   a range while there is no pressure --- */
 
 enum { DEMI_GAP_POINTS = 24 };
-/* Points near one wall, by the direction of its surface there. */
+/* Points near one wall with similar normals. */
 typedef struct demi_gap_group {
-    int32_t element;                           /* the first */
+    int32_t element;                           /* of the first point */
     int count;
     demi_d3 x[DEMI_GAP_POINTS], n[DEMI_GAP_POINTS];
     double gap[DEMI_GAP_POINTS];
 } demi_gap_group;
 typedef struct demi_gaps {
-    int count, flat;               /* flat: what pushes within 60 degrees of z alone (of plates) */
+    int count, flat;               /* flat: only normals within 60 degrees of z (plates) */
     double range;
     demi_gap_group group[DEMI_FLATS];
 } demi_gaps;
-/* Leaves the four that count. */
+/* Reduces a group to the four points that matter. */
 static void demi_gap_group_pick(demi_gap_group *g) {
     const demi_gap_group all = *g;
     int picked[4], i;
@@ -156,7 +161,7 @@ static void demi_gap_group_pick(demi_gap_group *g) {
         g->gap[i] = all.gap[picked[i]];
     }
 }
-/* n: unit, from the polyhedron into the wall. */
+/* Adds a point x with its gap. n: unit, from the polyhedron into the wall. */
 static void demi_gaps_add(demi_gaps *gaps, int32_t element, demi_d3 n, demi_d3 x, double gap) {
     demi_gap_group *g;
     double most = -2;
@@ -177,7 +182,8 @@ static void demi_gaps_add(demi_gaps *gaps, int32_t element, demi_d3 n, demi_d3 x
     g->n[g->count] = n;
     g->gap[g->count++] = gap;
 }
-/* A plane z = 0 of the wall's frame: corners. height: of the origin over it. */
+/* Adds the corners above the plane z = 0 of the frame of the wall. height: of the origin above
+   it. */
 static void demi_plane_gaps(const demi_solid *s, double height, demi_gaps *gaps) {
     int i;
     for (i = 0; i < s->corners; i++) {
@@ -186,8 +192,8 @@ static void demi_plane_gaps(const demi_solid *s, double height, demi_gaps *gaps)
         demi_gaps_add(gaps, 0, demi_d(0, 0, -1), demi_d(c.x, c.y, c.z - gap/2), gap);
     }
 }
-/* A facet as a body: a triangle, or what a profile's line sweeps from reach below to reach above
-   the origin of the axes. 0: it is too thin. */
+/* Makes a flat body of a facet: a triangle, or the rectangle that a profile's line sweeps from
+   reach below to reach above the origin. Returns 0 if it is too thin. */
 static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin, double reach,
                             demi_solid *f) {
     static const int32_t triangle[9] = {0, 3, 6, 0, 1, 2, 0, 2, 1};
@@ -209,12 +215,12 @@ static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin,
     if (!(demi_d3_length(up) > 0)) return 0;
     f->face[0].slope = demi_d3_unit(up);
     f->face[1].slope = demi_d3_scale(f->face[0].slope, -1);
-    f->face[0].high = f->face[1].high = 1;      /* unit normals, for those who ask for no more */
+    f->face[0].high = f->face[1].high = 1;      /* unit normals suffice here */
     return 1;
 }
-/* Is the facet's part that tells a gap, an edge or a corner (own: which of its corners), what the
-   surface has nearest there? Not where another facet that has the same edge, or corner, goes on
-   towards the body: that one tells its own. n: unit, from the body. */
+/* True if an edge or corner of a facet (own: its `owns` corners) is really the nearest point of the
+   surface. It is not if another facet with the same edge or corner continues towards the body; that
+   facet then gives the gap. n: unit, from the body. */
 static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int count,
                               const dem_vec3 *own, int owns, demi_d3 n) {
     int i, k, e;
@@ -238,8 +244,8 @@ static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int c
     }
     return 1;
 }
-/* The points of a body over a facet, on the side where its centre is, as if the facet went on
-   without end. 0: none. */
+/* Finds the points of a body above a facet, on the side of its centre, as if the facet were
+   infinite. Returns their number. */
 static int demi_facet_under(const demi_solid *s, const demi_solid *f, double range,
                             demi_spots *out) {
     demi_d3 x[DEMI_SECTION], up;
@@ -249,8 +255,9 @@ static int demi_facet_under(const demi_solid *s, const demi_solid *f, double ran
     out->normal = demi_d3_scale(up, -1);
     return demi_spots_take(out, x, gap, count, range, up);
 }
-/* One facet. among: all that are near. Deep in it by little beside an edge that goes on, the least
-   way out leads over the edge, into the facet beyond; then it is told as if it had no end. */
+/* Adds the gaps of one facet. among: all facets nearby. If the body is slightly inside, beside an
+   edge at which the surface continues, the shortest separation would lead across that edge into the
+   facet beyond. The facet is then treated as infinite. */
 static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
                               const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
     demi_simplex tells;
@@ -277,9 +284,9 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
     for (i = 0; i < spots.count; i++)
         demi_gaps_add(gaps, element, spots.normal, spots.x[i], spots.gap[i]);
 }
-/* Places of all of them: by impulses the four of each direction that count; by a law with a range
-   the nearest of all of a direction in which nothing presses, four times. pressed: how many places
-   there are before `out`. */
+/* Writes the contact points of all groups: with impulses the four of each direction that matter;
+   for a law with a range the nearest one of each direction without pressure, four times. pressed:
+   the number of contact points before `out`. Returns the number written. */
 static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real *R,
                             const demi_part *part, int pressed, demi_touching *out) {
     const int pressing = demi_response_is(v->w, DEMI_PRESSING);
@@ -314,14 +321,14 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
     }
     return count;
 }
-/* Places of both, of one image of the body. */
+/* Writes the contact points by pressure and by gaps, for one image of the body. */
 static int demi_wall_places(const demi_view *v, const demi_flats *flats, demi_gaps *gaps,
                             const dem_real *R, const demi_part *part, demi_touching *out) {
     const int pressed = demi_flats_places(v, flats, R, part, out);
     return pressed + demi_gaps_places(v, gaps, R, part, pressed, out + pressed);
 }
-/* Sides of an element where its sheet ends: bits. There it is alone, or one of three or more; not
-   where another lies along part of it. */
+/* Returns the sides of an element, as bits, where its sheet ends: where the element is alone or one
+   of three or more. A side with another element along part of it is not an end. */
 static int demi_facet_ends(const demi_wall *wall, int e) {
     const int n = demi_wall_per(wall), edges = wall->element_count;
     int k, open = 0;
@@ -335,23 +342,23 @@ static int demi_facet_ends(const demi_wall *wall, int e) {
     return open;
 }
 
-/* The sheets of a surface that are near a body, and from which side it sees each: from that on
-   which its centre is, by the facet that is nearest to it, of equally near ones (at an edge) by
-   that which it stands over most. So the slope behind a ridge is seen from outside, too, where a
-   body lies over it. Near an end of the sheet: see demi_sheets_press. */
+/* The sheets of a surface near a body (>>sheets), and the side on which each acts: that of the
+   body's centre as seen from the nearest facet or, if several are equally near (at an edge), from
+   the one that it is highest above. The slope behind a ridge is thus also seen from outside where a
+   body overlaps it. For a sheet that ends near the body see demi_sheets_press. */
 enum { DEMI_SHEETS = 16 };
 typedef struct demi_sheets {
     int count;
     int32_t sheet[DEMI_SHEETS];
-    int way[DEMI_SHEETS];          /* of the normal into the surface, by the sheet's first facet */
+    int way[DEMI_SHEETS];          /* of the normal into the wall, at the first facet */
     int ends[DEMI_SHEETS];         /* does it end near the body? */
-    double near2[DEMI_SHEETS], over[DEMI_SHEETS];      /* m2; m */
+    double near2[DEMI_SHEETS], over[DEMI_SHEETS];      /* m2, squared distance; m, height */
 } demi_sheets;
 DEM_INLINE int32_t demi_sheet_of(const demi_wall *wall, int element) {
     const int32_t own = wall->sheet[element];
     return own < 0 ? -own : own;
 }
-/* within: m, how far the body reaches. */
+/* Adds an element to its sheet. within: radius of the body, m. */
 static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin,
                             double within) {
     const int32_t sheet = demi_sheet_of(wall, element);
@@ -380,21 +387,22 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
     s->over[i] = over;
     s->way[i] = over < 0 ? -1 : 1;
 }
-/* Which of the sheets an element is of; -1: there was no room for a note of it. */
+/* The index of an element's sheet; -1: there was no room for it. */
 static int demi_sheets_which(const demi_sheets *s, const demi_wall *wall, int element) {
     const int32_t sheet = demi_sheet_of(wall, element);
     int i;
     for (i = 0; i < s->count; i++) if (s->sheet[i] == sheet) return i;
     return -1;
 }
-/* The way of one element's normal; x: of the body, for sheets of which there is no note. */
+/* The direction of an element's normal; x: of the body, for sheets that are not in the list. */
 static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, dem_vec3 x) {
     const dem_real *plane = wall->planes + 4*element;
     const int i = demi_sheets_which(s, wall, element);
     if (i >= 0) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
     return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
 }
-/* One element, from a polyhedron about the origin of the axes. way: of its normal. */
+/* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
+   normal. */
 static void demi_solid_on_element(const demi_wall *wall, int element, const demi_solid *s,
                                   dem_vec3 x, int way, demi_pressure *press) {
     demi_half sides[3];
@@ -407,8 +415,8 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
     else if ((count = demi_facet_sides(wall, element, x, way, &n, &at, sides)) != 0)
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
-/* The elements of one sheet that are near a body, seen from one side: of the sheet's first facet
-   way. within: how far the body reaches, m. */
+/* The elements of one sheet near a body, seen from one side. way: direction of the normal at the
+   sheet's first facet; within: radius of the body, m. */
 typedef struct demi_sheet {
     const demi_view *v;
     const demi_wall *wall;
@@ -416,13 +424,15 @@ typedef struct demi_sheet {
     int way;
     int32_t sheet;
 } demi_sheet;
-/* Is element i of the list one of the sheet's? Then, which way its normal goes; 0: it is not. */
+/* Returns the direction of the normal of element i of the list, or 0 if it does not belong to the
+   sheet. */
 DEM_INLINE int demi_sheet_turn(const demi_sheet *t, int i) {
     const int element = t->v->element[i];
     if (t->v->gap[i] > t->v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
     return t->wall->sheet[element] < 0 ? -t->way : t->way;
 }
-/* The sheet's mean normals at both corners of a side where it ends; 0: it does not. */
+/* Returns the mean normals of the sheet at both corners of a side, or null if it does not end
+   there. */
 static const demi_border *demi_facet_border(const demi_wall *wall, int32_t side) {
     int lo = 0, hi = wall->border_count;
     while (lo < hi) {
@@ -432,8 +442,8 @@ static const demi_border *demi_facet_border(const demi_wall *wall, int32_t side)
     }
     return lo < wall->border_count && wall->borders[lo].side == side ? &wall->borders[lo] : 0;
 }
-/* Half of the curtain of a side, from its corner at o to its middle c, down along m; way: along the
-   side, so that m x way is the curtain's normal. */
+/* Adds half of the curtain of a side, from its corner at o to its midpoint c, extending along m.
+   way: along the side, so that m x way is the normal of the curtain. */
 static void demi_curtain_half(const demi_solid *s, demi_d3 o, demi_d3 c, demi_d3 m, demi_d3 way,
                               demi_pressure *press) {
     const demi_d3 e = demi_d3_sub(c, o), n = demi_d3_unit(demi_d3_cross(m, way));
@@ -447,8 +457,8 @@ static void demi_curtain_half(const demi_solid *s, demi_d3 o, demi_d3 c, demi_d3
     by[2].o = c;
     demi_solid_on_flat(s, n, demi_d3_dot(n, o), by, 3, 0, press);
 }
-/* What is missing between both halves at the middle of a side, where the sheet's normal is a at the
-   corner before and b at that behind: the sector between lines along both. */
+/* Adds what is missing between both halves at the midpoint of a side, if the sheet's normals differ
+   at its corners (a before, b behind): the sector between lines along both. */
 static void demi_curtain_fold(const demi_solid *s, demi_d3 c, demi_d3 a, demi_d3 b,
                               demi_pressure *press) {
     const demi_d3 across = demi_d3_cross(a, b), n = demi_d3_unit(across);
@@ -460,17 +470,18 @@ static void demi_curtain_fold(const demi_solid *s, demi_d3 c, demi_d3 a, demi_d3
     by[0].o = by[1].o = c;
     demi_solid_on_flat(s, n, demi_d3_dot(n, c), by, 2, 0, press);
 }
-/* Does the curtain at a side (3*element + side) reach over the plane of its element, n the normal,
-   where the sheet is folded sharply? */
+/* True if the curtain at a side (3*element + side) extends above the plane of its element (normal
+   n), as happens where the sheet is sharply folded. */
 static int demi_curtain_bends(const demi_sheet *t, int32_t side, demi_d3 n) {
     const demi_border *mean = demi_facet_border(t->wall, side);
     const dem_vec3 up = demi_d3_real(n);
     return mean && (demi_dot(mean->normal[0], up)*(dem_real)t->way < 0 ||
                     demi_dot(mean->normal[1], up)*(dem_real)t->way < 0);
 }
-/* The curtain at a side (3*element + side) where its sheet ends: from there down along the sheet's
-   normal, without end. What is beyond the sheet and within its curtains is closed and does not
-   change as the body moves, so that energy is conserved. n: the element's normal. */
+/* Sets the pressure of the curtain at a side (3*element + side) where its sheet ends. The curtain
+   extends from there along the sheet's normal without end. The volume behind the sheet and within
+   its curtains is closed and does not change as the body moves, so energy is conserved. n: the
+   element's normal. */
 static void demi_sheet_curtain(const demi_sheet *t, int32_t side, const demi_half *sides,
                                demi_d3 n, const demi_solid *s, demi_pressure *press) {
     const demi_half *end = sides + side%3, *next = sides + (side + 1)%3;
@@ -496,7 +507,7 @@ static void demi_sheet_curtain(const demi_sheet *t, int32_t side, const demi_hal
     q = demi_d3_dot(way, demi_d3_sub(next->o, end->o)) < 0;    /* from which corner to which */
     demi_curtain_fold(s, c, m[q], m[!q], press);
 }
-/* All of a sheet with its curtains. */
+/* Adds all of a sheet with its curtains. */
 static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
     demi_pressure press;
     demi_half sides[3];
@@ -522,9 +533,9 @@ static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats
         }
     }
 }
-/* Sheets that end near the body: what each shares with it is the body's part beyond the sheet and
-   its curtains, a solid that stands still, so that this is an energy; of two such solids, one on
-   either side, the one of which there is less. A body that does not touch the sheet has nothing of
+/* Adds sheets that end near the body. The common volume is that of the body and the fixed solid
+   behind the sheet and its curtains, so the force has an energy. There is such a solid on either
+   side; the one with less of the body counts. A body that does not touch the sheet has nothing in
    one of them. */
 static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const demi_solid *s,
                               demi_flats *flats) {
@@ -541,7 +552,7 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
         demi_flats_sides(seen, flats);
     }
 }
-/* Any wall whose elements are flat. */
+/* A polyhedron and any wall of flat elements. */
 static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, demi_touching *out) {
     demi_view v = *start;
     const demi_wall *wall = v.wall;
@@ -585,7 +596,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
     }
     return count;
 }
-/* A wall of grains, each a ball. */
+/* A polyhedron and a wall of grains, each a sphere. */
 static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
                                  demi_touching *out) {
     demi_view v = *start;
