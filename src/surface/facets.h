@@ -1,37 +1,37 @@
 /* ---------------------------------------------------------------------------------------------
    >>facets
-   What each face, edge and corner of a surface counts, so that a grain feels the surface and not
-   the way it is cut into facets. Meshes (triangles) and profiles (segments) are surfaces of facets.
+   Weights of the faces, edges and corners of a surface, so that the contact force depends on the
+   surface and not on how it is divided into facets. Meshes (triangles) and profiles (segments) are
+   surfaces of facets.
 
-   A grain of radius r whose centre x is at distance d from a wall stores U(r - d), U the energy of
-   the normal law. A ball about x, whose radius s grows from 0 to r, meets the surface S first in
-   one place, perhaps then in others; as s grows on they join. Let chi(s) be Euler's number of what
-   ball and surface have in common: pieces, less rings. The rule is
+   A grain of radius r whose centre x is at distance d from a wall stores the energy U(r - d) of the
+   normal law. Consider a ball about x whose radius s grows from 0 to r. It reaches the surface S
+   first at one point, then perhaps at others; as s grows, these regions join. Let chi(s) be the
+   Euler characteristic of the intersection of ball and surface: pieces minus rings. The rule is
        E(x) = integral of chi(s) U'(r - s) ds,  s = 0 .. r       F = -dE/dx
-   For one place at distance d, chi is 1 from s = d on, and E = U(r - d).
-   One place counts once; two that have joined count once, two that have not count twice. chi adds:
+   For one contact point at distance d, chi is 1 from s = d on, and E = U(r - d). One region counts
+   once; two that have joined count once, two that have not count twice. chi is additive:
        chi(A or B) = chi(A) + chi(B) - chi(A and B)
-   and it is 1 for whatever is convex. So, over the faces, edges and corners X of the surface, each
-   convex and closed, at distance d(X) from x,
+   and it is 1 for any convex set. So, summed over the faces, edges and corners X of the surface,
+   each convex and closed, at distance d(X) from x,
        E = sum of weight(X) U(r - d(X)),     F = -sum of weight(X) U'(r - d(X)) grad d(X)
        face 1,  edge 1 - (faces at it),  corner 1 - (faces at it) - sum of weights of edges at it
-   in words: every point of the surface is counted once in all. Cutting a facet in two changes
-   nothing. E is an energy: elastic contacts conserve, whatever the surface. The distance to
-   something convex has a continuous gradient, so F has no jump on any path outside the surface. In
-   the open, on a ridge, at a rim or a tip one place is nearest and U' there is all that is left:
-   what a plane and a cylinder give. In a valley there are two nearest places and the edge between,
-   which counts -1: F goes from one contact to two as the valley gets steeper or the overlap less.
-   (In Morse's words: F is a sum over the critical points of the distance, lowest points 1, passes
-   -1.) Terms with the same nearest point are added up before the law is called; most of them
-   cancel, and what is left is, nearly always, one contact. Where a ring closes around the grain chi
-   is 0; what is done then stands in >>touch.
+   That is, every point of the surface counts once in total. Dividing a facet changes nothing. E is
+   an energy, so elastic contacts conserve energy for any surface. The distance from a convex set
+   has a continuous gradient, so F has no jump on any path outside the surface. On a plane, a ridge,
+   a rim or a tip there is one nearest point, and only its U' remains, as for a plane or a cylinder.
+   In a valley there are two nearest points and the edge between them, which counts -1: F changes
+   from one contact to two as the valley gets steeper or the overlap smaller. (In terms of Morse
+   theory, F is a sum over the critical points of the distance: minima 1, saddles -1.) Terms with
+   the same nearest point are added up before the law is called; most cancel, and what remains is
+   nearly always one contact. If a ring closes around the grain, chi is 0; >>touch handles that.
 
-   The law, its friction and its memory are asked at each place that is left, and counted as often
-   as it counts. What two walls have in common is found where they do not move against each other;
-   each bears its part of the weight. Left as they are, so that contacts add up, as they do in a
-   corner: facets that pierce each other or overlap in one plane, cracks, and seams between walls of
-   different kinds. That Euler's number adds is old; as a rule of contact we have not found it
-   published. Tests: tests/surface/test_facets.c.
+   The law, with its friction and history, is evaluated at each remaining contact point and
+   multiplied by its weight. Surfaces of walls that do not move relative to each other are joined,
+   and each wall has its part of common weights. Not joined, so that contacts add up as in a corner:
+   facets that intersect or overlap in one plane, cracks, and seams between walls of different
+   kinds. That the Euler characteristic is additive is well known; as a contact rule we have not
+   found it published. Tests: tests/surface/test_facets.c.
    --------------------------------------------------------------------------------------------- */
 DEM_INLINE int demi_wall_is(const demi_wall *wall, int trait) {
     return (demi_wall_kinds[wall->kind].traits & trait) != 0;
@@ -43,25 +43,25 @@ static double demi_far2(const double *a, const double *b) {
     return demi_d3_square(demi_d3_sub(demi_d3_at(a), demi_d3_at(b)));
 }
 
-/* Points in a tree of boxes, to find those near a line. Node k has the halves 2k + 1 and 2k + 2,
-   cut across its longest side; each has a stretch of `order` and the box around its points. */
+/* A tree of boxes around points, to find those near a line. Node k has the children 2k + 1 and 2k +
+   2, split across its longest side; each has a range of `order` and the box of its points. */
 enum { DEMI_TREE_LEAF = 8 };
 typedef struct demi_tree {
-    const double *x;               /* points x 3, m: the caller's */
+    const double *x;               /* points x 3, m: not a copy */
     int32_t *order;                /* points */
     double *box;                   /* nodes x 6: lowest and highest x, y, z */
     size_t points, nodes;
 } demi_tree;
-/* A search along the line from a to b: nodes not yet looked into, and the leaf under work. */
+/* A search along the line from a to b: nodes still to visit, and the present leaf. */
 typedef struct demi_search_line {
     const demi_tree *tree;
     const double *a, *b;
-    double off;                    /* m, how far from the line a point may be */
+    double off;                    /* m, largest distance from the line */
     int32_t node[64], from[64], to[64];
     int open, at, end;
 } demi_search_line;
 
-/* Puts the k-th point along an axis in its place, none above it before it [HOA61]. */
+/* Moves the k-th smallest along an axis to position k, with smaller ones before it [HOA61]. */
 static void demi_tree_select(const double *x, int axis, int32_t *order, int count, int k) {
     int lo = 0, hi = count - 1;
     while (lo < hi) {
@@ -80,8 +80,8 @@ static void demi_tree_select(const double *x, int axis, int32_t *order, int coun
         if (i > k) hi = j;
     }
 }
-/* The box of points from .. to - 1 of the order, halved across its longest side until few are
-   left. */
+/* Sets the box of points from .. to - 1 of the order, and splits it across its longest side until
+   few are left. */
 static void demi_tree_node(demi_tree *t, size_t node, int from, int to) {
     double *box = t->box + 6*node;
     const int mid = from + (to - from)/2;
@@ -103,7 +103,7 @@ static void demi_tree_free(dem_world *w, demi_tree *t) {
     demi_free(w, t->order);
     demi_free(w, t->box);
 }
-/* 0 when memory ran out; free it even then. */
+/* Builds the tree. Returns 0 if memory ran out; free it in either case. */
 static int demi_tree_make(dem_world *w, demi_tree *t, const double *x, int count) {
     int i;
     t->x = x;
@@ -116,7 +116,8 @@ static int demi_tree_make(dem_world *w, demi_tree *t, const double *x, int count
     if (count) demi_tree_node(t, 0, 0, count);
     return 1;
 }
-/* Has the line from a to b a part within `off` of the box? More rather than less near its edges. */
+/* True if a part of the line from a to b is within `off` of the box; also at times slightly
+   beyond. */
 static int demi_line_meets(const double *a, const double *b, double off, const double *box) {
     double enter = 0, leave = 1;
     int k;
@@ -129,7 +130,7 @@ static int demi_line_meets(const double *a, const double *b, double off, const d
     }
     return enter <= leave*(1 + 1e-12) + 1e-300;
 }
-/* Begins to look for points within `off` of the line from a to b. */
+/* Starts a search for points within `off` of the line from a to b. */
 static void demi_tree_line(demi_search_line *s, const demi_tree *t, const double *a,
                            const double *b, double off) {
     s->tree = t;
@@ -141,7 +142,8 @@ static void demi_tree_line(demi_search_line *s, const demi_tree *t, const double
     s->to[0] = (int32_t)t->points;
     s->at = s->end = 0;
 }
-/* The next point that may be near the line, -1 after the last; no point that is near is missing. */
+/* Returns the next point that may be near the line, -1 after the last. It misses none that is
+   near. */
 static int32_t demi_tree_next(demi_search_line *s) {
     while (s->at == s->end) {
         int32_t node, from, to;
@@ -165,13 +167,13 @@ static int32_t demi_tree_next(demi_search_line *s) {
     return s->tree->order[s->at++];
 }
 
-/* How far from each corner's point another may be and yet be the same, m: a few roundings of the
-   largest coordinate, as binary STL stores it, but far less than the shortest side there. */
+/* Welding tolerance of each corner, m: a few roundings of the largest coordinate, as stored in
+   binary STL, but far less than the shortest side there. */
 static void demi_near_by(const double *x, const demi_wall *wall, int first, double *near_by) {
     const int per = demi_wall_per(wall);
     double most = 0;
     int i, k;
-    for (i = 0; i < wall->vertex_count; i++) near_by[first + i] = 0;       /* if no corner's */
+    for (i = 0; i < wall->vertex_count; i++) near_by[first + i] = 0;       /* if it is no corner */
     for (i = 0; i < per*wall->element_count; i++)
         for (k = 0; k < 3; k++) most = DEMI_MAX(most, fabs(x[3*(first + wall->corners[i]) + k]));
     for (i = 0; i < per*wall->element_count; i++)
@@ -186,7 +188,7 @@ static void demi_near_by(const double *x, const demi_wall *wall, int first, doub
             near_by[b] = DEMI_MIN(near_by[b], side);
         }
 }
-/* same[i]: the first point that lies where point i does. */
+/* Welds points: same[i] is the first point at the position of point i. */
 static void demi_points_weld(const demi_tree *tree, const double *near_by, int32_t *same) {
     const double *x = tree->x;
     const int count = (int)tree->points;
@@ -195,7 +197,7 @@ static void demi_points_weld(const demi_tree *tree, const double *near_by, int32
     for (i = 0; i < count; i++) same[i] = i;
     for (i = 0; i < count; i++) {
         int32_t a, b, other;
-        /* a copy of a point before it: that one has met all whom it would meet */
+        /* a copy of an earlier point, which has the same neighbours */
         if (same[i] != i && near_by[i] <= near_by[same[i]] &&
             !(demi_far2(x + 3*i, x + 3*same[i]) > 0)) continue;
         demi_tree_line(&near, tree, x + 3*i, x + 3*i, near_by[i]);
@@ -209,8 +211,9 @@ static void demi_points_weld(const demi_tree *tree, const double *near_by, int32
     }
     for (i = 0; i < count; i++) same[i] = same[same[i]];
 }
-/* Does a facet count? Not with two corners in one place; nor a triangle with none off its longest
-   side by more than what is one place there: its other sides and corners are its neighbours'. */
+/* True if a facet counts. It does not if two corners coincide, nor if all corners of a triangle are
+   within the welding tolerance of its longest side; its other sides and corners are its
+   neighbours'. */
 static int demi_facet_counts(const double *x, const double *near_by, const int32_t *c, int per) {
     double side[3], longest, most;
     demi_d3 normal;
@@ -227,7 +230,7 @@ static int demi_facet_counts(const double *x, const double *near_by, const int32
 
 /* A side of a facet, from point lo to point hi. */
 typedef struct demi_side { int32_t lo, hi, facet, side; } demi_side;
-/* Sides between the same corners come next to each other, the lowest facet first. */
+/* Sorts sides by their corners, those with the same corners by facet. */
 static int demi_side_compare(const void *x, const void *y) {
     const demi_side *a = (const demi_side *)x, *b = (const demi_side *)y;
     if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
@@ -235,7 +238,7 @@ static int demi_side_compare(const void *x, const void *y) {
     if (a->facet != b->facet) return a->facet < b->facet ? -1 : 1;
     return a->side < b->side ? -1 : a->side > b->side;
 }
-/* A side has no direction: its corners in ascending order. */
+/* A side, with its corners in ascending order: it has no direction. */
 static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
     demi_side s;
     s.lo = DEMI_MIN(a, b);
@@ -245,7 +248,7 @@ static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
     return s;
 }
 
-/* The planes of a wall's elements, by which most that a body does not reach are told at once. */
+/* Sets the planes of a wall's elements; most elements out of reach are rejected by them. */
 static void demi_facet_planes(demi_wall *wall, const double *x) {
     const int n = demi_wall_per(wall);
     double far = 0;
@@ -258,7 +261,7 @@ static void demi_facet_planes(demi_wall *wall, const double *x) {
         const demi_d3 v = n == 3 ? demi_d3_sub(demi_d3_at(x + 3*c[2]), a) : demi_d(0, 0, 1);
         demi_d3 u = demi_d3_sub(demi_d3_at(x + 3*c[1]), a), m;
         double l;
-        if (n == 2) u.z = 0;                    /* a segment goes on along z without end */
+        if (n == 2) u.z = 0;                    /* a segment is infinite along z */
         m = demi_d3_cross(u, v);
         l = demi_d3_length(m);
         if (!(l*l > 1e-8*demi_d3_square(u)*demi_d3_square(v))) continue;
@@ -266,8 +269,8 @@ static void demi_facet_planes(demi_wall *wall, const double *x) {
         wall->planes[4*i + 3] = (dem_real)(demi_d3_dot(m, a)/l);
     }
 }
-/* Welds a wall's corners, numbers its edges and says which element looks after which. Elements
-   that have two corners in one place count nothing. 0 when memory ran out. */
+/* Welds the corners of a wall, numbers its edges and decides which element owns which edge and
+   corner. Elements with two coinciding corners do not count. Returns 0 if memory ran out. */
 static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     const int n = demi_wall_per(wall), all = wall->element_count;
     const size_t vertices = (size_t)wall->vertex_count;
@@ -289,7 +292,7 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     demi_points_weld(&tree, near_by, same);
     for (i = 0; i < n*all; i++) wall->corners[i] = same[wall->corners[i]];
     demi_facet_planes(wall, x);
-    memset(same, 0, vertices*sizeof *same);     /* from here on: does an element own it? */
+    memset(same, 0, vertices*sizeof *same);     /* from here on: has it an owner? */
     for (i = 0; i < all; i++) {
         const int32_t *c = wall->corners + n*i;
         if (!demi_facet_counts(x, near_by, c, n)) continue;
@@ -322,14 +325,14 @@ done:
     return ok;
 }
 
-/* Does any element count? The first that does looks after its corners. */
+/* True if any element counts: the first one that does owns its corners. */
 static int demi_facets_any(const demi_wall *wall) {
     int i;
     for (i = 0; i < wall->element_count; i++) if (wall->owns[i]) return 1;
     return 0;
 }
 
-/* 1 when the two walls stay where they are to each other: both fixed, or moved alike. */
+/* True if two walls are at rest relative to each other: both fixed, or moved alike. */
 static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
     const dem_motion *m = &a->motion, *o = &b->motion;
     if (a == b) return 1;
@@ -347,10 +350,10 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
           !memcmp(&m->phase, &o->phase, sizeof m->phase);
 }
 
-/* --- walls across periodic faces. A wall that is not longer than the period along a periodic axis
-       repeats there: bodies look for it at their own images, and where it ends just where its image
-       begins the two are one surface. One that is longer stands for all its images and must reach
-       a grain beyond both faces. Endless walls are their own images. --- */
+/* --- periodic images of walls. A wall that is not longer than the period along a periodic axis
+   repeats there: it is searched for at the images of bodies and, where it ends exactly where its
+   image begins, the two are one surface. A longer wall represents all its images and must extend
+   beyond both faces by a grain. Infinite walls are their own images. --- */
 static void demi_extent_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad) {
     dem_real at[3];
     int k;
@@ -360,7 +363,7 @@ static void demi_extent_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad
         hi[k] = DEMI_MAX(hi[k], at[k] + pad);
     }
 }
-/* From where to where a wall with ends goes along the axes of the world, where it is now. */
+/* Sets the extent of a finite wall along the world axes, in its present pose. */
 static void demi_wall_span(demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
@@ -388,7 +391,7 @@ static void demi_wall_span(demi_wall *wall) {
     memcpy(wall->span_lo, lo, sizeof lo);
     memcpy(wall->span_hi, hi, sizeof hi);
 }
-/* Says of each wall along which axes it repeats. */
+/* Sets, for each wall, along which axes it repeats. */
 static void demi_walls_repeat(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
@@ -414,28 +417,28 @@ static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
                   (dem_real)c*w->wall_period[2]);
 }
 
-/* The surfaces of a group of walls as one, under work. Points are the corners of all of them, one
-   wall after the other, where they were when their motion began (so that a restart finds the same);
-   facets are their elements, those left out that have no size. */
+/* The surfaces of a group of walls, joined to one. Points are the corners of all of them, one wall
+   after the other, in the pose in which their motion began (so that a restart finds the same);
+   facets are their elements, without those that have no size. */
 typedef struct demi_join {
     int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
     int points, facets, sides, cuts;
-    int images;                    /* of facets: the last ones, of no wall, -1 */
-    double *x, *near_by;           /* points: x 3; m, what is one place */
+    int images;                    /* of facets: the last ones; their wall is -1 */
+    double *x, *near_by;           /* points: x 3; m, welding tolerance */
     demi_tree tree;                /* of points */
-    int32_t *same, *mark;          /* points: the first in this place; for whoever needs it */
+    int32_t *same, *mark;          /* points: the first one here; scratch */
     double *faces, *corners;       /* points: facets there, in all and with a corner */
-    double *edges;                 /* points: weights of edges that end there */
-    double *own;                   /* points: as corners, of one wall */
+    double *edges;                 /* points: sum of weights of edges that end there */
+    double *own;                   /* points: facets of one wall with a corner there */
     int32_t *facet;                /* facets x 5: wall, element, points of its corners */
-    double *count;                 /* facets: 1; of those that coincide in n walls 1/n */
-    demi_side *side, *piece;       /* as they are, and with cuts: side 3 + k is a piece of side k */
+    double *count;                 /* facets: 1; 1/n if they coincide in n walls */
+    demi_side *side, *piece;       /* uncut, and cut: side 3 + k is a piece of side k */
     int32_t *cut;                  /* cuts x 6: wall, element, points, number, side */
     double *cut_weight;
     size_t point_room, facet_room, cut_room;
 } demi_join;
 
-/* What was needed to join surfaces; weights, pieces and owners are the walls' own by then. */
+/* Frees the join; weights, cuts and owners have been handed to the walls by then. */
 static void demi_join_free(dem_world *w, demi_join *j) {
     demi_free(w, j->x);
     demi_free(w, j->near_by);
@@ -457,15 +460,15 @@ static int demi_join_member(const dem_world *w, int wall, int group, int per) {
     const demi_wall *m = &w->walls[wall];
     return demi_faceted(m) && m->group == group && per == demi_wall_per(m);
 }
-/* Does a wall keep its place to its image along an axis? */
+/* True if a wall stays at rest relative to its image along an axis. */
 static int demi_wall_keeps(const demi_wall *wall, int axis) {
     const dem_motion *m = &wall->motion;
     const dem_vec3 n = demi_unit(m->axis), e = demi_v(axis == 0, axis == 1, axis == 2);
     return wall->repeats[axis] && (m->kind != DEM_MOTION_ROTATING ||
                                    demi_length(demi_cross(n, e)) <= DEM_R(1e-6));
 }
-/* Images of facets that touch the group: they count where edges and corners meet them, and get no
-   weight themselves. fill 0: counts them, with one point for each corner. */
+/* Adds images of facets that touch the group. They count for the weights of edges and corners at
+   them, and get no weight themselves. fill 0: only counts them, with one point per corner. */
 static void demi_join_images(const dem_world *w, demi_join *j, int group, int fill) {
     double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, slack = 0;
     int i, e, k, c, n, first = 0;
@@ -508,7 +511,7 @@ static void demi_join_images(const dem_world *w, demi_join *j, int group, int fi
                     continue;
                 }
                 memcpy(j->x + 3*j->points, x, (size_t)j->per*3*sizeof *x);
-                for (c = 0; c < j->per; c++)    /* as it is for the wall's own corners */
+                for (c = 0; c < j->per; c++)    /* as for the wall's own corners */
                     j->near_by[j->points + c] = j->near_by[first + wall->corners[j->per*e + c]];
                 j->points += j->per;
                 j->images++;
@@ -517,7 +520,7 @@ static void demi_join_images(const dem_world *w, demi_join *j, int group, int fi
         first += wall->vertex_count;
     }
 }
-/* Points and facets of all walls of a group. 0 when memory ran out. */
+/* Collects the points and facets of all walls of a group. Returns 0 if memory ran out. */
 static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     int i, e, k, first = 0, real_points;
     memset(j, 0, sizeof *j);
@@ -580,8 +583,8 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     }
     return 1;
 }
-/* Facets that coincide, the sides of a box against another's, count once in all: the first of each
-   wall, each its part. */
+/* Facets that coincide, such as the touching sides of two boxes, count once in total: the first of
+   each wall counts, in equal parts. */
 static void demi_join_double(demi_join *j) {
     demi_side *s = j->side;
     int i, k, end;
@@ -597,7 +600,7 @@ static void demi_join_double(demi_join *j) {
         int walls = 0;
         for (end = i; end < j->facets && s[end].lo == s[i].lo && s[end].hi == s[i].hi &&
              s[end].facet == s[i].facet; end++) {
-            const int wall = j->facet[5*s[end].side];      /* ascending: facets are */
+            const int wall = j->facet[5*s[end].side];      /* ascending, as facets are */
             j->count[s[end].side] = end == i || wall != j->facet[5*s[end - 1].side];
             walls += j->count[s[end].side] > 0;
         }
@@ -609,8 +612,8 @@ static void demi_join_double(demi_join *j) {
             j->corners[j->facet[5*i + 2 + k]] += j->count[i];
         }
 }
-/* Points on the line from a to b, not at its ends, each place once, in the order of the line; out
-   may be null. */
+/* Finds the points on the line from a to b, without its ends, once per position and in order.
+   Returns their number; out may be null. */
 static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
     const double *p = j->x + 3*a, *q = j->x + 3*b;
     const demi_d3 way = demi_d3_sub(demi_d3_at(q), demi_d3_at(p));
@@ -633,7 +636,8 @@ static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *
     }
     return n;
 }
-/* Sides of triangles, cut where corners of others lie on them. 0 when memory ran out. */
+/* Cuts the sides of triangles at corners of others that lie on them. Returns 0 if memory ran
+   out. */
 static int demi_join_cut(dem_world *w, demi_join *j) {
     int32_t *between = 0;
     size_t most = 0, room = 0;
@@ -643,7 +647,7 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
             j->side[j->sides++] = demi_side_of(j->facet[5*i + 2 + k], j->facet[5*i + 2 + (k + 1)%3],
                                                i, k);
     qsort(j->side, (size_t)j->sides, sizeof *j->side, demi_side_compare);
-    for (pass = 0; pass < 2; pass++) {          /* how many; then make them */
+    for (pass = 0; pass < 2; pass++) {          /* count, then make them */
         for (i = 0; i < j->sides; i = end) {
             const demi_side *s = j->side + i;
             for (end = i; end < j->sides && j->side[end].lo == s->lo && j->side[end].hi == s->hi;)
@@ -673,8 +677,8 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
     demi_free(w, between);
     return pass == 1;
 }
-/* One wall's part, `more`, of a place where sides first .. end - 1 of the join lie: at an edge of
-   its own, or at the first of its cuts; the other cuts remember where it is. */
+/* Assigns one wall's part, `more`, of the weight at sides first .. end - 1 of the join: to one of
+   its edges, or else to the first of its cuts; the other cuts record its number. */
 static void demi_join_edge(dem_world *w, demi_join *j, int first, int end, int id, double more) {
     demi_wall *wall = &w->walls[id];
     int k, whole = -1, number = 0;
@@ -699,7 +703,7 @@ static void demi_join_edge(dem_world *w, demi_join *j, int first, int end, int i
         whole = 0;                              /* the first cut has it */
     }
 }
-/* What edges count; each wall gets its share of it. */
+/* Computes the weights of edges and divides them among walls. */
 static void demi_join_edges(dem_world *w, demi_join *j) {
     int i, k, end, other;
     for (i = 0; i < j->sides; i = end) {
@@ -709,7 +713,7 @@ static void demi_join_edges(dem_world *w, demi_join *j) {
             all += j->count[j->piece[end++].facet];
         j->edges[s->lo] += all > 0 ? 1 - all : 0;
         j->edges[s->hi] += all > 0 ? 1 - all : 0;
-        for (k = i; k < end; k++) {             /* walls one by one, at the first side of each */
+        for (k = i; k < end; k++) {             /* each wall at its first side */
             const int id = j->facet[5*j->piece[k].facet];
             double mine = 0;
             int first = k;
@@ -724,7 +728,7 @@ static void demi_join_edges(dem_world *w, demi_join *j) {
         }
     }
 }
-/* Corners of profiles that lie on other segments are corners of those as well. */
+/* Corners of profiles that lie on other segments also count as corners of those. */
 static int demi_join_profiles(dem_world *w, demi_join *j) {
     int32_t *between = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *between);
     int i, k;
@@ -736,14 +740,14 @@ static int demi_join_profiles(dem_world *w, demi_join *j) {
     demi_free(w, between);
     return 1;
 }
-/* What corners and faces count. */
+/* Computes the weights of corners and faces. */
 static void demi_join_corners(dem_world *w, demi_join *j) {
     int f, end, g, k;
     for (f = 0; f < j->facets; f = end) {       /* one wall after the other */
         const int id = j->facet[5*f];
         demi_wall *wall = &w->walls[id < 0 ? 0 : id];
         dem_real *corner;
-        if (id < 0) return;                     /* images get nothing */
+        if (id < 0) return;                     /* images get no weight */
         corner = wall->weight + wall->element_count + wall->edge_count;
         memset(j->own, 0, (size_t)j->points*sizeof *j->own);
         for (end = f; end < j->facets && j->facet[5*end] == id; end++) {
@@ -766,7 +770,7 @@ static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32
     return demi_unrotate(wall->home.rotation, demi_sub(demi_d3_real(demi_d3_at(j->x + 3*point)),
                                                        wall->home.position));
 }
-/* Hands the cuts over to their walls, by element. 0 when memory ran out. */
+/* Hands the cuts to their walls, by element. Returns 0 if memory ran out. */
 static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
     int32_t *own = j->mark;                     /* by point: number of the wall's corner there */
     int i, k, e, first = 0, passed = 0;
@@ -789,7 +793,7 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
         }
         for (k = 0; k < j->cuts; k++) if (j->cut[6*k] == i) wall->cut_start[j->cut[6*k + 1] + 1]++;
         for (k = 0; k < wall->element_count; k++) wall->cut_start[k + 1] += wall->cut_start[k];
-        for (k = j->cuts - 1; k >= 0; k--) {    /* from the back: starts end where they were */
+        for (k = j->cuts - 1; k >= 0; k--) {    /* backwards: starts end where they were */
             const int32_t *c = j->cut + 6*k;
             demi_cut *to;
             if (c[0] != i) continue;
@@ -809,7 +813,7 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
     }
     return 1;
 }
-/* Without pieces: facets have no neighbours but those that share corners. */
+/* Removes the cuts of a wall: then only facets that share corners are neighbours. */
 static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
     demi_free(w, wall->cut_start);
     demi_free(w, wall->cuts);
@@ -817,7 +821,7 @@ static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
     wall->cuts = 0;
     wall->cut_count = 0;
 }
-/* Which walls of a group share nothing with others, nor with images of their own. */
+/* Marks the walls of a group that share nothing with others or with their own images. */
 static void demi_join_lone(dem_world *w, int group, int per) {
     int i, members = 0;
     for (i = group; i < w->wall_count; i++) members += demi_join_member(w, i, group, per);
@@ -827,8 +831,8 @@ static void demi_join_lone(dem_world *w, int group, int per) {
             w->walls[i].lone = members == 1 && !repeats[0] && !repeats[1] && !repeats[2];
     }
 }
-/* Groups the walls and weighs their facets anew. 0 when memory ran out; the next call tries again.
-   */
+/* Groups the walls and computes the weights of their facets again. Returns 0 if memory ran out; the
+   next call then tries again. */
 static int demi_facets_weigh(dem_world *w) {
     int i, k, per, ok = 1;
     demi_walls_repeat(w);

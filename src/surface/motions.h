@@ -1,23 +1,23 @@
 /* ---------------------------------------------------------------------------------------------
    >>motions
-   Poses of walls at any time: rotation, oscillation, translation with a ramp, and tables of poses.
-   Velocity and spin are the exact derivatives of position and rotation. Reads the motion and the
-   first pose of a wall; writes poses only.
+   Motions of walls: the pose at any time, for rotation, oscillation, translation with a ramp, and
+   tables of poses. Velocity and spin are the exact derivatives of position and rotation. This part
+   reads the motion and the first pose of a wall, and writes poses only.
    --------------------------------------------------------------------------------------------- */
 static void demi_pose_identity(dem_pose *p) {
     memset(p, 0, sizeof *p);
     p->rotation[0] = p->rotation[4] = p->rotation[8] = 1;
 }
 
-/* How far a speed that rises for `ramp` s has brought one after t >= 0, as the time that it would
-   have taken at full speed, s, and which part of the full speed there is. */
+/* Distance travelled after t >= 0 at a speed that rises smoothly for `ramp` s, expressed as the
+   time at full speed that it equals, s. *part: present speed over full speed. */
 static double demi_ramp(double t, double ramp, double *part) {
     const double u = ramp > 0 && t < ramp ? t/ramp : 1;
     *part = u*u*(3 - 2*u);
     return u < 1 ? ramp*u*u*u*(1 - u/2) : t - ramp/2;
 }
-/* Rotates a wall by `turn` (3 x 3) from the pose in which its motion started, into pose->rotation;
-   answers where its origin then is, from the point of its motion. */
+/* Rotates a wall by `turn` (3 x 3) from the pose in which its motion started, into pose->rotation.
+   Returns the vector from the point of its motion to its origin then, m. */
 static dem_vec3 demi_pose_turn(const demi_wall *wall, const double *turn, dem_pose *pose) {
     dem_real T[9];
     int i, j;
@@ -29,7 +29,7 @@ static dem_vec3 demi_pose_turn(const demi_wall *wall, const double *turn, dem_po
                 turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
     return demi_rotate(T, demi_sub(wall->home.position, wall->motion.point));
 }
-/* Number c (0..2: position, 3..6: rotation) of row k of a table; rows of one that repeats go on. */
+/* Number c of row k of a table (0..2: position, 3..6: rotation). */
 static double demi_row_number(const dem_motion *m, int k, int c) {
     const dem_motion_row *r = m->table + k;
     switch (c) {
@@ -42,16 +42,16 @@ static double demi_row_number(const dem_motion *m, int k, int c) {
     default: return (double)r->rotation.z;
     }
 }
-/* Slope of number c at row k, 1/s: of the parabola through it and its neighbours; 0 at the ends of
-   a table that does not repeat. */
+/* Derivative of number c at row k, per second: that of the parabola through the row and its
+   neighbours, across the ends of a table that repeats; 0 at the ends of one that does not. */
 static double demi_row_slope(const dem_motion *m, int k, int c) {
     const int last = m->table_count - 1, ends = k == 0 || k == last;
     const int before = k == 0 ? last - 1 : k - 1, after = k == last ? 1 : k + 1;
-    const int here_a = k == 0 ? last : k, here_b = k == last ? 0 : k;   /* the same place */
+    const int here_a = k == 0 ? last : k, here_b = k == last ? 0 : k;   /* the same pose */
     int i;
     double a, b, ta, tb, side = 0;
     if (ends && !m->table_repeats) return 0;
-    /* of the two quaternions of one turn the last row may have the other */
+    /* q and -q are the same rotation: the last row may have the other sign */
     for (i = 3; ends && c > 2 && i < 7; i++)
         side += demi_row_number(m, 0, i)*demi_row_number(m, last, i);
     ta = m->table[here_a].time - m->table[before].time;
@@ -61,8 +61,8 @@ static double demi_row_slope(const dem_motion *m, int k, int c) {
     if (side < 0) *(k == 0 ? &a : &b) *= -1;
     return (a*tb + b*ta)/(ta + tb);
 }
-/* Cubic by Hermite between two rows; quaternions likewise, then made unit: their derivative, and
-   with it the spin, is that of what is drawn. */
+/* Cubic Hermite interpolation between two rows. Quaternions are interpolated likewise and then
+   normalised; the spin is the exact derivative of the normalised quaternion. */
 static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const int last = m->table_count - 1;
@@ -101,8 +101,8 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     pose->velocity = demi_add(demi_v((dem_real)v[0], (dem_real)v[1], (dem_real)v[2]),
                               demi_cross(pose->spin, arm));
 }
-/* A wall's own table of a motion's rows, quaternions unit and each on the side of the one before.
-   0: memory ran out. */
+/* Copies the table of a motion for a wall. Quaternions are normalised, and each has the sign nearer
+   to the one before. Returns 0 if memory ran out. */
 static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **out) {
     dem_motion_row *rows;
     int k;
@@ -123,7 +123,7 @@ static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **o
     *out = rows;
     return 1;
 }
-/* Of a motion with a table: what is wrong with it, in the name of dem_wall_motion_set. */
+/* Checks the table of a motion, on behalf of dem_wall_motion_set. */
 static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) {
     int k, bad = -1;
     if (!m->table || m->table_count < 2)
@@ -141,8 +141,8 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
                      "at %g s, is not finite or not later than the row before; the first row must "
                      "be at 0 s", bad, wall, m->table[bad].time);
 }
-/* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no
-   error builds up. Velocities are exact derivatives. */
+/* Sets the pose of a wall at a time. Rotations start from the first pose each time, so no error
+   builds up. Velocities are exact derivatives. */
 static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const double t = time - m->start;
@@ -186,14 +186,14 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     }
 }
 
-/* A rotation, as far as its numbers tell, and a place, a velocity and a spin that can be. */
+/* True if the numbers of a pose are finite and in range, and its matrix may be a rotation. */
 static int demi_pose_sane(const dem_pose *p) {
     int i, ok = demi_place(p->position) && demi_place(p->velocity) && demi_place(p->spin);
     for (i = 0; i < 9; i++)
         ok = ok && demi_finite(p->rotation[i]) && DEMI_ABS(p->rotation[i]) <= 2;
     return ok;
 }
-/* The numbers of a motion. */
+/* True if the numbers of a motion are finite and in range. */
 static int demi_motion_sane(const dem_motion *m) {
     return demi_place(m->velocity) && demi_place(m->point) && demi_place(m->axis) &&
         demi_bounded((double)m->speed) && demi_bounded((double)m->amplitude) &&
@@ -201,13 +201,12 @@ static int demi_motion_sane(const dem_motion *m) {
         demi_bounded(m->start) && demi_bounded(m->ramp) && m->ramp >= 0;
 }
 
-/* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in
-   place. */
+/* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
+   -1 if there is no bound. */
 static double demi_wall_speed(const demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
-    if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* endless: no bound, look again
-                                                                     every step */
+    if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* infinite: search every step */
     if (wall->extent < 0) return (double)demi_length(p->velocity);
     return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->extent;
 }

@@ -1,18 +1,19 @@
 /* ---------------------------------------------------------------------------------------------
    >>sheets
-   Which facets of one wall hang together, which way round each turns, and where they end. Made when
-   a wall is loaded; polyhedra need it, which see a surface from one of its two sides.
+   Sheets: the connected pieces of a wall's surface, the orientation of their facets, and their
+   borders. They are found when a wall is loaded. Contacts of polyhedra need them, because a surface
+   acts on a polyhedron from one side only.
    --------------------------------------------------------------------------------------------- */
 
-/* Has a side of a triangle (3*element + side) nothing beside it, or a triangle that is too thin to
-   count? beside: as demi_wall_sheets has it. */
+/* True if a side of a triangle (3*element + side) has no neighbour, or one that is too thin to
+   count. beside: as in demi_wall_sheets. */
 static int demi_side_ends(const demi_wall *wall, const int32_t *beside, int side) {
     const dem_vec3 n = demi_at(wall->planes + 4*(DEMI_MAX(beside[side], 0)/3));
     return beside[side] < 0 || !(demi_dot(n, n) > 0);
 }
-/* Where sheets end (beside: as demi_wall_sheets has it), and their mean normals there: of all
-   triangles of the sheet at a corner, by their angles, which does not change as they are cut. 0
-   when memory ran out. */
+/* Finds the borders of sheets, and the mean normals of the sheet there: over all its triangles at a
+   corner, weighted by their angles, which does not change if a triangle is divided. Returns 0 if
+   memory ran out. */
 static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *beside) {
     const int all = wall->element_count, points = wall->vertex_count;
     int32_t *first = (int32_t *)demi_alloc(w, (size_t)(points + 2 + 3*all), sizeof *first);
@@ -52,7 +53,8 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     demi_free(w, first);
     return 1;
 }
-/* Marks triangles with the corners of an earlier one: their sheet is INT_MAX. s: room for all. */
+/* Marks triangles with the same corners as an earlier one: their sheet is INT_MAX. s: room for all
+   elements. */
 static void demi_facets_copies(demi_wall *wall, demi_side *s) {
     const int all = wall->element_count;
     int i;
@@ -67,9 +69,11 @@ static void demi_facets_copies(demi_wall *wall, demi_side *s) {
         if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi && s[i].facet == s[i - 1].facet)
             wall->sheet[s[i].side] = INT_MAX;
 }
-/* Sheets: facets that are joined by edges (segments: by ends) which two of them have, and which way
-   round each turns. A triangle with the corners of an earlier one is of none: that stands for both.
-   0 when memory ran out. */
+/* Assigns facets to sheets: those connected by edges (for segments: ends) that exactly two facets
+   share. wall->sheet is negative for facets that are oriented opposite to the first of their sheet.
+   A triangle with the corners of an earlier one belongs to no sheet, since that one represents
+   both. beside: for each side the neighbour's (3*element + side), or -1. Returns 0 if memory ran
+   out. */
 static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     const int n = demi_wall_per(wall), all = wall->element_count;
     demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
@@ -104,7 +108,8 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
                 int same;
                 if (other < 0 || wall->sheet[other/3]) continue;
                 sheet = &wall->sheet[other/3];
-                /* alike: they go along their edge in opposite ways, or one ends where one begins */
+                /* same orientation: the edge runs in opposite directions, or one ends where the
+                   other begins */
                 same = n == 2 ? other%3 != k
                     : wall->corners[3*from + k] != wall->corners[3*(other/3) + other%3];
                 *sheet = same ? wall->sheet[from] : -wall->sheet[from];

@@ -1,27 +1,28 @@
 /* ---------------------------------------------------------------------------------------------
    >>walls
-   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
-   of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
-   a cost that does not depend on their number. Planes and cylinders are one element each, without
-   end. Kinds are rows: DEMI_WALLS in >>layout.
+   Walls: rigid surfaces. A wall consists of elements in a frame of its own and of a motion that
+   moves this frame. A wall of many elements has a grid of them in its frame, so the cost of finding
+   those near a grain does not depend on their number. Planes and cylinders are one infinite element
+   each. Each kind of wall is a row of DEMI_WALLS in >>layout.
    --------------------------------------------------------------------------------------------- */
-/* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
+/* Pointers to the arrays that a wall owns. These are freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
     &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->borders, &(wall)->planes, \
     &(wall)->cut_start, &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, \
     &(wall)->motion.table}
-/* Its arrays, by the one list of them; what is left is a wall that was removed. */
+/* Frees the arrays of a wall and clears it: it is then a removed wall. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
     void *places[] = DEMI_WALL_ARRAYS(wall), *data;
     size_t k;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a copy for trials does not */
+        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a copy for trials does not own
+                                                                      them */
     }
     memset(wall, 0, sizeof *wall);
 }
-/* Arrays of its own instead of those it shares with another wall. 0 when memory ran out: it has
-   none then. */
+/* Replaces the arrays that a wall shares with another one by copies. Returns 0 if memory ran out;
+   the wall then has no arrays. */
 static int demi_wall_own(dem_world *w, demi_wall *wall) {
     void *places[] = DEMI_WALL_ARRAYS(wall), *data, *copy;
     size_t k;
@@ -37,7 +38,7 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     return ok;
 }
 
-/* Number of corners an element of this wall has; their coordinates. */
+/* Returns the number of corners of an element and writes their coordinates. */
 static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) {
     const int n = demi_wall_per(wall);
     int k;
@@ -47,7 +48,7 @@ static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) 
     return n;
 }
 
-/* Cells of the element grid that a box touches. */
+/* Writes the range of cells of the element grid that a box touches. */
 static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int *first,
                             int *last) {
     double a[3], b[3], o[3];
@@ -63,7 +64,7 @@ static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int
     }
 }
 
-/* Box of an element, with what grains of a wall stand out. */
+/* Returns the box of an element; grains of a wall extend it by their radius. */
 static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
     const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
     dem_vec3 c[3];
@@ -82,7 +83,7 @@ static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
     box.hi = demi_add(box.hi, demi_v(pad, pad, pad));
     return box;
 }
-/* Box of all, and how far from the frame's origin they go. */
+/* Sets the box of all elements, and their largest distance from the origin of the frame. */
 static void demi_wall_bounds(demi_wall *wall) {
     const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
     dem_real extent = 0;
@@ -99,8 +100,9 @@ static void demi_wall_bounds(demi_wall *wall) {
         extent = DEMI_MAX(extent, demi_length(demi_at(wall->vertices + 3*i)) + pad);
     wall->extent = extent;
 }
-/* Size of the cells: the mean element, so that each is in few, but finer where elements are long
-   and thin; coarser until neither cells nor entries are too many. */
+/* Chooses the cell size of the element grid: the size of the mean element, so that each is in few
+   cells, or less if elements are long and thin; then larger until there are not too many cells and
+   entries. */
 static void demi_wall_cells_choose(demi_wall *wall) {
     const dem_vec3 size = demi_sub(wall->box.hi, wall->box.lo);
     const double volume = (double)size.x*(double)size.y*(double)size.z, n = wall->element_count;
@@ -129,10 +131,10 @@ static void demi_wall_cells_choose(demi_wall *wall) {
         if (entries <= 48*n + 64) return;
     }
 }
-/* The grid of a wall's elements. 0 when memory ran out. */
+/* Builds the grid of a wall's elements. Returns 0 if memory ran out. */
 static int demi_wall_index(dem_world *w, demi_wall *wall) {
     int i, n, pass, x, y, z, f[3], l[3];
-    if (wall->element_count <= 4) return 1;     /* a handful: just look at all */
+    if (wall->element_count <= 4) return 1;     /* a few: all are examined */
     demi_wall_cells_choose(wall);
     n = wall->cells[0]*wall->cells[1]*wall->cells[2];
     wall->cell_start = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)n + 1, sizeof(int32_t));
@@ -160,8 +162,8 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
     return 1;
 }
 
-/* Index of the place for one more wall: the first that a removed wall has left and whose ids are
-   not used up, else a new one. */
+/* Returns the index for one more wall: the first that a removed wall has left and whose ids are not
+   used up, otherwise a new one. */
 static int demi_wall_vacant(const dem_world *w) {
     int i;
     for (i = 0; i < w->wall_count; i++)
@@ -169,14 +171,15 @@ static int demi_wall_vacant(const dem_world *w) {
             return i;
     return i;
 }
-/* The id of the next wall in this place. */
+/* The id of the next wall at this index. */
 static dem_wall demi_wall_next(const dem_world *w, int place) {
     dem_wall id;
     id.id = place < w->wall_count && w->walls[place].id ? w->walls[place].id + DEMI_WALLS_MOST
                                                         : place + 1;
     return id;
 }
-/* Takes over a prepared wall (its arrays included) or frees it. */
+/* Adds a prepared wall, which now belongs to the world, and returns its id; or frees it and returns
+   id 0 with an error message. */
 static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
     int i;
@@ -189,7 +192,7 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
         demi_wall_free(w, wall);
         return id;
     }
-    for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* and of those that are to come */
+    for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* also those that feeds will insert */
         const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
         const int part = demi_shape_strange(w, wall, shape ? &w->shapes[shape - 1] : 0);
         if (part < 0) continue;
@@ -215,20 +218,21 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
     demi_scene_changed(w);
     return id;
 }
-/* Takes the wall that was entered last back: all is as it was before. */
+/* Removes the wall that was added last; the world is as it was before. */
 static void demi_wall_leave(dem_world *w, dem_wall wall) {
     const int place = demi_wall_place(wall);
     demi_wall_free(w, &w->walls[place]);
     if (wall.id > DEMI_WALLS_MOST) w->walls[place].id = wall.id - DEMI_WALLS_MOST;
     else w->wall_count = place;
 }
-/* The same for a wall at rest in its first pose. */
+/* Adds a wall at rest in its first pose. */
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
     wall->pose = wall->mid = wall->ahead = wall->first = wall->home;
     return demi_wall_enter(w, call, wall);
 }
 
-/* What all kinds of walls have in common. 0 with a sentence when there is no such material. */
+/* Initialises what all kinds of walls have. Returns 0 with an error message if there is no such
+   material. */
 static int demi_wall_begin(dem_world *w, const char *call, dem_material material, int kind,
                            demi_wall *wall) {
     memset(wall, 0, sizeof *wall);
@@ -291,7 +295,7 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_
     return demi_wall_adopt(w, "dem_wall_cylinder_add", &wall);
 }
 
-/* dem_wall_revolved_add, in the name of `call`. */
+/* dem_wall_revolved_add on behalf of `call`. */
 static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material material,
                                    dem_vec3 point, dem_vec3 axis, int count,
                                    const dem_real *radii, const dem_real *heights) {
@@ -349,7 +353,7 @@ DEM_API dem_wall dem_wall_cone_add(dem_world *w, dem_material material, dem_vec3
     heights[1] = demi_length(way);
     return demi_revolved_make(w, "dem_wall_cone_add", material, from, way, 2, radii, heights);
 }
-/* For pictures a surface of revolution is so many flat sides around. */
+/* Number of flat sides that a surface of revolution has in pictures. */
 enum { DEMI_RING_SIDES = 48 };
 static void demi_ring_corner(const demi_wall *wall, int ring, int side, dem_real *out) {
     const double a = 2*DEMI_PI*side/(int)DEMI_RING_SIDES, r = (double)wall->ring_radius[ring];
@@ -357,7 +361,7 @@ static void demi_ring_corner(const demi_wall *wall, int ring, int side, dem_real
     out[1] = (dem_real)(r*demi_sin(a));
     out[2] = wall->ring_height[ring];
 }
-/* Corner c of triangle t (two for each side of each piece): a number of ring*SIDES + side. */
+/* Corner c of triangle t (two per side and piece) of such a picture: ring*SIDES + side. */
 static int demi_ring_triangle(int t, int c) {
     const int side = t/2%DEMI_RING_SIDES, piece = t/2/DEMI_RING_SIDES, next = side + 1;
     const int a = piece*DEMI_RING_SIDES + side, b = piece*DEMI_RING_SIDES + next%DEMI_RING_SIDES;
@@ -365,8 +369,8 @@ static int demi_ring_triangle(int t, int c) {
     return c == 0 ? a : c == 1 ? b : a + DEMI_RING_SIDES;
 }
 
-/* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are
-   bad. */
+/* Copies vertices (dimension `per_vertex`) and corners into a wall and prepares its facets and
+   grid. Returns 0 with an error message if they are invalid or memory ran out. */
 static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices,
                           const dem_real *xyz,
                           int per_vertex, int elements, const int32_t *corners, int per_element) {
@@ -440,7 +444,8 @@ DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
     return demi_wall_adopt(w, "dem_wall_profile_add", &wall);
 }
 
-/* A wall of triangles that the world has not adopted yet. 0 with a sentence when it is refused. */
+/* Makes a wall of triangles that is not added yet. Returns 0 with an error message if it is
+   invalid. */
 static int demi_mesh_make(dem_world *w, dem_material material, const dem_mesh *mesh,
                           demi_wall *wall) {
     if (!demi_wall_begin(w, "dem_wall_mesh_add", material, DEMI_WALL_MESH, wall) ||
@@ -507,7 +512,8 @@ static int demi_zero_sieve(const dem_world *w, const void *item, const demi_fiel
 #define DEMI_ROW_SIEVE(field, type, how, most, unit, other, which, kinds) DEMI_LIMITED_IF( \
     demi_wall, sieve.field, type, how, most, unit, "and 0 except for " which, other, kinds, \
     demi_zero_sieve)
-/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
+/* kind and id come first: see demi_checkpoint_scene. The numbers of a motion are part of the
+   state. */
 static const demi_field_row demi_wall_rows[] = {
     DEMI_ROW_ENUM(demi_wall, kind, 0, 0, "none plane cylinder profile segments mesh grains sieve "
                   "revolved"), DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
@@ -555,12 +561,12 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
     if (demi_size(t) > 0) t = demi_unit(t);
     t = demi_sub(t, demi_scale(n, demi_dot(t, n)));
-    if (!(demi_dot(t, t) > DEM_R(1e-6))) {      /* not said, or across the sieve: x, else y */
+    if (!(demi_dot(t, t) > DEM_R(1e-6))) {      /* not given, or normal to the sieve: x, else y */
         const dem_vec3 x = DEMI_ABS(n.x) < DEM_R(0.9) ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
         t = demi_sub(x, demi_scale(n, demi_dot(x, n)));
     }
     t = demi_unit(t);
-    t = demi_unit(demi_sub(t, demi_scale(n, demi_dot(t, n))));      /* what rounding left */
+    t = demi_unit(demi_sub(t, demi_scale(n, demi_dot(t, n))));      /* removes round-off */
     R[0] = t.x; R[3] = t.y; R[6] = t.z;
     R[2] = n.x; R[5] = n.y; R[8] = n.z;
     t = demi_cross(n, t);
@@ -573,7 +579,7 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     return demi_wall_adopt(w, "dem_wall_sieve_add", &wall);
 }
 
-/* Index of a wall, or -1 with a sentence. */
+/* Returns the index of a wall, or -1 with an error message. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     const int place = demi_wall_place(wall);
     if (wall.id < 1 || place >= w->wall_count) {
@@ -591,7 +597,8 @@ static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     return place;
 }
 
-/* 1 when turning about axis through point leaves the wall's surface where it is. */
+/* True if the motion of a wall leaves its surface in place, as a rotation about its axis of
+   symmetry does. */
 static int demi_wall_symmetric(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     dem_vec3 z, off;
@@ -604,7 +611,7 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
 }
 
-/* Refuses a motion of the wall of this id, which need not be there yet. */
+/* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
@@ -627,8 +634,8 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          DEMI_FARTHEST, motion->ramp, (int)motion->kind);
     return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
 }
-/* The wall of this id, which need not be there yet, as it is once it has this motion. An error
-   leaves *next alone. */
+/* Sets *next to wall `wall` (of this id, which need not exist yet) with a new motion. If that
+   fails, *next is unchanged. */
 static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *motion,
                                   const demi_wall *wall, demi_wall *next) {
     demi_wall laid = *wall;
@@ -636,7 +643,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     demi_calling was;
     if (demi_motion_check(w, id, motion) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion_set");
-    laid.home = laid.pose;                      /* goes on from where it is */
+    laid.home = laid.pose;                      /* starts from its present pose */
     laid.home.velocity = laid.home.spin = demi_v(0, 0, 0);
     laid.motion = *motion;
     laid.motion.table = rows;
@@ -688,7 +695,8 @@ DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_po
     return DEM_OK;
 }
 
-/* Ends the contacts of a wall that goes: its place may get another one. After demi_list_drop. */
+/* Deletes the persistent contacts of a wall that is removed, since another wall may get its index.
+   Call demi_list_drop first. */
 static void demi_wall_forget(dem_world *w, int wall) {
     int d, k, left;
     for (d = 0; d < DEMI_DOMAINS; d++) {
@@ -710,7 +718,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
                              (int)id.id);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
     demi_wall_forget(w, i);
-    demi_wall_free(w, &w->walls[i]);            /* other walls keep their places */
+    demi_wall_free(w, &w->walls[i]);            /* other walls keep their indices */
     w->walls[i].id = id.id;
     w->facets_valid = 0;
     demi_scene_changed(w);
