@@ -50,11 +50,11 @@ static double demi_near_segment(demi_d3 p, demi_d3 q, double *part) {
     part[0] = 1 - part[1];
     return demi_d3_square(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q));
 }
-/* The point of a triangle with the given parts; then the parts of the point nearest to the
-   origin. */
+/* The point of a triangle with the given parts. */
 static demi_d3 demi_triangle_point(const double *part, demi_d3 p, demi_d3 q, demi_d3 r) {
     return demi_d3_plus(demi_d3_plus(demi_d3_scale(p, part[0]), part[1], q), part[2], r);
 }
+/* Sets the parts of the corners of a triangle in its point nearest to the origin. */
 static void demi_near_triangle(demi_d3 p, demi_d3 q, demi_d3 r, double *part) {
     const demi_d3 corner[3] = {p, q, r}, e = demi_d3_sub(q, p), f = demi_d3_sub(r, p);
     const double ep = -demi_d3_dot(e, p), eq = -demi_d3_dot(e, q), er = -demi_d3_dot(e, r);
@@ -175,7 +175,8 @@ static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double ti
 
 /* --- overlap: a polytope that grows about the origin (EPA) --- */
 
-enum { DEMI_POLYTOPE = 120 };
+enum { DEMI_POLYTOPE = 120 };                   /* largest number of corners */
+/* A convex polytope of corners of D with triangular faces. */
 typedef struct demi_polytope {
     int corners, faces;
     double size;                   /* m, of both bodies: scale of round-off */

@@ -1,9 +1,10 @@
 /* ---------------------------------------------------------------------------------------------
    >>kept
    Contact detection for persistent contacts: all contacts except those of sphere on sphere, which
-   >>respond handles without a list. Two such bodies may touch at several points, also beyond their
-   centres, and a body touches a wall once per nearby surface. These contacts are therefore stored
-   one by one in a list (demi_kept) and followed from step to step, so that each keeps its history.
+   >>respond handles without a list. Two such bodies may touch at several points, with normals that
+   do not pass through their centres, and a body touches a wall once per nearby surface. These
+   contacts are therefore stored one by one in a list (demi_kept) and followed from step to step, so
+   that each keeps its history.
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the
@@ -17,8 +18,8 @@
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
-/* Appends a contact to the new list of work group d and returns it, cleared but for its history.
-   Returns null if the list is full. */
+/* Appends a contact to the new list of work group d and returns it, cleared except for the part
+   that >>kept-respond writes. Returns null if the list is full. */
 static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_kept *c;
@@ -58,8 +59,8 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
 /* Which old contact fits best, if no such key identifies it:
        TURNED   polyhedron on a wall, soft contacts: the nearest normal within 45 degrees, of the
                 same element and corner (round walls, wires and holes are one element all around)
-       NEAREST  polyhedra, rigid contacts: the nearest point within about 18 degrees of the same
-                pair or wall that no earlier contact of this step continues
+       NEAREST  polyhedra, rigid contacts: the nearest point of the same pair or wall, with a
+                normal within about 18 degrees, that no earlier new contact continues
        SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
 /* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
@@ -224,9 +225,9 @@ static int demi_is_cluster(const dem_world *w, int body) {
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
    Neglected: the rotation of the normal of an ellipsoid, or at an edge of a polyhedron, against a
-   cluster's sphere. If the centre of a sphere is within a tenth of its radius of the curve that it
-   rolls around, its normal rotates no faster than at that distance. Pieces of unions are not
-   merged: their energies add.
+   cluster's sphere. If the centre of a sphere is within a tenth of its radius of what it rolls
+   around, its normal rotates no faster than at that distance. Pieces of unions are not merged:
+   their energies add.
 
    lift_k may be slightly negative if other contacts are far deeper; no mean that is independent of
    the number of contacts avoids this. Contacts within the range of a law that do not overlap keep

@@ -343,6 +343,8 @@ static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, c
                     x.z + arm.z*(dem_real)(1 - left));
     return (dem_real)left;
 }
+/* A grain of the wall (element), by the contact point of Perram and Wertheim. Returns DEMI_FAR_OFF
+   if the gap exceeds `range`, m. */
 static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, const demi_part *p,
                                         dem_vec3 x, dem_real range, dem_vec3 *normal,
                                         dem_vec3 *point) {

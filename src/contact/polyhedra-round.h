@@ -8,13 +8,15 @@
    rings at its ends.
    --------------------------------------------------------------------------------------------- */
 
-/* A piece of a surface of revolution about z: lines from radius a to b, height g to h; side: which
-   side acts. demi_generator_press adds one line with its width in angle; the pyramids cut it into
-   sections on which u is linear. */
+/* A piece of a surface of revolution about z: its lines run from radius a to b and height g to h,
+   m. side: 1 or -1, the side on which it acts. */
 typedef struct demi_generator {
     double a, b, g, h, side;
     int open[2];                   /* 1: the surface ends there, or bends away */
 } demi_generator;
+/* Adds one line of a piece, at an angle and with a width in angle: the integral of u over the part
+   inside the polyhedron. The pyramids divide it into sections on which u is linear. x0: of the
+   centre. */
 static void demi_generator_press(const demi_solid *s, const demi_generator *l, double angle,
                                  double width, demi_d3 x0, demi_pressure *out) {
     const double c = demi_cos(angle), sn = demi_sin(angle);

@@ -327,6 +327,7 @@ static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_so
                            none, none, number, gaps);
     }
 }
+/* A polyhedron and a sieve of wires or a plate. */
 static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
                                  demi_touching *out) {
     demi_view v = *start;

@@ -137,7 +137,7 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
 /* --- gaps between a polyhedron and walls, and the contact points: for impulses, and for laws with
    a range while there is no pressure --- */
 
-enum { DEMI_GAP_POINTS = 24 };
+enum { DEMI_GAP_POINTS = 24 };                  /* largest number of points in a group */
 /* Points near one wall with similar normals. */
 typedef struct demi_gap_group {
     int32_t element;                           /* of the first point */
@@ -145,6 +145,7 @@ typedef struct demi_gap_group {
     demi_d3 x[DEMI_GAP_POINTS], n[DEMI_GAP_POINTS];
     double gap[DEMI_GAP_POINTS];
 } demi_gap_group;
+/* All groups of points near one wall. Points with gaps of `range` (m) or more are ignored. */
 typedef struct demi_gaps {
     int count, flat;               /* flat: only normals within 60 degrees of z (plates) */
     double range;

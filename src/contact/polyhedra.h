@@ -62,13 +62,14 @@ static double demi_solid_in(const demi_solid *s, int f, demi_d3 x) {
 
 /* --- pressure u, summed over pieces of S --- */
 
+/* Integrals of the pressure u over the surface S. */
 typedef struct demi_pressure {
     double shared;                 /* m3: I */
     double sum, wide[6];           /* m2, m4: integrals over S of u, u x x (xx yy zz xy xz yz) */
     demi_d3 at, force, torque;     /* integrals over S of u x, u n, u x cross n */
     double deep;                   /* largest u */
 } demi_pressure;
-enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
+enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 }; /* corners of a polygon */
 /* Adds a polygon of `count` corners x in the pyramid of face f. unit: normal of S; height: m, of
    the polygon above the centre, for a pair the sum of both. */
 static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int f, const demi_d3 *x,

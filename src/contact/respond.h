@@ -24,7 +24,7 @@ typedef struct demi_rows { dem_real xy[2][DEMI_ROOM], z[DEMI_ROOM]; } demi_rows;
 #define DEMI_XY(rows, e, q) (rows)->xy[e][q]
 #endif
 typedef struct demi_tile {
-    /* filled from bodies */
+    /* filled from the bodies */
     demi_rows gap;                 /* m, from a to b */
     demi_rows rate, gone;          /* m/s, relative velocity: now; over the last step */
     demi_rows late;                /* m/s, difference of prediction errors: ledger */

@@ -410,6 +410,7 @@ enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1,
        DEMI_SIEVE_ROWS = 13 };                  /* rows of both sets, and the ring */
 /* The last three bits of a row's number; for round holes they are 0 .. 5: side, lattice. */
 enum { DEMI_SIEVE_SET = 1, DEMI_SIEVE_ABOVE = 2, DEMI_SIEVE_CROSS = 4 };
+/* A row of a sieve (wire, bar, strip or ring) that a sphere reaches. */
 typedef struct demi_sieve_row {
     int32_t number;
     int set, root;                 /* set 2: the ring; root: in the forest */
@@ -783,6 +784,7 @@ static dem_real demi_ring_piece(const demi_wall *wall, int k, dem_real out, dem_
     *h = *end < 0 ? H[0] : *end ? H[1] : H[0] + t*b;
     return DEMI_SQRT((out - *r)*(out - *r) + (height - *h)*(height - *h));
 }
+/* The nearest point of all pieces of a surface of revolution. */
 static dem_real demi_revolved_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                    dem_vec3 *normal, dem_vec3 *point) {
     const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);

@@ -178,8 +178,8 @@ static dem_wall demi_wall_next(const dem_world *w, int place) {
                                                         : place + 1;
     return id;
 }
-/* Adds a prepared wall, which now belongs to the world, and returns its id; or frees it and returns
-   id 0 with an error message. */
+/* Adds a prepared wall, which then belongs to the world, and returns its id; or frees it and
+   returns id 0 with an error message. */
 static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
     int i;
