@@ -231,9 +231,9 @@ static int demi_is_cluster(const dem_world *w, int body) {
 
    lift_k may be slightly negative if other contacts are far deeper; no mean that is independent of
    the number of contacts avoids this. Contacts within the range of a law that do not overlap keep
-   their weight. Damping is scaled by s and uses the effective mass at the common centre of the
-   contacts. Friction is scaled by s (sum of lift U')/(sum of s U'), so that mu is the ratio of the
-   two total forces. Tests: "a cluster landing on one, two or three spheres" and
+   their weight. Damping is scaled by s (`share`) and uses the effective mass at the common centre
+   of the contacts. Friction is scaled by `grip` = s (sum of lift U')/(sum of s U'), so that mu is
+   the ratio of the two total forces. Tests: "a cluster landing on one, two or three spheres" and
    tests/surface/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&

@@ -33,8 +33,8 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
 /* Two ellipsoids, or one and a sphere, by Perram and Wertheim's contact point. If they are apart,
-   their gap is the distance of the two surface points that coincide when both are scaled by W0: d
-   (1 - 1/W0). It is never less than the true distance, which the candidate lists use. */
+   their gap is taken as d (1 - 1/W0), the distance of the two surface points that coincide when
+   both are scaled by W0. It is never less than the true distance, which the candidate lists use. */
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {

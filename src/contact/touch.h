@@ -213,17 +213,20 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
    is smooth. An open ring counts as one piece; which of its sides are nearest may change at any
    moment, as on the medial line of a single wall. Energy is conserved in both cases. Rings across a
    seam of two walls are not detected. --- */
+/* Orders links: sides before corners, then by number and facet. */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
     if (a->corner != b->corner) return a->corner < b->corner ? -1 : 1;
     if (a->number != b->number) return a->number < b->number ? -1 : 1;
     return a->facet < b->facet ? -1 : a->facet > b->facet;
 }
+/* Orders links by distance, then as above. */
 static int demi_link_nearer(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
     if (a->distance < b->distance) return -1;
     return a->distance > b->distance ? 1 : demi_link_compare(x, y);
 }
+/* Returns the root of facet i (union and find). */
 static int demi_link_root(demi_link *link, int i) {
     while (link[i].root != i) i = link[i].root = link[link[i].root].root;
     return i;
@@ -706,8 +709,7 @@ static void demi_sieve_share(demi_touching *c, int count, dem_real range) {
             lb = lb > 0 ? lb : 0;
             sa = la + lb > 0 ? la/(la + lb) : 1;
             sb = 1 - sa;
-            la /= DEMI_MAX(c[a].overlap - range, DEMI_TINY);    /* those that do not touch: weight
-                                                                   1 */
+            la /= DEMI_MAX(c[a].overlap - range, DEMI_TINY);    /* if apart: weight 1 */
             lb /= DEMI_MAX(c[b].overlap - range, DEMI_TINY);
             c[a].share *= DEMI_MAX(sa, DEMI_MIN(la, DEM_R(1)));
             c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));

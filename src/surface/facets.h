@@ -18,13 +18,14 @@
        face 1,  edge 1 - (faces at it),  corner 1 - (faces at it) - sum of weights of edges at it
    That is, every point of the surface counts once in total. Dividing a facet changes nothing. E is
    an energy, so elastic contacts conserve energy for any surface. The distance from a convex set
-   has a continuous gradient, so F has no jump on any path outside the surface. On a plane, a ridge,
-   a rim or a tip there is one nearest point, and only its U' remains, as for a plane or a cylinder.
-   In a valley there are two nearest points and the edge between them, which counts -1: F changes
-   from one contact to two as the valley gets steeper or the overlap smaller. (In terms of Morse
-   theory, F is a sum over the critical points of the distance: minima 1, saddles -1.) Terms with
-   the same nearest point are added up before the law is called; most cancel, and what remains is
-   nearly always one contact. If a ring closes around the grain, chi is 0; >>touch handles that.
+   has a continuous gradient, so F has no jump on any path outside the surface. On an open face, a
+   ridge, a rim or a tip there is one nearest point, and only its U' remains, as for an infinite
+   plane or cylinder. In a valley there are two nearest points and the edge between them, which
+   counts -1: F changes from one contact to two as the valley gets steeper or the overlap smaller.
+   (In terms of Morse theory, F is a sum over the critical points of the distance: minima 1, saddles
+   -1.) Terms with the same nearest point are added up before the law is called; most cancel, and
+   what remains is nearly always one contact. If a ring closes around the grain, chi is 0; >>touch
+   handles that.
 
    The law, with its friction and history, is evaluated at each remaining contact point and
    multiplied by its weight. Surfaces of walls that do not move relative to each other are joined,
@@ -43,8 +44,8 @@ static double demi_far2(const double *a, const double *b) {
     return demi_d3_square(demi_d3_sub(demi_d3_at(a), demi_d3_at(b)));
 }
 
-/* A tree of boxes around points, to find those near a line. Node k has the children 2k + 1 and 2k +
-   2, split across its longest side; each has a range of `order` and the box of its points. */
+/* A tree of boxes around points, to find those near a line. Node k has the children 2k+1 and 2k+2,
+   split across its longest side; each has a range of `order` and the box of its points. */
 enum { DEMI_TREE_LEAF = 8 };
 typedef struct demi_tree {
     const double *x;               /* points x 3, m: not a copy */
