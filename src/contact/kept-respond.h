@@ -121,8 +121,7 @@ typedef struct demi_kept_tile {
     demi_tile rows;
     demi_kept *contact[DEMI_TILE];
     const demi_kept *old[DEMI_TILE];               /* what each continues; a new one: itself */
-    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* contact point with a wall, m; its velocity,
-                                                      m/s */
+    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* point on a wall, m; its velocity */
     int count, lifted, shaped;     /* is `still` needed? bodies that are not spheres? */
 } demi_kept_tile;
 DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {

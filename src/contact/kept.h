@@ -81,8 +81,7 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
         return DEMI_FAR_OFF;
     for (j = 0; j < freshs && !taken; j++)
         taken = fresh[j].wall == o->wall && fresh[j].element == o->element;
-    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* one only: that with the nearest
-                                                                   normal */
+    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* only the nearest one */
         const dem_real nearer = demi_dot(o->normal, demi_sub(fresh[j].normal, c->normal));
         taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
             (fresh[j].from == from || (fresh[j].from < 0 &&

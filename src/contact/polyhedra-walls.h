@@ -64,8 +64,7 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
         for (i = 0; i < seen[k].count && share[k] > 0; i++) {
             demi_pressure press = seen[k].press[i];
             demi_pressure_scale(&press, share[k]);
-            if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stops the
-                                                                           run */
+            if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stop */
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }

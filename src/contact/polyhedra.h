@@ -347,8 +347,7 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, con
             angle[angles++] = demi_atan2(v + t*dv, u + t*du);
         }
     }
-    if (!near_by && left < count && right < count) return 0;    /* nor is the centre of the hole
-                                                                   inside */
+    if (!near_by && left < count && right < count) return 0;    /* nor is its centre inside */
     qsort(angle, (size_t)angles, sizeof *angle, demi_double_order);
     angle[angles] = angle[0] + 2*DEMI_PI;
     for (i = 0; i < angles; i++) {
@@ -372,8 +371,8 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, con
 }
 /* Adds S on a flat piece of a rigid wall: the part of the plane n.x = at (n unit, into the wall)
    that is within all half spaces `sides`. hole: null, or x, y and radius of a hole in it, across z.
-   Without sides the polyhedron's centre must be in front. A piece with sides may be seen from
-   behind; it then reduces what other pieces contribute. */
+   Without sides, demi_pressure_beyond handles a centre behind the plane. A piece with sides may be
+   seen from behind; it then reduces what other pieces contribute. */
 static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const demi_half *sides,
                                int side_count, const double *hole, demi_pressure *s) {
     const double centre = demi_d3_dot(n, a->centre) - at;

@@ -16,8 +16,8 @@ static void demi_wall_free(dem_world *w, demi_wall *wall) {
     size_t k;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a copy for trials does not own
-                                                                      them */
+        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a trial copy does not own
+                                                                      it */
     }
     memset(wall, 0, sizeof *wall);
 }
