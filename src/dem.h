@@ -67,11 +67,13 @@
        >>placing           room for new grains: regions, random fills, packings
        >>feed              feeds and outlets
      run/ - the step and what is measured in it
+       >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
-       >>step              one step after another
+       >>step              one step of a scene, phase by phase
+       >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
      file/ - reading and writing
        >>outlines          polygons with many corners cut into triangles
@@ -91,7 +93,6 @@
      slab/ - one scene on several threads or processes
        >>slabs             one scene on several threads or processes: data and messages
        >>slabs-step        one step of all slabs
-       >>slabs-time        one time step for all slabs
        >>slabs-run         feeds into slabs; one step after another
        >>deal              distributing a world to slabs and collecting it again
      replay/ - replays in a browser
@@ -203,11 +204,13 @@
 #include "scene/sizes.h"
 #include "scene/placing.h"
 #include "scene/feed.h"
+#include "run/team.h"
 #include "run/advice.h"
 #include "run/ledger.h"
 #include "run/responses.h"
 #include "run/fields.h"
 #include "run/step.h"
+#include "run/runs.h"
 #include "run/measure.h"
 #include "file/outlines.h"
 #include "file/read.h"
@@ -224,7 +227,6 @@
 #include "report/world.h"
 #include "slab/slabs.h"
 #include "slab/slabs-step.h"
-#include "slab/slabs-time.h"
 #include "slab/slabs-run.h"
 #include "slab/deal.h"
 #include "replay/viewer.h"

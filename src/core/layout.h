@@ -497,7 +497,6 @@ typedef struct demi_timing {       /* >>step, >>advice */
     dem_real dt;                   /* s */
     double half_kick;              /* s, half kick of the present step */
     double assumed_speed;          /* m/s, impact speed that dt was chosen for */
-    double spin_elsewhere;         /* rad/s, fastest nonspherical body in all slabs */
     uint64_t press_due;            /* step of the next search for pressed bodies (>>advice) */
     uint64_t press_since;          /* step of the last change of the scene */
     demi_held held;
@@ -709,9 +708,39 @@ typedef struct demi_solver {
     dem_real dt, step;             /* s; step length of some solvers */
 } demi_solver;
 
+/* A number for each body that crosses the border between two worlds of a team: its size, how it is
+   read from a body and how it is added to one. */
+typedef struct demi_record {
+    size_t (*size)(const dem_world *member);   /* bytes of one body */
+    void (*put)(const dem_world *member, int body, char *to);
+    void (*take)(dem_world *member, int body, const char *from);
+} demi_record;
+/* The worlds that step together (>>team). A single world has no team: it is its own head and its
+   only member. Slabs (>>slabs) are the members of a head, a world without bodies that holds the
+   numbers they share: time, time step, skin, error. A body near a border is in two members: one
+   owns it, the other has a copy, a ghost particle. */
+struct demi_grades;
+typedef struct demi_team {
+    dem_world *head, **members;
+    int count;                     /* members in this process */
+    /* Runs a task on all members. If it fails in one, the next call of agree returns the result. */
+    dem_result (*all)(dem_world *head, dem_result (*task)(dem_world *member));
+    /* Replaces most[0 .. count - 1] by the maxima over all processes. */
+    dem_result (*agree)(dem_world *head, double *most, int count);
+    void (*rest)(dem_world *member);            /* stops the ghosts, before a move */
+    dem_result (*rebuild)(dem_world *head);     /* chooses new ghosts and builds all lists */
+    dem_result (*lend)(dem_world *head);        /* sends states from owners to ghosts */
+    dem_result (*give)(dem_world *head, const demi_record *what);   /* adds numbers of ghosts to
+                                                                        those of their owners */
+    dem_result (*grades)(dem_world *head, struct demi_grades *g);   /* adds other processes */
+    dem_result (*feed)(dem_world *head);        /* inserts grains */
+} demi_team;
+
 /* A world. Each group of fields belongs to the part named above it: that part writes them, and
    every part may read them. Further writers are named. */
 struct dem_world {
+    demi_team *team;               /* >>slabs; null: a single world */
+    int member;                    /* index in team->members */
     /* >>world */
     dem_world_desc desc;           /* as given, with automatic choices filled in */
     dem_world_desc asked;          /* as given */
@@ -764,6 +793,10 @@ struct dem_world {
     double dt_share;               /* trials: factor on the automatic time step; 0: 1 */
     struct demi_press *press;      /* loads on bodies, while >>advice chooses the time step */
     struct demi_press_whole *press_whole;
+    struct {                       /* s: time step that is checked; largest stable one, of this */
+        double dt, limit, least;   /* world and of all its team; the body that limits it here */
+        int worst;
+    } pressed;
     /* >>rebuild: laws in force, work groups */
     int normal;                    /* law in force */
     demi_laws laws;                /* rows of the laws; unused with a user-defined law */
@@ -814,7 +847,7 @@ struct dem_world {
                                       species a and b when lists were built */
     int species_vary;              /* bits of the columns that differ between pairs */
     struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
-    int near_fresh, near_due;      /* 1: being built after a search; slabs: some list is due */
+    int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
     struct demi_solver solver;     /* >>impulses */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);

@@ -592,8 +592,8 @@ static void demi_check_enclosed(dem_world *w, demi_findings *f) {
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
     const int lasting = demi_response_is(w, DEMI_LASTING);
     const double dt = (double)w->desc.dt;
-    double limit, fastest = demi_fastest(w);
-    int i, worst = 0;
+    double fastest = demi_fastest(w);
+    int i;
     if (!(dt > 0) || (lasting && !(a->contact_time > 0))) return;
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
@@ -602,11 +602,11 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
         demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
                   "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
                   (double)a->dt_max, a->binds);
-    else if (lasting && (limit = demi_press_limit(w, dt, &worst)) > 0)
+    else if (lasting && demi_press_limit(w, dt) == DEM_OK && w->pressed.least < dt)
         demi_find(f, DEM_SEVERITY_ERROR,
                   "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
-                  "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
-                  w->press[worst].contacts);
+                  "contacts: use dt = 0", dt, w->pressed.least,
+                  (int)w->bodies.slot[w->pressed.worst] + 1, w->press[w->pressed.worst].contacts);
     else if (lasting && dt < (double)a->dt/20)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
                   "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,

@@ -38,50 +38,10 @@ static double demi_motion_speed(const demi_wall *wall) {
     }
     return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
 }
-/* Impact speed to reckon with: given, or the largest of what grains do now, what walls will do and
-   what gravity can make of the height there is. */
-static double demi_speed_estimate(const dem_world *w) {
-    double g = (double)demi_length(w->desc.gravity), speed = 0, lo = 1e300, hi = -1e300;
-    dem_vec3 down = g > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
-    int i, k;
-    if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
-    for (i = 0; i < w->bodies.count; i++) {
-        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
-        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
-        const double r = (double)w->bodies.pos[4*i + 3];
-        speed = DEMI_MAX(speed, (double)demi_length(v));
-        lo = DEMI_MIN(lo, h - r);
-        hi = DEMI_MAX(hi, h + r);
-    }
-    for (i = 0; i < w->feed_count; i++) {       /* grains that are to come */
-        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
-        for (k = 0; k < 2; k++) {
-            const double h = (double)demi_dot(k ? d->box.hi : d->box.lo, down);
-            lo = DEMI_MIN(lo, h);
-            hi = DEMI_MAX(hi, h);
-        }
-        speed = DEMI_MAX(speed, (double)demi_length(d->velocity) + 1.7320508*(double)d->spread);
-    }
-    for (i = 0; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        if (wall->kind == DEMI_WALL_NONE) continue;
-        speed = DEMI_MAX(speed, demi_motion_speed(wall));
-        if (demi_wall_is(wall, DEMI_FLAT) || (wall->vertex_count &&
-                                              !demi_wall_is(wall, DEMI_DRAWN))) {
-            const int n = DEMI_MAX(wall->vertex_count, 1);
-            for (k = 0; k < n; k++) {
-                const dem_vec3 p = !wall->vertex_count ? wall->pose.position :
-                    demi_add(wall->pose.position, demi_rotate(wall->pose.rotation,
-                                                            demi_at(wall->vertices + 3*k)));
-                hi = DEMI_MAX(hi, (double)demi_dot(p, down));
-            }
-        } else hi = DEMI_MAX(hi, (double)demi_dot(wall->pose.position, down) +
-                             (double)DEMI_MAX(wall->radius, wall->extent));
-    }
-    if (g > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*g*(hi - lo)));
-    return DEMI_MAX(speed, 1e-3);
+/* The direction of gravity, or 0. */
+static dem_vec3 demi_down(const dem_world *w) {
+    return demi_length(w->desc.gravity) > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
 }
-
 /* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
    one as light as a contact may find the body at worst; for Hertz, whose time goes with
    (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
@@ -138,32 +98,91 @@ static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, doubl
     const double slide = 3.5*s.kt/m_eff + s.kr/I;
     return demi_dt_stable(DEMI_MAX(s.k/m_eff, slide), DEMI_MAX(s.c/m_eff, 3.5*s.ct/m_eff + s.cr/I));
 }
-/* What each material's grains are: those there are, and those that feeds will bring. */
+/* What the choice of a time step depends on: the grains that there are, of all parts, and those
+   that feeds will bring. */
 typedef struct demi_grades {
     double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m: moving; largest that is fixed */
-    int many[DEMI_MATERIALS];                              /* that move, or more of their like */
+    double many[DEMI_MATERIALS];                           /* that move, or more of their like */
+    double bodies;
+    double speed, spin;            /* m/s; rad/s, of bodies that are not spheres: the fastest */
+    double lo, hi;                 /* m, along gravity: from where to where there are bodies */
 } demi_grades;
-/* Feeds count as if two grains of each class were there already. */
-static void demi_grades_of(const dem_world *w, demi_grades *g) {
-    int i, j;
-    memset(g, 0, sizeof *g);
+/* Adds the bodies of one part. */
+static void demi_grades_add(const dem_world *w, demi_grades *g) {
+    const dem_vec3 down = demi_down(w);
+    int i;
     for (i = 0; i < w->bodies.count; i++) {
         const int m = w->bodies.material[i] - 1;
-        const double r = demi_advise_radius(w, i);
-        if (w->bodies.inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], r); continue; }
-        if (!g->many[m]++ || r < g->smallest[m]) g->smallest[m] = r;
+        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+        const double r = (double)w->bodies.pos[4*i + 3], equal = demi_advise_radius(w, i);
+        if (demi_is_ghost(w, i)) continue;
+        g->bodies++;
+        g->speed = DEMI_MAX(g->speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
+        g->lo = DEMI_MIN(g->lo, h - r);
+        g->hi = DEMI_MAX(g->hi, h + r);
+        if (w->bodies.shaped && w->bodies.shape[i])
+            g->spin = DEMI_MAX(g->spin, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
+        if (w->bodies.inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], equal); continue; }
+        if (!g->many[m]++ || equal < g->smallest[m]) g->smallest[m] = equal;
     }
-    for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+}
+/* Feeds count as if two grains of each class were there already. */
+static dem_result demi_grades_of(const dem_world *h, demi_grades *g) {
+    dem_result result = DEM_OK;
+    int i, j;
+    memset(g, 0, sizeof *g);
+    g->lo = 1e300;
+    g->hi = -1e300;
+    for (i = 0; i < demi_members(h); i++) demi_grades_add(demi_member(h, i), g);
+    if (h->team) result = h->team->grades((dem_world *)h, g);
+    for (i = 0; i < h->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(h, i)->desc;
         for (j = 0; j < d->class_count; j++) {
             const int m = demi_feed_material(d, j);
             const double r = d->shapes[j].id
-                ? demi_advise_shape(w, &w->shapes[d->shapes[j].id - 1], (double)d->radius[j])
+                ? demi_advise_shape(h, &h->shapes[d->shapes[j].id - 1], (double)d->radius[j])
                 : (double)d->radius[j];
-            if (!g->many[m] || r < g->smallest[m]) g->smallest[m] = r;
+            if (!(g->many[m] > 0) || r < g->smallest[m]) g->smallest[m] = r;
             g->many[m] += 2;
         }
     }
+    return result;
+}
+/* Impact speed to reckon with: given, or the largest of what grains do now, what walls will do and
+   what gravity can make of the height there is. */
+static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
+    const dem_vec3 down = demi_down(w);
+    const double gravity = (double)demi_length(w->desc.gravity);
+    double speed = g->speed, lo = g->lo, hi = g->hi;
+    int i, k;
+    if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
+    for (i = 0; i < w->feed_count; i++) {       /* grains that are to come */
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < 2; k++) {
+            const double h = (double)demi_dot(k ? d->box.hi : d->box.lo, down);
+            lo = DEMI_MIN(lo, h);
+            hi = DEMI_MAX(hi, h);
+        }
+        speed = DEMI_MAX(speed, (double)demi_length(d->velocity) + 1.7320508*(double)d->spread);
+    }
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        speed = DEMI_MAX(speed, demi_motion_speed(wall));
+        if (demi_wall_is(wall, DEMI_FLAT) || (wall->vertex_count &&
+                                              !demi_wall_is(wall, DEMI_DRAWN))) {
+            const int n = DEMI_MAX(wall->vertex_count, 1);
+            for (k = 0; k < n; k++) {
+                const dem_vec3 p = !wall->vertex_count ? wall->pose.position :
+                    demi_add(wall->pose.position, demi_rotate(wall->pose.rotation,
+                                                            demi_at(wall->vertices + 3*k)));
+                hi = DEMI_MAX(hi, (double)demi_dot(p, down));
+            }
+        } else hi = DEMI_MAX(hi, (double)demi_dot(wall->pose.position, down) +
+                             (double)DEMI_MAX(wall->radius, wall->extent));
+    }
+    if (gravity > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*gravity*(hi - lo)));
+    return DEMI_MAX(speed, 1e-3);
 }
 /* The contact that lasts shortest, of those looked at so far, and the least stable step. */
 typedef struct demi_shortest {
@@ -208,27 +227,25 @@ static const char *demi_dt_limit(const dem_advice *a) {
         ? "the stability limit of dashpots and rolling" : "t_c/20";
 }
 /* Shortest contact among all material pairs and walls there are, for their smallest grains. */
-static void demi_advise(const dem_world *w, dem_advice *out) {
-    const double speed = demi_speed_estimate(w);
+static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice *out) {
+    const double speed = demi_speed_estimate(w, g);
     double rayleigh = 1e300;
     demi_shortest s = {1e300, 1e300, 0, 0, -1, -1, 0};
-    demi_grades g;
     int i, j;
-    demi_grades_of(w, &g);
     for (i = 0; i < w->material_count; i++) {
-        if (!(g.smallest[i] > 0)) continue;
-        rayleigh = DEMI_MIN(rayleigh, demi_rayleigh(&w->materials[i], g.smallest[i]));
+        if (!(g->smallest[i] > 0)) continue;
+        rayleigh = DEMI_MIN(rayleigh, demi_rayleigh(&w->materials[i], g->smallest[i]));
         for (j = 0; j < w->material_count; j++)
-            if (j != i || g.many[i] > 1) demi_advise_pair(w, &g, i, j, 0, -1, speed, &s);
-        for (j = 0; j < w->material_count; j++) demi_advise_pair(w, &g, i, j, 1, -1, speed, &s);
+            if (j != i || g->many[i] > 1) demi_advise_pair(w, g, i, j, 0, -1, speed, &s);
+        for (j = 0; j < w->material_count; j++) demi_advise_pair(w, g, i, j, 1, -1, speed, &s);
         for (j = 0; j < w->wall_count; j++)
             if (w->walls[j].kind != DEMI_WALL_NONE)
-                demi_advise_pair(w, &g, i, w->walls[j].material, 0, j, speed, &s);
+                demi_advise_pair(w, g, i, w->walls[j].material, 0, j, speed, &s);
     }
     for (i = 0; i < w->material_count && s.material < 0; i++)     /* one grain alone: its like */
-        if (g.smallest[i] > 0) {
+        if (g->smallest[i] > 0) {
             const double limit = s.limit;
-            demi_advise_pair(w, &g, i, i, 0, -1, speed, &s);
+            demi_advise_pair(w, g, i, i, 0, -1, speed, &s);
             s.limit = limit;                    /* which is not there to be unstable with */
         }
     memset(out, 0, sizeof *out);
@@ -251,6 +268,11 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
         snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
                  "dashpot, friction or rolling", s.limit);
     }
+}
+static void demi_advise(const dem_world *w, dem_advice *out) {
+    demi_grades g;
+    demi_grades_of(w, &g);
+    demi_advise_by(w, &g, out);
 }
 
 /* --- contacts that are there: pressed, and many to a grain. Small motions x about a state, with
@@ -460,29 +482,95 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
         }
     }
 }
-/* The largest stable step for the contacts there are, if it is below dt; else 0; -1: memory ran
-   out. worst: the body. Its room is kept. */
-static double demi_press_limit(dem_world *w, double dt, int *worst) {
-    demi_press *press;
-    double least = dt;
-    int i, found = 0;
-    if (!w->bodies.count) return 0;
-    if (!DEMI_GROW(w, w->press, (size_t)w->bodies.count)) return -1;
-    press = w->press;
-    memset(press, 0, (size_t)w->bodies.count*sizeof *press);
-    demi_press_visit(w, press, 0);
-    demi_press_rates(w, press);
-    for (i = 0; i < w->bodies.count; i++)
-        if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
-    if (found && !DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
-    if (found) memset(w->press_whole, 0, (size_t)found*sizeof *w->press_whole);
-    if (found) demi_press_visit(w, press, w->press_whole);
-    for (i = 0; i < w->bodies.count; i++) {
-        const double rates = demi_press_rate_step(press + i, dt), limit = press[i].whole
-            ? demi_press_step(w->press_whole + press[i].whole - 1, rates) : rates;
-        if (limit < least) { least = limit; *worst = i; }
+/* What a part knows of ghosts, which their owner adds to what it knows of the body: the cheap
+   bound, and the matrices. */
+static size_t demi_press_size(const dem_world *w) { return sizeof *w->press; }
+static void demi_press_put(const dem_world *w, int i, char *to) {
+    memcpy(to, w->press + i, sizeof *w->press);
+}
+static void demi_press_take(dem_world *w, int i, const char *from) {
+    demi_press *sum = w->press + i, part;
+    memcpy(&part, from, sizeof part);
+    sum->omega2 += part.omega2;
+    sum->rate += part.rate;
+    sum->contacts += part.contacts;
+    sum->relax += part.relax;
+    sum->deepest = DEMI_MAX(sum->deepest, part.deepest);
+}
+static size_t demi_whole_size(const dem_world *w) { return sizeof *w->press_whole; }
+static void demi_whole_put(const dem_world *w, int i, char *to) {
+    memcpy(to, w->press_whole + i, sizeof *w->press_whole);
+}
+static void demi_whole_take(dem_world *w, int i, const char *from) {
+    double *sum = (double *)(void *)(w->press_whole + i), part;
+    size_t k;
+    for (k = 0; k < sizeof *w->press_whole/sizeof part; k++) {
+        memcpy(&part, from + k*sizeof part, sizeof part);
+        sum[k] += part;
     }
-    return least < dt ? least : 0;
+}
+/* Works the cheap bounds out, and the matrices of the bodies that need them: in a team of all, for
+   no part knows which its neighbours' bodies need. */
+static dem_result demi_member_press(dem_world *w) {
+    const size_t n = (size_t)w->bodies.count;
+    if (!DEMI_GROW(w, w->press, n)) return demi_no_memory(w, "dem_world_step");
+    if (n) memset(w->press, 0, n*sizeof *w->press);
+    demi_press_visit(w, w->press, 0);
+    demi_press_rates(w, w->press);
+    return DEM_OK;
+}
+static dem_result demi_member_press_whole(dem_world *w) {
+    int i, found = 0;
+    for (i = 0; i < w->bodies.count; i++)
+        if (w->team || w->pressed.dt > demi_dt_stable(w->press[i].omega2, w->press[i].rate))
+            w->press[i].whole = ++found;
+    if (!DEMI_GROW(w, w->press_whole, (size_t)found)) return demi_no_memory(w, "dem_world_step");
+    if (found) memset(w->press_whole, 0, (size_t)found*sizeof *w->press_whole);
+    if (found) demi_press_visit(w, w->press, w->press_whole);
+    return DEM_OK;
+}
+/* The largest stable step of one body of a part, the judged one at most: by the matrices where
+   there are any, else by the cheap bound. */
+static double demi_press_body(const dem_world *w, int i, int whole) {
+    const demi_press *p = w->press + i;
+    const double rates = demi_press_rate_step(p, w->pressed.dt);
+    if (!whole) return DEMI_MIN(rates, demi_dt_stable(p->omega2, p->rate));
+    return p->whole ? demi_press_step(w->press_whole + p->whole - 1, rates) : rates;
+}
+/* Finds the smallest of these over all bodies of all parts. */
+static dem_result demi_press_least(dem_world *h, int whole) {
+    double least = -h->pressed.dt;              /* less than 0: maxima are what is agreed on */
+    dem_result result;
+    int i, k;
+    for (k = 0; k < demi_members(h); k++) {
+        dem_world *w = demi_member(h, k);
+        w->pressed.limit = w->pressed.dt;
+        for (i = 0; i < w->bodies.count; i++) {
+            const double limit = demi_is_ghost(w, i) ? w->pressed.dt : demi_press_body(w, i, whole);
+            if (limit < w->pressed.limit) { w->pressed.limit = limit; w->pressed.worst = i; }
+        }
+        least = DEMI_MAX(least, -w->pressed.limit);
+    }
+    result = demi_agree(h, &least, 1);
+    for (k = 0; k < demi_members(h); k++) demi_member(h, k)->pressed.least = -least;
+    h->pressed.least = -least;
+    return result;
+}
+/* The largest stable step for the contacts there are, in h->pressed: dt or more than that is dt. */
+static dem_result demi_press_limit(dem_world *h, double dt) {
+    static const demi_record bound = {demi_press_size, demi_press_put, demi_press_take};
+    static const demi_record whole = {demi_whole_size, demi_whole_put, demi_whole_take};
+    dem_result result;
+    int k;
+    h->pressed.dt = dt;
+    for (k = 0; k < demi_members(h); k++) demi_member(h, k)->pressed.dt = dt;
+    result = demi_all_agree(h, demi_member_press);
+    if (result == DEM_OK && h->team) result = h->team->give(h, &bound);
+    if (result == DEM_OK) result = demi_press_least(h, 0);
+    if (result != DEM_OK || !(h->pressed.least < dt)) return result;
+    result = demi_all_agree(h, demi_member_press_whole);
+    if (result == DEM_OK && h->team) result = h->team->give(h, &whole);
+    return result == DEM_OK ? demi_press_least(h, 1) : result;
 }
 
 /* Says that a body that is not a sphere turns too far in a step. */
@@ -492,15 +580,6 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
                      "use dt = 0 or at most %.2g s, or find what spun it up", call,
                      (unsigned long long)w->clock.steps, rate*(double)w->clock.dt,
                      (double)w->clock.dt, rate, 0.1/rate);
-}
-/* The fastest spin among those bodies, rad/s. */
-static double demi_spin_fastest(const dem_world *w) {
-    double most = w->clock.spin_elsewhere;
-    int i;
-    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++)
-        if (w->bodies.shape[i])
-            most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
-    return most;
 }
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
@@ -523,40 +602,41 @@ static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
 }
 /* The time step of springs for the scene as it is, given or chosen; one that is not stable is
    refused. A change of the step ends half steps of the old one first. */
-static dem_result demi_springs_settle(dem_world *w) {
+static dem_result demi_springs_settle(dem_world *h) {
     dem_advice a;
-    double spin;
-    if (!w->bodies.count && !w->feed_count) {          /* nothing to limit it: walls still move */
-        if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
+    demi_grades g;
+    dem_result result = demi_all(h, demi_member_finish);  /* speeds of the present time */
+    if (result == DEM_OK) result = demi_grades_of(h, &g);
+    if (result != DEM_OK) return result;
+    if (!(g.bodies > 0) && !h->feed_count) {    /* nothing to limit it: walls still move */
+        if (!(h->clock.dt > 0)) h->clock.dt = h->desc.dt > 0 ? h->desc.dt : DEM_R(1e-3);
         return DEM_OK;
     }
-    demi_finish(w);                             /* speeds are those of now, whoever asks */
-    demi_advise(w, &a);
-    spin = demi_spin_fastest(w);
-    if (w->desc.dt > 0) {
-        if (!w->desc.allow_large_dt && a.contact_time > 0 && !(w->desc.dt <= a.dt_max))
-            return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
+    demi_advise_by(h, &g, &a);
+    if (h->desc.dt > 0) {
+        if (!h->desc.allow_large_dt && a.contact_time > 0 && !(h->desc.dt <= a.dt_max))
+            return demi_fail(h, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
                              "%s = %g s (t_c of %s); use dt = 0, a softer material or a smaller dt",
-                             (double)w->desc.dt, demi_dt_limit(&a), (double)a.dt_max, a.binds);
-        w->clock.dt = w->desc.dt;
-        if (!w->desc.allow_large_dt && spin*(double)w->clock.dt > 1)
-            return demi_spins_refuse(w, spin, "dem_world_step");
+                             (double)h->desc.dt, demi_dt_limit(&a), (double)a.dt_max, a.binds);
+        h->clock.dt = h->desc.dt;
+        if (!h->desc.allow_large_dt && g.spin*(double)h->clock.dt > 1)
+            return demi_spins_refuse(h, g.spin, "dem_world_step");
     } else {
         const dem_real easy = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
-        const dem_real share = w->dt_share > 0 ? (dem_real)w->dt_share : 1;
-        const dem_real dt = share*(spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy);
-        if (!((double)dt >= DEMI_DT_LEAST)) return demi_dt_refuse(w, (double)dt, a.binds);
-        /* half steps were of the old dt */
-        if (dt < w->clock.dt || dt > w->clock.dt) { demi_finish(w); w->stage.primed = 0; }
-        w->clock.dt = dt;
-        w->clock.held.from = (double)a.contact_time/50;
-        w->clock.held.limit = dt < share*easy ? spin : 5*(double)a.dt;
-        w->clock.held.by = dt < share*easy ? DEMI_HELD_SPIN
-            : (double)easy < 0.99*w->clock.held.from ? DEMI_HELD_DASHPOT : DEMI_HELD_NOT;
+        const dem_real share = h->dt_share > 0 ? (dem_real)h->dt_share : 1;
+        const dem_real dt = share*(g.spin*(double)easy > 0.1 ? (dem_real)(0.1/g.spin) : easy);
+        if (!((double)dt >= DEMI_DT_LEAST)) return demi_dt_refuse(h, (double)dt, a.binds);
+        if (dt < h->clock.dt || dt > h->clock.dt) h->stage.primed = 0;
+        h->clock.dt = dt;
+        h->clock.held.from = (double)a.contact_time/50;
+        h->clock.held.limit = dt < share*easy ? g.spin : 5*(double)a.dt;
+        h->clock.held.by = dt < share*easy ? DEMI_HELD_SPIN
+            : (double)easy < 0.99*h->clock.held.from ? DEMI_HELD_DASHPOT : DEMI_HELD_NOT;
     }
-    w->clock.assumed_speed = (double)a.speed;
-    w->stage.dt_valid = 1;
-    w->clock.press_due = w->clock.press_since = w->clock.steps;
+    h->clock.assumed_speed = (double)a.speed;
+    h->stage.dt_valid = 1;
+    h->clock.press_due = h->clock.press_since = h->clock.steps;
+    demi_dt_share(h);
     return DEM_OK;
 }
 /* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
@@ -585,6 +665,7 @@ static double demi_fastest_next(const dem_world *w) {
         const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
                              (double)w->desc.gravity.z};
         double a2 = 0, v2 = 0;
+        if (demi_is_ghost(w, i)) continue;      /* it is not known how all contacts push it */
         for (k = 0; k < 3; k++) {
             const double a = (double)w->bodies.force[4*i + k]*inv + g[k];
             const double v = (double)w->bodies.vel[4*i + k] + a*(double)w->clock.dt;
@@ -600,21 +681,24 @@ static double demi_fastest_next(const dem_world *w) {
 }
 /* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
    and walls unseen; but for contacts that are foreseen from as far off as both may go together.
-   speed: a bound, m/s; named: 1 where w has bodies to look for it. */
-static dem_result demi_speed_check(dem_world *w, double speed, int named) {
+   speed: a bound, m/s. */
+static dem_result demi_speed_check(dem_world *w, double speed) {
     const int foreseen = demi_response_is(w, DEMI_FORESEEN);
     const double seen = foreseen ? w->margin.reach/2 : 0;
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
     double most = 0;
     char who[80] = "a body";
-    int i;
+    int i, k;
     if (!(speed*dt > DEMI_MAX(radius, seen) && radius > 0)) return DEM_OK;
-    for (i = 0; i < w->bodies.count && named; i++) {
-        const double v = (double)demi_length(demi_at(w->bodies.vel + 4*i));
-        if (v <= most) continue;
-        most = v;
-        snprintf(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
-                 (unsigned)w->bodies.slot[i] + 1, v);
+    for (k = 0; k < demi_members(w); k++) {
+        const demi_bodies *bodies = &demi_member(w, k)->bodies;
+        for (i = 0; i < bodies->count; i++) {
+            const double v = (double)demi_length(demi_at(bodies->vel + 4*i));
+            if (v <= most) continue;
+            most = v;
+            snprintf(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
+                     (unsigned)bodies->slot[i] + 1, v);
+        }
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
                      "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
@@ -668,54 +752,77 @@ static void demi_press_looked(demi_timing *clock, const dem_world *w) {
     clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
                                                w->desc.law_rate ? 8 : 1000);
 }
-/* Refuses a step that was given, for this body is pressed so that `limit` is the largest. */
-static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
-    if (w->press[worst].relax*limit > 0.999)
+/* Refuses a step that was given, in the part whose body is pressed so that no larger one is stable.
+   */
+static dem_result demi_member_press_refuse(dem_world *w) {
+    const demi_press *p = w->press + w->pressed.worst;
+    const double limit = w->pressed.limit;
+    if (limit > w->pressed.least || !(limit < w->pressed.dt)) return DEM_OK;
+    if (p->relax*limit > 0.999)
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be "
                          "at most %g s: by desc.law_rate the numbers of body %u follow those of "
                          "its partners at %.3g 1/s; use dt = 0, a smaller dt, or slower rates",
                          (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
-                         (unsigned)w->bodies.slot[worst] + 1, w->press[worst].relax);
+                         (unsigned)w->bodies.slot[w->pressed.worst] + 1, p->relax);
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
                      "most %g s: body %u is pressed by %.3g contacts with overlaps up to %.3g of "
                      "its radius; use dt = 0, a smaller dt, or less overlap",
                      (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
-                     (unsigned)w->bodies.slot[worst] + 1, w->press[worst].contacts,
-                     (double)w->press[worst].deepest);
+                     (unsigned)w->bodies.slot[w->pressed.worst] + 1, p->contacts,
+                     (double)p->deepest);
+}
+/* m/s, a bound of how fast a body may be in the next step. After a change of the scene the last
+   kick may be that of a body which is gone. */
+static dem_result demi_speed_bound(dem_world *h, double *bound) {
+    const int midway = demi_response_is(h, DEMI_MIDWAY);
+    int k;
+    *bound = h->margin.last_change + h->booked.speed_max;
+    if (!midway && h->clock.steps != h->clock.press_since) return DEM_OK;
+    *bound = 0;
+    for (k = 0; k < demi_members(h); k++) {
+        const dem_world *w = demi_member(h, k);
+        const double next = demi_fastest_next(w);
+        *bound = DEMI_MAX(*bound, midway ? next
+                          : DEMI_MIN(demi_fastest(w) + h->margin.last_change, next));
+    }
+    return demi_agree(h, bound, 1);
 }
 /* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
    bodies move. A step that was chosen is made smaller; one that was given is refused, before
    anything moves. */
-static dem_result demi_dt_check(dem_world *w) {
-    const int chosen = !(w->desc.dt > 0);
-    const double share = w->dt_share > 0 ? w->dt_share : 1;
+static dem_result demi_dt_check(dem_world *h) {
+    const int chosen = !(h->desc.dt > 0);
+    const double share = h->dt_share > 0 ? h->dt_share : 1, room = DEMI_MIN(share/2, 0.95);
+    const double dt = (double)h->clock.dt*(chosen ? 2/share : 1);
+    double bound, limit;
     dem_result result;
-    double limit;
-    int worst = 0;
-    if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
-    /* after a change of the scene the last kick may be that of a body which is gone */
-    result = demi_speed_check(w, demi_response_is(w, DEMI_MIDWAY) ? demi_fastest_next(w)
-                              : w->clock.steps == w->clock.press_since
-                              ? DEMI_MIN(demi_fastest(w) + w->margin.last_change,
-                                         demi_fastest_next(w))
-                              : w->margin.last_change + w->booked.speed_max, 1);
+    if (h->desc.allow_large_dt || (!h->team && !h->bodies.count)) return DEM_OK;
+    result = demi_speed_bound(h, &bound);
+    if (result == DEM_OK) result = demi_speed_check(h, bound);
     if (result == DEM_OK)
-        result = demi_wall_speed_check(w, (double)w->effects.radius_min, (double)w->clock.dt);
-    if (result != DEM_OK || w->clock.steps < w->clock.press_due ||
-        !demi_response_is(w, DEMI_LASTING)) return result;
-    limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
-    if (limit < 0) return demi_no_memory(w, "dem_world_step");
-    demi_press_looked(&w->clock, w);
-    if (!(limit > 0)) return DEM_OK;
-    if (!chosen) return demi_press_refuse(w, limit, worst);
-    if (!(limit*DEMI_MIN(share/2, 0.95) >= DEMI_DT_LEAST))
-        return demi_dt_refuse(w, limit*DEMI_MIN(share/2, 0.95), "contacts that press a body");
-    demi_finish(w);
-    w->stage.primed = 0;
-    w->clock.dt = (dem_real)(limit*DEMI_MIN(share/2, 0.95));
-    w->clock.held.by = w->press[worst].relax*limit > 0.999 ? DEMI_HELD_RATE : DEMI_HELD_PRESSED;
-    w->clock.held.limit = limit;
-    w->clock.held.body = (int32_t)w->bodies.slot[worst] + 1;
-    w->clock.held.contacts = w->press[worst].contacts;
-    return DEM_OK;
+        result = demi_wall_speed_check(h, (double)h->effects.radius_min, (double)h->clock.dt);
+    if (result != DEM_OK || h->clock.steps < h->clock.press_due ||
+        !demi_response_is(h, DEMI_LASTING)) return result;
+    result = demi_press_limit(h, dt);
+    if (result != DEM_OK) return result;
+    demi_press_looked(&h->clock, h);
+    limit = h->pressed.least;
+    if (!(limit < dt)) return DEM_OK;
+    if (!chosen) return demi_all_agree(h, demi_member_press_refuse);
+    if (!(limit*room >= DEMI_DT_LEAST))
+        return demi_dt_refuse(h, limit*room, "contacts that press a body");
+    result = demi_all(h, demi_member_finish);
+    h->stage.primed = 0;
+    h->clock.dt = (dem_real)(limit*room);
+    h->clock.held.by = DEMI_HELD_PRESSED;
+    h->clock.held.limit = limit;
+    h->clock.held.body = 0;
+    if (!h->team) {                             /* which other processes do not know */
+        const demi_press *p = h->press + h->pressed.worst;
+        h->clock.held.by = p->relax*limit > 0.999 ? DEMI_HELD_RATE : DEMI_HELD_PRESSED;
+        h->clock.held.body = (int32_t)h->bodies.slot[h->pressed.worst] + 1;
+        h->clock.held.contacts = p->contacts;
+    }
+    demi_dt_share(h);
+    return result;
 }

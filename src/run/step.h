@@ -1,14 +1,15 @@
 /* ---------------------------------------------------------------------------------------------
    >>step
-   One step in the order of the manual, and runs of many. The parts of a step run over domains,
-   in parallel, and wait for each other where one needs what another domain has done: after the
-   move (who has come near?), after touch (had all contacts room?), after respond (forces that
-   are fetched). A step begins where the one before ended its forces; its last half kick is left
-   open until somebody looks (demi_finish), since the next step's first one is the same sum:
-   velocities are touched once a step, not twice. What only a look needs, kinetic energy among
-   it, is worked out at the look. Errors of a run are found in the step that caused them and name
-   the body; a step that ran out of memory after its move is marked (stage.moved) and goes on
-   from there.
+   One step in the order of the manual, for all members of a team together (>>team): a single world,
+   or slabs. A phase runs over the work groups of a member in parallel. A phase ends when all groups
+   have finished, since the next one needs their results: after the move (which bodies came near
+   each other), after touch (whether the lists had room), after respond (forces on bodies of other
+   groups). A step begins with the forces that the step before computed last. Its second half kick
+   is left open until the state is read (demi_finish), because the first half kick of the next step
+   adds the same force: velocities are written once a step, not twice. Quantities that only a reader
+   needs, for example the kinetic energy, are computed when they are read. An error is found in the
+   step that caused it, and the message names the body. A step that ran out of memory after its move
+   is marked (stage.moved); the next call continues it.
    --------------------------------------------------------------------------------------------- */
 
 /* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite
@@ -354,13 +355,17 @@ static dem_result demi_unstable(dem_world *w) {
                      (unsigned)w->bodies.slot[second] + 1, deepest, (double)w->clock.dt);
 }
 
-/* Bodies whose centre left through an outflow boundary are taken out. */
+/* True if the domain has an outflow boundary. */
+static int demi_outflows(const dem_world *w) {
+    const dem_boundary *b = w->desc.boundary;
+    return b[0] == DEM_BOUNDARY_OUTFLOW || b[1] == DEM_BOUNDARY_OUTFLOW ||
+        b[2] == DEM_BOUNDARY_OUTFLOW;
+}
+/* Removes the bodies whose centre has left through an outflow boundary. */
 static dem_result demi_outflow(dem_world *w) {
     double lo[3], hi[3];
-    int i, k, any = 0;
+    int i, k;
     demi_domain_limits(w, lo, hi);
-    for (k = 0; k < 3; k++) any |= w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW;
-    if (!any) return DEM_OK;
     for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < 3; k++) {
             const double x = (double)w->bodies.pos[4*i + k];
@@ -407,7 +412,6 @@ static dem_result demi_step_move(dem_world *w) {
     w->booked.speed_max = sqrt(speed2);
     w->margin.step_gone =
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt;
-    w->margin.gone += w->margin.step_gone;
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
@@ -477,92 +481,236 @@ static void demi_reals_gain(dem_world *w) {
         for (k = 0; k < w->bodies.real_count; k++)
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
 }
-/* A step from its second part on. Numbers as in the manual. */
-static dem_result demi_step_answer(dem_world *w) {
-    const uint64_t unsolved = w->booked.unsolved;
-    dem_result result;
-    int d, search;
-    /* 2 search: when something may have come near that is not in the list. Outlets look then:
-       nobody gets farther than half a skin between two lists */
-    result = demi_outflow(w);
-    search = !w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.gone > w->margin.skin ||
-             w->margin.gone + w->margin.walls_gone > w->margin.skin;
-    if (result == DEM_OK && w->outlet_count && (search || w->clock.steps%DEMI_OUTLET_REST == 0))
-        result = demi_outlets_run(w);
-    if (result != DEM_OK) return result;
-    if (search || !w->stage.list_valid) {
-        result = demi_rebuild(w, "dem_world_step");
-        if (result != DEM_OK) return result;
-        demi_kernel_choose(w);
-        if (demi_outgrown(w)) w->stage.dt_valid = 0;
-    } else if (w->stage.near_stale || demi_near_due(w)) {
-        if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
-        w->stage.near_chosen = 1;
-        if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
-        w->stage.near_chosen = 0;
-    }
 
-    /* 3 touch, 4 respond, 5 gather */
-    if (!demi_touch(w) || !demi_forces(w)) return demi_no_memory(w, "dem_world_step");
+/* The force on a body by the contacts of one member, its torque if bodies rotate, and the rates of
+   user-defined numbers: of ghosts they are added to those of the owner. */
+static size_t demi_pushes_size(const dem_world *w) {
+    return ((demi_turns(w) ? 6 : 3) + (size_t)w->bodies.real_count)*sizeof(dem_real);
+}
+static void demi_pushes_put(const dem_world *w, int i, char *to) {
+    const size_t three = 3*sizeof(dem_real), own = (size_t)w->bodies.real_count;
+    memcpy(to, w->bodies.force + 4*i, three);
+    if (demi_turns(w)) memcpy(to += three, w->bodies.torque + 4*i, three);
+    if (own) memcpy(to + three, w->bodies.rates + own*(size_t)i, own*sizeof(dem_real));
+}
+static void demi_pushes_take(dem_world *w, int i, const char *from) {
+    const size_t own = (size_t)w->bodies.real_count, turns = demi_turns(w) ? 6 : 3;
+    dem_real x;
+    size_t k;
+    for (k = 0; k < turns + own; k++) {
+        memcpy(&x, from + k*sizeof x, sizeof x);
+        *(k < 3 ? w->bodies.force + 4*i + k : k < turns ? w->bodies.torque + 4*i + k - 3
+          : w->bodies.rates + own*(size_t)i + k - turns) += x;
+    }
+}
+static const demi_record demi_pushes = {demi_pushes_size, demi_pushes_put, demi_pushes_take};
+
+/* --- the phases of a step, each for one member --- */
+
+static dem_result demi_member_move(dem_world *w) {
+    dem_result result;
+    if (w->stage.moved) return DEM_OK;
+    if (w->team) w->team->rest(w);
+    result = demi_step_move(w);
+    w->stage.moved = result == DEM_OK;
+    return result;
+}
+/* Builds the pruned neighbour list, if it is due. */
+static dem_result demi_member_near(dem_world *w) {
+    if (!w->stage.near_stale && !demi_near_due(w)) return DEM_OK;
+    if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
+    w->stage.near_chosen = 1;
+    if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
+    w->stage.near_chosen = 0;
+    return DEM_OK;
+}
+static dem_result demi_member_touch(dem_world *w) {
+    return demi_touch(w) ? DEM_OK : demi_no_memory(w, "dem_world_step");
+}
+static dem_result demi_member_forces(dem_world *w) {
+    return demi_forces(w) ? DEM_OK : demi_no_memory(w, "dem_world_step");
+}
+/* Ends a step once all forces are known, except for the second half kick (see above). */
+static dem_result demi_member_end(dem_world *w) {
+    int d;
     demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
-
-    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
-       */
-    if (!(demi_overlap(w) < 1)) return demi_unstable(w);
-    if (!w->desc.unsolved_stops || w->booked.unsolved == unsolved) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: step %llu: %d sweeps left %.3g m/s, "
-                     "more than the tolerance; %d of %d contacts are at their friction limit, %s; "
-                     "allow more sweeps or a larger tolerance, take a smaller dt, or go on with "
-                     "desc.unsolved_stops = 0", (unsigned long long)w->clock.steps,
-                     w->booked.sweeps, w->booked.residual, w->solver.limited, w->solver.count,
-                     2*w->solver.limited > w->solver.count ? "where sweeps converge slowly"
-                     : "the others carry more load than so many sweeps pass on");
+    return demi_overlap(w) < 1 ? DEM_OK : demi_unstable(w);
 }
-/* The same where contacts are found: with the midpoint rule half a step ahead. */
-static dem_result demi_answer(dem_world *w, dem_result (*answer)(dem_world *w)) {
-    dem_result result;
-    if (!demi_response_is(w, DEMI_MIDWAY)) return answer(w);
-    demi_ahead(w);
-    result = answer(w);
-    demi_ahead_back(w);
-    return result;
+static dem_result demi_member_prime(dem_world *w) {
+    demi_finish(w);
+    demi_prime(w);
+    return DEM_OK;
 }
-/* One step. One that ran out of memory after its move goes on from there. */
-static dem_result demi_step_once(dem_world *w) {
-    if (!w->stage.moved) {
-        const dem_result result = demi_step_move(w);
-        if (result != DEM_OK) return result;
-        demi_near_pass(w, w->margin.last_change);
-        w->stage.moved = 1;
-    }
-    return demi_answer(w, demi_step_answer);
-}
-
-static dem_result demi_refresh_answer(dem_world *w) {
-    dem_result result;
-    if (w->stage.pairs_changed) {               /* half steps were of the old forces, and effects */
-        w->stage.primed = 0;
-        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
-    }
-    if (!w->stage.list_valid) {
-        result = demi_rebuild(w, "dem_world_step");
-        if (result != DEM_OK) return result;
-    }
-    w->stage.pairs_changed = 0;
+static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
+/* Before and after forces that belong to no step: contact histories stay as they are. */
+static dem_result demi_member_look(dem_world *w) {
     demi_kernel_choose(w);
     w->stage.forces_valid = 0;
-    if (!demi_touch(w) || !demi_forces(w)) return demi_no_memory(w, "dem_world_step");
+    return DEM_OK;
+}
+static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
+
+/* --- the step of a scene --- */
+
+/* Copies the poses of moving walls from the first member, the only one of a process whose walls
+   move, so that a user-defined motion is called once per step. */
+static void demi_walls_follow(dem_world *w, const dem_world *first) {
+    int i;
+    for (i = 0; i < w->wall_count && w != first; i++) {
+        if (first->walls[i].motion.kind == DEM_MOTION_FIXED) continue;
+        w->walls[i].pose = first->walls[i].pose;
+        w->walls[i].mid = first->walls[i].mid;
+    }
+}
+
+/* After a move: updates the time and the margins of the lists, which are maxima over all members,
+   and decides whether a pruned list is due. */
+static dem_result demi_moved(dem_world *h) {
+    enum { SPEED, WALLS, CHANGE, CREEP, AGE, GONE, COUNT };
+    const dem_world *first = demi_member(h, 0);
+    const double dt = (double)h->clock.dt;
+    double most[COUNT] = {0, 0, 0, -1e300, -1e300, 0};
+    dem_result result;
+    int k;
+    for (k = 0; k < demi_members(h); k++) {
+        const dem_world *w = demi_member(h, k);
+        const demi_margin *m = &w->margin;
+        most[SPEED] = DEMI_MAX(most[SPEED], w->booked.speed_max);
+        most[WALLS] = DEMI_MAX(most[WALLS], m->walls_gone);
+        most[CHANGE] = DEMI_MAX(most[CHANGE], m->last_change);
+        most[CREEP] = DEMI_MAX(most[CREEP], m->creep + 2*m->change*dt - m->slack);
+        most[AGE] = DEMI_MAX(most[AGE], m->age + dt - m->span*(1 - 1e-9));
+        most[GONE] = DEMI_MAX(most[GONE], m->step_gone);
+    }
+    result = demi_agree(h, most, COUNT);
+    h->stage.moved = 1;
+    h->clock.time = first->clock.time;
+    h->clock.since = first->clock.since;
+    h->clock.steps = first->clock.steps;
+    h->booked.speed_max = most[SPEED];
+    h->margin.last_change = most[CHANGE];
+    h->margin.gone += most[GONE];
+    h->margin.walls_gone = most[WALLS];
+    h->near_due = !h->team || most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin ||
+        most[AGE] > -1e-6*dt;
+    for (k = 0; k < demi_members(h); k++) {
+        dem_world *w = demi_member(h, k);
+        w->margin.gone = h->margin.gone;
+        w->margin.walls_gone = h->margin.walls_gone;
+        demi_walls_follow(w, first);
+        demi_near_pass(w, most[CHANGE]);
+    }
+    return result;
+}
+/* Runs a task that may remove bodies. *stale is set if some member then needs a new list. */
+static dem_result demi_all_lose(dem_world *h, dem_result (*task)(dem_world *member), int *stale) {
+    double most = 0;
+    dem_result result = demi_all(h, task);
+    int k;
+    for (k = 0; k < demi_members(h); k++)
+        most = DEMI_MAX(most, !demi_member(h, k)->stage.list_valid);
+    if (result == DEM_OK) result = demi_agree(h, &most, 1);
+    *stale |= most > 0;
+    return result;
+}
+/* Builds the neighbour lists of all members. */
+static dem_result demi_all_rebuild(dem_world *h) {
+    dem_result result;
+    if (h->team) return h->team->rebuild(h);
+    result = demi_rebuild(h, "dem_world_step");
+    if (result == DEM_OK) demi_kernel_choose(h);
+    return result;
+}
+/* Computes all forces: 3 touch, 4 respond, 5 gather of the manual. near: a pruned list may be due.
+   Lists of contacts of spheres always have room (demi_kept_room). With other shapes all members
+   agree that they had room before any computes forces, because a contact history may advance only
+   once per step. */
+static dem_result demi_all_forces(dem_world *h, int near) {
+    dem_result result = h->team ? h->team->lend(h) : DEM_OK;
+    if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
+    if (result == DEM_OK) result = demi_all(h, demi_member_touch);
+    if (result == DEM_OK && demi_member(h, 0)->bodies.orienting) result = demi_agree(h, 0, 0);
+    if (result == DEM_OK) result = demi_all(h, demi_member_forces);
+    if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
+    return result;
+}
+/* A step after its move. Numbers as in the manual. */
+static dem_result demi_step_answer(dem_world *h) {
+    const uint64_t unsolved = h->booked.unsolved;
+    const demi_margin *m = &h->margin;
+    dem_result result = DEM_OK;
+    int search = !h->stage.list_valid;
+    /* 2 search: when something may have come near that is not in the list. Outlets look then:
+       nobody gets farther than half a skin between two lists */
+    if (demi_outflows(h)) result = demi_all_lose(h, demi_outflow, &search);
+    search |= m->skin <= 0 || 2*m->gone > m->skin || m->gone + m->walls_gone > m->skin;
+    if (result == DEM_OK && demi_member(h, 0)->outlet_count &&
+        (search || h->clock.steps%DEMI_OUTLET_REST == 0))
+        result = demi_all_lose(h, demi_outlets_run, &search);
+    if (result == DEM_OK && search) {
+        result = demi_all_rebuild(h);
+        if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
+    }
+    if (result == DEM_OK) result = demi_all_forces(h, !search && h->near_due);
+    if (result == DEM_OK) result = demi_all(h, demi_member_end);
+    if (result != DEM_OK) return result;
+    h->stage.moved = 0;
+    if (!h->desc.unsolved_stops || h->booked.unsolved == unsolved) return DEM_OK;
+    return demi_fail(h, DEM_ERROR_STOPPED, "dem_world_step: step %llu: %d sweeps left %.3g m/s, "
+                     "more than the tolerance; %d of %d contacts are at their friction limit, %s; "
+                     "allow more sweeps or a larger tolerance, take a smaller dt, or go on with "
+                     "desc.unsolved_stops = 0", (unsigned long long)h->clock.steps,
+                     h->booked.sweeps, h->booked.residual, h->solver.limited, h->solver.count,
+                     2*h->solver.limited > h->solver.count ? "where sweeps converge slowly"
+                     : "the others carry more load than so many sweeps pass on");
+}
+/* Calls a function at the positions at which contacts are found: with the midpoint rule those half
+   a step ahead. */
+static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) {
+    dem_result result;
+    if (!demi_response_is(h, DEMI_MIDWAY)) return answer(h);
+    demi_ahead(h);
+    result = answer(h);
+    demi_ahead_back(h);
+    return result;
+}
+/* One step. One that ran out of memory after its move goes on from there. */
+static dem_result demi_step_once(dem_world *h) {
+    if (!h->stage.moved) {
+        dem_result result = demi_all(h, demi_member_move);
+        if (result == DEM_OK) result = demi_moved(h);
+        if (result != DEM_OK) return result;
+    }
+    return demi_answer(h, demi_step_answer);
+}
+
+static dem_result demi_refresh_answer(dem_world *h) {
+    dem_result result = DEM_OK;
+    int stale = 0;
+    if (h->stage.pairs_changed) {               /* half steps were of the old forces, and effects */
+        h->stage.primed = 0;
+        if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");
+    }
+    stale = !h->stage.list_valid;
+    if (stale) result = demi_all_rebuild(h);
+    h->stage.pairs_changed = 0;
+    if (result == DEM_OK) result = demi_all(h, demi_member_look);
+    if (result == DEM_OK) result = demi_all_forces(h, 0);
+    if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
+    h->stage.forces_valid = result == DEM_OK;
+    return result;
+}
 /* Something changed since the last step: forces at t, by a new list if need be; memory stays. */
-static dem_result demi_refresh(dem_world *w) {
-    demi_finish(w);
-    return demi_answer(w, demi_refresh_answer);
+static dem_result demi_refresh(dem_world *h) {
+    const dem_result result = demi_all(h, demi_member_finish);
+    return result == DEM_OK ? demi_answer(h, demi_refresh_answer) : result;
 }
 
 DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
@@ -598,28 +746,48 @@ static dem_result demi_look(dem_world *w) {
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
 /* Before a step: its dt, new grains, forces of a scene that has changed. */
-static dem_result demi_step_ready(dem_world *w) {
-    dem_result result = demi_dt_settle(w);
-    if (result == DEM_OK && w->feed_count) {
-        result = demi_world_feed(w);
-        if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
+static dem_result demi_step_ready(dem_world *h) {
+    dem_result result = demi_dt_settle(h);
+    if (result == DEM_OK && h->feed_count) {
+        result = h->team ? h->team->feed(h) : demi_world_feed(h);
+        if (result == DEM_OK) result = demi_dt_settle(h);   /* there may be new grains */
     }
-    if (result == DEM_OK &&
-        (!w->stage.forces_valid || !w->stage.list_valid || w->stage.pairs_changed))
-        result = demi_refresh(w);
-    if (result == DEM_OK) result = demi_dt_check(w);
-    if (result == DEM_OK && !demi_bounded(w->clock.time + (double)w->clock.dt))
-        result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt is %g s, "
+    if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed ||
+                             (!h->team && !h->stage.list_valid)))
+        result = demi_refresh(h);
+    else if (result == DEM_OK && !h->stage.list_valid)
+        result = demi_all_rebuild(h);           /* slabs: inserted grains touch nothing */
+    if (result == DEM_OK) result = demi_dt_check(h);
+    if (result == DEM_OK && !demi_bounded(h->clock.time + (double)h->clock.dt))
+        result = demi_fail(h, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt is %g s, "
                            "their sum must stay below %g s; was dt meant in another unit?",
-                           w->clock.time, (double)w->clock.dt, DEMI_FARTHEST);
-    if (result == DEM_OK && !w->stage.primed) { demi_finish(w); demi_prime(w); }
+                           h->clock.time, (double)h->clock.dt, DEMI_FARTHEST);
+    if (result != DEM_OK || h->stage.primed) return result;
+    h->stage.primed = 1;
+    return demi_all(h, demi_member_prime);
+}
+/* Runs steps of all members, with films and outputs in between. */
+static dem_result demi_steps(dem_world *h, const char *call, int steps) {
+    dem_result result = steps ? demi_look(h) : DEM_OK;
+    int i, whole = 1;
+    for (i = 0; i < steps && result == DEM_OK; i++) {
+        const demi_calling was = demi_calls(h, call, 1);
+        if (!h->stage.moved) result = demi_step_ready(h);
+        if (result == DEM_OK) {
+            result = demi_step_once(h);
+            whole = result == DEM_OK;
+            if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
+        }
+        h->look.calling = was;
+        if (result == DEM_OK) result = demi_look(h);
+    }
+    if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* on the last forces */
+    /* half a step: its velocities stay as predicted */
+    if (whole || !h->stage.moved) demi_all(h, demi_member_finish);
     return result;
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
-    dem_result result = DEM_OK;
-    demi_calling was;
-    int i, whole = 1;
     if (steps < 0)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
     if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
@@ -627,211 +795,5 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: called from the function of an "
                          "output (dem_output_add), which runs between two steps and must not step "
                          "the world; step it when the run has ended");
-    if (steps) result = demi_look(w);
-    for (i = 0; i < steps && result == DEM_OK; i++) {
-        was = demi_calls(w, "dem_world_step", 1);
-        if (!w->stage.moved) result = demi_step_ready(w);
-        if (result == DEM_OK) {
-            result = demi_step_once(w);
-            whole = result == DEM_OK;
-            if (whole) demi_fields_sample(w);
-        }
-        w->look.calling = was;
-        if (result == DEM_OK) result = demi_look(w);
-    }
-    /* half a step: its velocities stay as predicted */
-    if (!whole && w->stage.moved) return result;
-    demi_finish(w);
-    return result;
-}
-
-/* Asks the user's progress function, if any. `since`: s of wall time when the call began. */
-static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
-                                void *user, double done, double since) {
-    const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
-    const demi_calling was = demi_calls(w, call, 0);
-    const int stop = progress && progress(w, done, done < 1 ? left : 0, user) && done < 1;
-    w->look.calling = was;
-    return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
-                            call, w->clock.time) : DEM_OK;
-}
-DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
-                                 void *user) {
-    if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
-    const double start = w->clock.time, begun = demi_clock();
-    double last = begun, end;
-    int chunk = 1;
-    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
-                         ">= 0", seconds);
-    if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (progress) w->look.tenths_told = 0;      /* dem_world_settle tells for several runs */
-    end = start + seconds;
-    if (w->clock.run_steps == w->clock.steps &&
-        fabs(w->clock.run_end - start) <= (double)w->clock.dt)
-        end = w->clock.run_end + seconds;
-    for (;;) {
-        const double left = end - w->clock.time;
-        double now;
-        int steps = chunk;
-        dem_result result = demi_dt_settle(w);
-        if (result != DEM_OK) return result;
-        if (left < (double)w->clock.dt/2) break;
-        if (left/(double)w->clock.dt < chunk) steps = (int)(left/(double)w->clock.dt + 0.5);
-        if (steps < 1) steps = 1;
-        result = dem_world_step(w, steps);
-        if (result != DEM_OK) return result;
-        now = demi_clock();
-        if (now - last > 0.1) {
-            last = now;
-            result = demi_progress(w, "dem_world_run", progress, user,
-                                   (w->clock.time - start)/seconds, begun);
-            if (result != DEM_OK) return result;
-        }
-        /* short steps: look at the clock less often */
-        if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
-    }
-    w->clock.run_end = end;
-    w->clock.run_steps = w->clock.steps;
-    return demi_progress(w, "dem_world_run", progress, user, 1, begun);
-}
-
-DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
-                                    void *user) {
-    if (demi_null(w, "dem_world_run_to", w, "world")) return DEM_ERROR_ARGUMENT;
-    if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
-                         "and not before now (%g s); to go back in time, read a checkpoint", time,
-                         w->clock.time);
-    w->clock.run_steps = w->clock.steps + 1;        /* it does not follow the run before */
-    return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
-}
-
-/* m/s: largest speed of the bodies that can move, and the root of the mean of its square. */
-static double demi_speeds(const dem_world *w, double *mean) {
-    double sum = 0, most = 0, mass = 0;
-    int i;
-    for (i = 0; i < w->bodies.count; i++) {
-        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
-        const double vv = (double)demi_dot(v, v), m = (double)w->bodies.mass[i];
-        if (!(w->bodies.inv_mass[i] > 0)) continue;
-        sum += m*vv;
-        mass += m;
-        most = DEMI_MAX(most, vv);
-    }
-    *mean = mass > 0 ? sqrt(sum/mass) : 0;
-    return sqrt(most);
-}
-/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius.
-   *look: s, the time to fall by half a radius, or to go that far: a body that turns round is not at
-   rest. */
-static double demi_calm(const dem_world *w, double speed, double *look) {
-    const double g = (double)demi_length(w->desc.gravity);
-    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
-    int i;
-    if (w->bodies.count) radius = 0;
-    for (i = 0; i < w->bodies.count; i++)
-        radius += (double)w->bodies.pos[4*i + 3]/w->bodies.count;
-    if (!(speed > 0) && g > 0) speed = 0.01*sqrt(2*g*radius);
-    *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
-    return speed;
-}
-/* The first feed that still brings grains; -1: none does. */
-static int demi_feed_coming(const dem_world *w) {
-    int i = 0;
-    while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
-    return i < w->feed_count ? i : -1;
-}
-/* Time is up: why the bodies are not at rest. */
-static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
-    const int i = demi_feed_coming(w);
-    double mean, most = demi_speeds(w, &mean);
-    if (i >= 0) {
-        const dem_feed_state *f = &demi_feed_at(w, i)->state;
-        return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: feed %d "
-                         "is not done (%llu grains inserted, %llu waiting for room), and grains "
-                         "can rest only when it is; allow more time, a higher rate or a larger box",
-                         seconds, i + 1, (unsigned long long)f->total,
-                         (unsigned long long)f->waiting);
-    }
-    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean speed "
-                     "%.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; allow more time, "
-                     "or find what drives the grains", seconds, mean, most, below, 10*below);
-}
-DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
-                                    dem_progress_fn progress, void *user) {
-    if (demi_null(w, "dem_world_settle", w, "world")) return DEM_ERROR_ARGUMENT;
-    const double begun = demi_clock(), start = w->clock.time;
-    double look, below = demi_calm(w, (double)speed, &look), last = begun;
-    int i, calm = 0;
-    if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
-        (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed is %g "
-                         "m/s; seconds must be > 0, speed >= 0, and > 0 without gravity, from "
-                         "which the default follows; set the speed that counts as rest", seconds,
-                         (double)speed);
-    for (i = 0; i < w->feed_count; i++) {
-        const demi_feed *f = demi_feed_at(w, i);
-        if (!f->desc.limited && !(f->desc.end > 0))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: feed %d has limited 0 and "
-                             "end 0 s, one of them must be > 0, or the feed never ends; set one "
-                             "of them, or use dem_world_run", i + 1);
-    }
-    w->look.tenths_told = 0;
-    while (w->bodies.count || demi_feed_coming(w) >= 0) {
-        const double left = start + seconds - w->clock.time;
-        double mean, most = demi_speeds(w, &mean);
-        dem_result result;
-        below = demi_calm(w, (double)speed, &look);
-        calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
-        if (calm > 2) break;
-        if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
-        look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
-        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
-        if (result != DEM_OK) return result;
-        if (demi_clock() - last > 0.1) {
-            last = demi_clock();
-            result = demi_progress(w, "dem_world_settle", progress, user,
-                                   (w->clock.time - start)/seconds, begun);
-            if (result != DEM_OK) return result;
-        }
-    }
-    return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
-}
-
-/* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
-#if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
-    !defined(__CYGWIN__)
-int demi_isatty(int file) __asm__("isatty");
-int demi_fileno(FILE *file) __asm__("fileno");
-#elif defined(__APPLE__) && defined(__GNUC__)
-int demi_isatty(int file) __asm__("_isatty");
-int demi_fileno(FILE *file) __asm__("_fileno");
-#else
-static int demi_isatty(int file) { (void)file; return 1; }
-static int demi_fileno(FILE *file) { (void)file; return 0; }
-#endif
-DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
-    if (demi_null_look(w, "dem_progress_print", user, "user")) return 0;
-    FILE *out = (FILE *)user;
-    const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
-    if (line && tenths <= w->look.tenths_told) return 0;
-    ((dem_world *)w)->look.tenths_told = tenths;
-    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
-            100*done, w->clock.time, w->bodies.count, seconds_left);
-    if (w->booked.unsolved)
-        fprintf(out, "%llu steps above the tolerance   ",
-                (unsigned long long)w->booked.unsolved);
-    if (line || done >= 1) fputc('\n', out);
-    fflush(out);
-    return 0;
-}
-
-DEM_API double dem_world_time_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_time_get", w, "world")) return 0;
-    return w->clock.time;
-}
-DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_steps_get", w, "world")) return 0;
-    return w->clock.steps;
+    return demi_steps(w, "dem_world_step", steps);
 }

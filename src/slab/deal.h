@@ -229,7 +229,7 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
 /* The head's share of a world. 0 when memory ran out. */
 static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
-    const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
+    const size_t n = (size_t)s->count;
     h->asked = w->asked;
     demi_names_own(h, &w->asked);
     h->stage.synced = 1;
@@ -243,17 +243,22 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
-    h->bodies.pos = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
-    h->bodies.vel = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
-    h->bodies.inv_mass = (dem_real *)demi_hold(h, DEMI_RUN, most, sizeof(dem_real));
-    h->bodies.material = (int32_t *)demi_hold(h, DEMI_RUN, most, sizeof(int32_t));
     s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
     s->values = (double *)demi_hold(h, DEMI_RUN, s->value_room, sizeof(double));
     s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
     s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
-    if (!h->pairs || !h->bodies.pos || !h->bodies.vel || !h->bodies.inv_mass ||
-        !h->bodies.material || !s->values ||
-        !s->borders || !s->slabs) return 0;
+    s->team.members = (dem_world **)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(dem_world *));
+    if (!h->pairs || !s->values || !s->borders || !s->slabs || !s->team.members) return 0;
+    h->team = &s->team;
+    s->team.head = h;
+    s->team.all = demi_slabs_all;
+    s->team.agree = demi_slabs_agree;
+    s->team.rest = demi_slab_rest;
+    s->team.rebuild = demi_slabs_rebuild;
+    s->team.lend = demi_slabs_lend;
+    s->team.give = demi_slabs_give;
+    s->team.grades = demi_slabs_grades;
+    s->team.feed = demi_slabs_feed;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return demi_slabs_feeds_copy(h, w);
 }
@@ -318,7 +323,10 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
         b->world = demi_slab_world(s, w, b->index, k ? s->slabs[0].world : 0,
                                    &s->head.desc.allocator);
         ok = demi_slab_ready(b->world, w) && demi_slab_fill(s, b, w, marks);
+        s->team.members[k] = b->world;
+        if (b->world) { b->world->team = &s->team; b->world->member = s->team.count++; }
     }
+    if (ok) s->head.walls = s->slabs[0].world->walls;
     demi_free(w, marks);
     if (demi_slabs_same(s, w, ok) == DEM_OK) return s;
     dem_slabs_destroy(s);
@@ -378,8 +386,6 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
     double processes = 1;
     dem_result result = demi_slabs_reduce(s, &processes, 1, 1);
-    /* of a step, to be put back */
-    const size_t sent = top->out[1].size, below = low->in[0].size, above = top->in[1].size;
     int round, k;
     s->mine.size = s->all.size = 0;
     for (k = 0; k < s->local; k++)
@@ -389,7 +395,7 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     if (!demi_message_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
         !demi_message_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
         top->result = demi_no_memory(top->world, "dem_slabs_collect");
-    if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);
+    if (result == DEM_OK) result = demi_slabs_agree(&s->head, 0, 0);
     for (round = 1; round < (int)processes && result == DEM_OK; round++) {
         result = demi_slabs_exchange(s, DEMI_UP, 0);
         if (result != DEM_OK) break;
@@ -397,11 +403,8 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
         if (!demi_message_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
             !demi_message_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
             top->result = demi_no_memory(top->world, "dem_slabs_collect");
-        result = demi_slabs_agree(s, 0, 0);
+        result = demi_slabs_agree(&s->head, 0, 0);
     }
-    top->out[1].size = sent;
-    low->in[0].size = below;
-    top->in[1].size = above;
     return result;
 }
 /* The report of one slab; null when it is missing. */

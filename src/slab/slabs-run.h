@@ -17,13 +17,13 @@ static int demi_slab_widen(demi_slab *b, int slot) {
 static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
     dem_slabs *s = (dem_slabs *)who;
     int k;
-    if (!s->head.stage.primed) demi_slabs_phase(s, demi_slab_finish);
+    if (!s->head.stage.primed) demi_slabs_all(&s->head, demi_member_finish);
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
         if (!demi_crowd_begin(b->world, &b->crowd, g, radius, demi_periods_of(&s->head)))
             b->result = demi_no_memory(b->world, "dem_slabs_step");
     }
-    return demi_slabs_agree(s, 0, 0);
+    return demi_slabs_agree(&s->head, 0, 0);
 }
 /* Room for a grain at x of radius r, and for its slot; `owner`: the slab that takes it, if it is in
    this process. */
@@ -38,7 +38,7 @@ static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 
         (!demi_crowd_put(owner->world, &owner->crowd, x, r, owner->world->bodies.count) ||
          !demi_list_drop(owner->world)))
         owner->result = demi_no_memory(owner->world, "dem_slabs_step");
-    return demi_slabs_agree(s, 0, 0);
+    return demi_slabs_agree(&s->head, 0, 0);
 }
 /* All places that may be tried are asked about at once: is anybody in the way? Then the first that
    is free counts, as in a world that tries one after the other. */
@@ -71,6 +71,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
             if ((s->slabs[k].index == 0 || at[s->axis] >= s->borders[s->slabs[k].index]) &&
                 (s->slabs[k].index == s->count - 1 ||
                  at[s->axis] < s->borders[s->slabs[k].index + 1])) owner = &s->slabs[k];
+        h->stage.list_valid = 0;
         result = demi_slabs_feed_room(s, owner, x[n], r);
     }
     if (result != DEM_OK) { f->random = random; return -(int)result; }
@@ -92,21 +93,17 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     s->known[s->slots++] = 1;
     h->bodies.balance.inserted++;
     h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
-    h->stage.list_valid = 0;
     if (h->desc.force || h->desc.body_force) demi_scene_changed(h);
     demi_feed_count(f);
     return 1;
 }
-/* All that is due; then the time step may be another. */
-static dem_result demi_slabs_feed(dem_slabs *s) {
+/* All that is due. */
+static dem_result demi_slabs_feed(dem_world *h) {
     demi_feeder feeder;
-    dem_result result;
-    if (!s->head.feed_count) return DEM_OK;
     feeder.look = demi_slabs_look;
     feeder.put = demi_slabs_put;
-    feeder.who = s;
-    result = demi_feeds_run(&s->head, &feeder);
-    return result == DEM_OK ? demi_slabs_settle(s) : result;
+    feeder.who = h;
+    return demi_feeds_run(h, &feeder);
 }
 
 /* Not after the transport has failed. */
@@ -118,34 +115,10 @@ static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
 }
 DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
     if (!s || demi_null(&s->head, "dem_slabs_step", s, "slabs")) return DEM_ERROR_ARGUMENT;
-    dem_result result = demi_slabs_usable(s, "dem_slabs_step");
-    dem_world *h = &s->head;
-    demi_calling was;
-    int i, f, whole = 1;
+    const dem_result result = demi_slabs_usable(s, "dem_slabs_step");
     if (result != DEM_OK) return result;
     if (steps < 0)
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
+        return demi_fail(&s->head, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
                          steps);
-    was = demi_calls(h, "dem_slabs_step", 1);
-    for (i = 0; i < steps && result == DEM_OK; i++) {
-        const dem_world *w = s->slabs[0].world;
-        int sampling = 0;
-        if (!h->stage.moved) {
-            result = demi_slabs_settle(s);
-            if (result == DEM_OK) result = demi_slabs_feed(s);
-            if (result == DEM_OK && !h->stage.forces_valid) result = demi_slabs_refresh(s);
-            else if (result == DEM_OK && !h->stage.list_valid) result = demi_slabs_rebuild(s);
-            if (result == DEM_OK) result = demi_slabs_dt_check(s);
-            if (result != DEM_OK) break;
-            if (!h->stage.primed) { demi_slabs_phase(s, demi_slab_prime); h->stage.primed = 1; }
-        }
-        result = demi_slabs_step_once(s);
-        whole = result == DEM_OK;
-        for (f = 0; f < w->field_count; f++) sampling |= demi_field_due(w, &w->fields[f]);
-        if (sampling && whole) demi_slabs_phase(s, demi_slab_sample);
-    }
-    if (whole && result == DEM_OK) result = demi_slabs_agree(s, 0, 0);  /* of the last forces */
-    if (whole && !h->stage.moved) demi_slabs_phase(s, demi_slab_finish);
-    h->look.calling = was;
-    return result;
+    return demi_steps(&s->head, "dem_slabs_step", steps);
 }

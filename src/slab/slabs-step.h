@@ -1,6 +1,7 @@
 /* ---------------------------------------------------------------------------------------------
    >>slabs-step
-   One step of all slabs: phases, what goes to neighbours, what is agreed on, new lists, borders.
+   What slabs exchange and agree on in a step: the team of >>team. Borders, migration and ghosts of
+   a new list; states of ghosts up, forces on ghosts down; maxima and sums over processes.
    --------------------------------------------------------------------------------------------- */
 
 /* One slab's share of a phase, timed. */
@@ -43,7 +44,8 @@ static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int
 
 /* Looks at the results of the last phases. When one is bad, all processes return it; the sentence
    is that of the lowest slab concerned. flags (count): replaced by their maxima over processes. */
-static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
+static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
     double v[8] = {0, 0, 0, 0, 0, 0, 0, 0};
     dem_result result;
     int k, index;
@@ -65,6 +67,16 @@ static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
                          s->slabs[index - s->first].world->error);
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
+}
+/* Runs a task on all slabs but those of which something bad is to be agreed on. */
+static void demi_slab_run(dem_slabs *s, demi_slab *b) {
+    if (b->result == DEM_OK) b->result = s->task(b->world);
+}
+static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *member)) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
+    s->task = task;
+    demi_slabs_phase(s, demi_slab_run);
+    return DEM_OK;
 }
 
 /* Outboxes that lead to other processes, up, down or both ways. Sizes are told first unless both
@@ -92,7 +104,7 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
         if (!DEMI_GROW(low->world, low->in[0].bytes, (size_t)get[0]) ||
             !DEMI_GROW(top->world, top->in[1].bytes, (size_t)get[1]))
             low->result = demi_no_memory(low->world, "dem_slabs_step");
-        result = demi_slabs_agree(s, 0, 0);
+        result = demi_slabs_agree(&s->head, 0, 0);
         if (result != DEM_OK) return result;
         low->in[0].size = (size_t)get[0];
         top->in[1].size = (size_t)get[1];
@@ -338,28 +350,133 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
     b->lent_count = n;
 }
-/* Reals sent up and down per ghost and step: the user's numbers, or their rates, come last. */
-static size_t demi_slab_places(const dem_world *w) {
+/* --- what owners tell of the bodies that are ghosts elsewhere: as much of their state as the laws
+   in
+       force look at --- */
+static size_t demi_lent_size(const dem_world *w) {
     const size_t state = w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
-    return state + (w->bodies.booked ? 3 : 0);
+    return (state + (w->bodies.booked ? 3 : 0) + (size_t)w->bodies.real_count)*sizeof(dem_real);
 }
-static size_t demi_slab_pushes(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
-static size_t demi_slab_up(const dem_world *w) {
-    return demi_slab_places(w) + (size_t)w->bodies.real_count;
+/* The arrays that are told of, one after the other, and how many reals of each body. */
+static int demi_lent_arrays(const dem_world *w, dem_real *array[8], int stride[8], int count[8]) {
+    const demi_bodies *b = &w->bodies;
+    int n = 0;
+#define DEMI_TOLD(of, step, reals) (array[n] = (of), stride[n] = (step), count[n++] = (reals))
+    DEMI_TOLD(b->pos, 4, 3);
+    DEMI_TOLD(b->vel, 4, 3);
+    if (demi_spins(w) || b->orienting) {
+        DEMI_TOLD(b->spin, 4, 3);
+        DEMI_TOLD(b->half_vel, 4, 3);
+        DEMI_TOLD(b->half_spin, 4, 3);
+    }
+    if (b->orienting) DEMI_TOLD(b->orient, 4, 4);
+    if (b->booked) DEMI_TOLD(b->late, 4, 3);
+    if (b->real_count) DEMI_TOLD(b->reals, b->real_count, b->real_count);
+#undef DEMI_TOLD
+    return n;
 }
-static size_t demi_slab_down(const dem_world *w) {
-    return demi_slab_pushes(w) + (size_t)w->bodies.real_count;
+static void demi_lent_put(const dem_world *w, int i, char *to) {
+    dem_real *array[8];
+    int stride[8], count[8], k;
+    const int n = demi_lent_arrays(w, array, stride, count);
+    for (k = 0; k < n; k++) {
+        memcpy(to, array[k] + stride[k]*i, (size_t)count[k]*sizeof(dem_real));
+        to += (size_t)count[k]*sizeof(dem_real);
+    }
+}
+static void demi_lent_take(dem_world *w, int i, const char *from) {
+    dem_real *array[8];
+    int stride[8], count[8], k;
+    const int n = demi_lent_arrays(w, array, stride, count);
+    for (k = 0; k < n; k++)
+        demi_unpack(&from, array[k] + stride[k]*i, (size_t)count[k]*sizeof(dem_real));
+    if (w->bodies.orienting && w->bodies.centres_valid && demi_shape_of(w, i) &&
+        demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
+}
+static const demi_record demi_lent = {demi_lent_size, demi_lent_put, demi_lent_take};
+
+/* Up: owners put the state of what is lent, ghosts take it and have their mass again. */
+static void demi_slab_put_up(dem_slabs *s, demi_slab *b) {
+    const size_t size = demi_lent.size(b->world);
+    const dem_real shift = demi_slab_shift(s, b, 1);
+    char *to = b->out[1].bytes;
+    dem_real x;
+    int k;
+    b->out[1].size = (size_t)b->lent_count*size;
+    b->in[0].size = (size_t)b->ghost_count*size;
+    for (k = 0; k < b->lent_count; k++, to += size) {
+        demi_lent.put(b->world, b->lent[k], to);
+        memcpy(&x, to + (size_t)s->axis*sizeof x, sizeof x);
+        x += shift;
+        memcpy(to + (size_t)s->axis*sizeof x, &x, sizeof x);
+    }
+}
+static void demi_slab_take_up(dem_slabs *s, demi_slab *b) {
+    const size_t size = demi_lent.size(b->world);
+    const char *from = b->ghost_count ? demi_slab_inbox(s, b, 0)->bytes : 0;
+    int k;
+    for (k = 0; k < b->ghost_count; k++, from += size) {
+        demi_lent.take(b->world, b->ghost[k], from);
+        b->world->bodies.inv_mass[b->ghost[k]] = b->ghost_inv[2*k];
+        b->world->bodies.inv_inertia[b->ghost[k]] = b->ghost_inv[2*k + 1];
+    }
+}
+static dem_result demi_slabs_lend(dem_world *h) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
+    dem_result result;
+    if (s->count == 1) return DEM_OK;
+    demi_slabs_phase(s, demi_slab_put_up);
+    result = demi_slabs_exchange(s, DEMI_UP, 1);
+    if (result == DEM_OK) demi_slabs_phase(s, demi_slab_take_up);
+    return result;
+}
+/* Down: ghosts put what is known of them here, owners take it in the order in which they lent. */
+static void demi_slab_put_down(dem_slabs *s, demi_slab *b) {
+    const size_t size = s->record->size(b->world);
+    int k;
+    b->out[0].size = (size_t)b->ghost_count*size;
+    b->in[1].size = (size_t)b->lent_count*size;
+    for (k = 0; k < b->ghost_count; k++)
+        s->record->put(b->world, b->ghost[k], b->out[0].bytes + (size_t)k*size);
+}
+static void demi_slab_take_down(dem_slabs *s, demi_slab *b) {
+    const size_t size = s->record->size(b->world);
+    const char *from = b->lent_count ? demi_slab_inbox(s, b, 1)->bytes : 0;
+    int k;
+    for (k = 0; k < b->lent_count; k++)
+        s->record->take(b->world, b->lent[k], from + (size_t)k*size);
+}
+static dem_result demi_slabs_give(dem_world *h, const demi_record *what) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
+    dem_result result;
+    if (s->count == 1) return DEM_OK;
+    s->record = what;
+    demi_slabs_phase(s, demi_slab_put_down);
+    result = demi_slabs_exchange(s, DEMI_DOWN, 1);
+    if (result == DEM_OK) demi_slabs_phase(s, demi_slab_take_down);
+    return result;
+}
+/* Ghosts stand still, weightless: their owner moves them. */
+static void demi_slab_rest(dem_world *w) {
+    const dem_slabs *s = (const dem_slabs *)(void *)w->team->head;
+    const demi_slab *b = &s->slabs[w->member];
+    const dem_vec3 none = demi_v(0, 0, 0);
+    int k;
+    for (k = 0; k < b->ghost_count; k++) {
+        const int i = b->ghost[k];
+        w->bodies.inv_mass[i] = w->bodies.inv_inertia[i] = 0;
+        demi_put(w->bodies.vel + 4*i, none);
+        demi_put(w->bodies.half_vel + 4*i, none);
+        demi_put(w->bodies.spin + 4*i, none);
+        demi_put(w->bodies.half_spin + 4*i, none);
+        demi_put(w->bodies.force + 4*i, none);
+        demi_put(w->bodies.torque + 4*i, none);
+        if (w->bodies.backward) demi_put(w->bodies.last_pos + 4*i, demi_at(w->bodies.pos + 4*i));
+    }
 }
 
-/* Bytes of what goes up and down in a step. */
-static void demi_slab_sizes(dem_slabs *s, demi_slab *b) {
-    const size_t up = demi_slab_up(b->world)*sizeof(dem_real);
-    const size_t down = demi_slab_down(b->world)*sizeof(dem_real);
-    (void)s;
-    b->in[0].size = (size_t)b->ghost_count*up;
-    b->in[1].size = (size_t)b->lent_count*down;
-    b->out[0].size = (size_t)b->ghost_count*down;
-}
+/* --- a new list --- */
+
 /* Ghosts come in; then the list is made as in any world, and steps get their room. */
 static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
@@ -384,20 +501,21 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     demi_kernel_choose(w);
     for (i = 0; i < b->ghost_count; i++) b->ghost[i] = w->bodies.slot_index[b->ghost[i]];
     for (i = 0; i < b->lent_count; i++) b->lent[i] = w->bodies.slot_index[b->lent[i]];
-    demi_slab_sizes(s, b);
     b->work = 4.0*w->bodies.count;
     for (d = 0; d < w->domain_count; d++)
         b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
 }
-/* The outboxes rest until everybody has taken from them; only then are they given their room. */
+/* The outboxes rest until everybody has taken from them; only then they get the room that steps and
+   the judgement of steps need, so that no exchange runs out of memory. */
 static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
+    const size_t up = demi_lent.size(w);
+    const size_t down = DEMI_MAX(demi_pushes_size(w), sizeof(demi_press_whole));
     (void)s;
-    b->out[1].size = (size_t)b->lent_count*demi_slab_up(w)*sizeof(dem_real);
-    if (!DEMI_GROW(w, b->in[0].bytes, b->in[0].size) ||
-        !DEMI_GROW(w, b->in[1].bytes, b->in[1].size) ||
-        !DEMI_GROW(w, b->out[0].bytes, b->out[0].size) ||
-        !DEMI_GROW(w, b->out[1].bytes, b->out[1].size))
+    if (!DEMI_GROW(w, b->in[0].bytes, (size_t)b->ghost_count*up) ||
+        !DEMI_GROW(w, b->in[1].bytes, (size_t)b->lent_count*down) ||
+        !DEMI_GROW(w, b->out[0].bytes, (size_t)b->ghost_count*down) ||
+        !DEMI_GROW(w, b->out[1].bytes, (size_t)b->lent_count*up))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
 
@@ -409,45 +527,48 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         int k;
         demi_slabs_phase(s, demi_slab_leave);
         for (k = 0; k < s->local; k++) leavers = DEMI_MAX(leavers, s->slabs[k].leavers);
-        result = demi_slabs_agree(s, &leavers, 1);
+        result = demi_slabs_agree(&s->head, &leavers, 1);
         if (result != DEM_OK || !(leavers > 0)) return result;
         result = demi_slabs_exchange(s, DEMI_UP | DEMI_DOWN, 0);
         if (result != DEM_OK) return result;
         demi_slabs_phase(s, demi_slab_room);
-        result = demi_slabs_agree(s, 0, 0);
+        result = demi_slabs_agree(&s->head, 0, 0);
         if (result != DEM_OK) return result;
         demi_slabs_phase(s, demi_slab_migrate);
     }
 }
 /* DEM_ERROR_MEMORY leaves every grain in one slab and its memory beside it: the next call begins
    again. */
-static dem_result demi_slabs_rebuild(dem_slabs *s) {
-    dem_world *h = &s->head;
+static dem_result demi_slabs_rebuild(dem_world *h) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
     const double skin_before = h->margin.skin_auto;
     dem_result result;
     h->stage.list_valid = 0;
     demi_slabs_phase(s, demi_slab_drop);
-    result = demi_slabs_agree(s, 0, 0);
+    result = demi_slabs_agree(&s->head, 0, 0);
     if (s->count > 1) {
         if (result == DEM_OK) result = demi_slabs_skin(s);
         if (result == DEM_OK) result = demi_slabs_balance(s);
         if (result == DEM_OK) { demi_slabs_space(s); result = demi_slabs_migrate(s); }
         if (result == DEM_OK) {
             demi_slabs_phase(s, demi_slab_invite);
-            result = demi_slabs_agree(s, 0, 0);
+            result = demi_slabs_agree(&s->head, 0, 0);
         }
         if (result == DEM_OK) result = demi_slabs_exchange(s, DEMI_UP, 0);
     }
     if (result == DEM_OK) {
         demi_slabs_phase(s, demi_slab_list);
-        result = demi_slabs_agree(s, 0, 0);
+        result = demi_slabs_agree(&s->head, 0, 0);
     }
     if (result == DEM_OK) {
         demi_slabs_phase(s, demi_slab_settle);
-        result = demi_slabs_agree(s, 0, 0);
+        result = demi_slabs_agree(&s->head, 0, 0);
     }
     if (result != DEM_OK) { h->margin.skin_auto = skin_before; return result; }
-    if (s->count == 1) h->margin.skin = s->slabs[0].world->margin.skin;
+    if (s->count == 1) {
+        h->margin.skin = s->slabs[0].world->margin.skin;
+        h->effects.radius_min = s->slabs[0].world->effects.radius_min;
+    }
     h->margin.gone = h->margin.walls_gone = 0;
     h->clock.last_rebuild = h->clock.steps;
     h->clock.rebuilds++;
@@ -455,269 +576,28 @@ static dem_result demi_slabs_rebuild(dem_slabs *s) {
     return DEM_OK;
 }
 
-/* --- a step --- */
-
-/* 1 move. Ghosts stand still, weightless: their owner moves them. */
-static void demi_slab_move(dem_slabs *s, demi_slab *b) {
-    dem_world *w = b->world;
-    int k;
-    if (b->result != DEM_OK) return;            /* from the forces before: told with this step */
-    for (k = 0; k < b->ghost_count && !s->head.stage.moved; k++) {
-        const int i = b->ghost[k];
-        w->bodies.inv_mass[i] = w->bodies.inv_inertia[i] = 0;
-        demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));      demi_put(w->bodies.half_vel + 4*i,
-                                                                      demi_v(0, 0, 0));
-        demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));     demi_put(w->bodies.half_spin + 4*i,
-                                                                      demi_v(0, 0, 0));
-        demi_put(w->bodies.force + 4*i, demi_v(0, 0, 0));    demi_put(w->bodies.torque + 4*i,
-                                                                      demi_v(0, 0, 0));
-        if (w->bodies.backward) demi_put(w->bodies.last_pos + 4*i, demi_at(w->bodies.pos + 4*i));
-    }
-    if (!s->head.stage.moved) b->result = demi_step_move(w);
-    if (b->result == DEM_OK) b->result = demi_outflow(w);
-}
-/* Outlets take what this slab owns; whoever lost one needs a new list. */
-static void demi_slab_outlets(dem_slabs *s, demi_slab *b) {
-    (void)s;
-    b->result = demi_outlets_run(b->world);
-}
-/* Outlets of all slabs; *search: somebody lost a grain. */
-static dem_result demi_slabs_outlets(dem_slabs *s, int *search) {
+/* --- what the choice of a time step depends on, of all processes --- */
+static dem_result demi_slabs_grades(dem_world *h, demi_grades *g) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
+    const int m = h->material_count;
+    double *v = s->values, *end = v + 2*m;
     dem_result result;
-    double stale = 0;
-    int k;
-    demi_slabs_phase(s, demi_slab_outlets);
-    for (k = 0; k < s->local; k++)
-        stale = DEMI_MAX(stale, !s->slabs[k].world->stage.list_valid);
-    result = demi_slabs_agree(s, &stale, 1);
-    *search |= stale > 0;
+    int i;
+    for (i = 0; i < m; i++) {
+        v[i] = g->many[i] > 0 ? -g->smallest[i] : -1e300;
+        v[m + i] = g->peg[i];
+    }
+    end[0] = g->speed; end[1] = g->spin; end[2] = -g->lo; end[3] = g->hi;
+    result = demi_slabs_reduce(s, v, 2*m + 4, 0);
+    for (i = 0; i < m; i++) {
+        g->smallest[i] = v[i] > -1e300 ? -v[i] : 0;
+        g->peg[i] = v[m + i];
+        v[i] = g->many[i];
+    }
+    g->speed = end[0]; g->spin = end[1]; g->lo = -end[2]; g->hi = end[3];
+    v[m] = g->bodies;
+    if (result == DEM_OK) result = demi_slabs_reduce(s, v, m + 1, 1);
+    memcpy(g->many, v, (size_t)m*sizeof *v);
+    g->bodies = v[m];
     return result;
-}
-/* What the walls did, for those slabs whose walls do not move by themselves. */
-static void demi_slabs_poses(dem_slabs *s) {
-    const dem_world *from = s->slabs[0].world;
-    int k, i;
-    for (i = 0; i < from->wall_count; i++)
-        for (k = 1; k < s->local && from->walls[i].motion.kind != DEM_MOTION_FIXED; k++) {
-            s->slabs[k].world->walls[i].pose = from->walls[i].pose;
-            s->slabs[k].world->walls[i].mid = from->walls[i].mid;
-        }
-}
-/* State of the grains that are ghosts above: as much of it as the laws in force look at. */
-static void demi_slab_send(dem_slabs *s, demi_slab *b) {
-    const dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), reals = demi_slab_places(w);
-    const size_t own = (size_t)w->bodies.real_count;
-    const dem_real shift = demi_slab_shift(s, b, 1);
-    dem_real *out = (dem_real *)b->out[1].bytes;
-    int k;
-    for (k = 0; k < b->lent_count; k++, out += reals + own) {
-        const int i = 4*b->lent[k];
-        if (own) memcpy(out + reals, w->bodies.reals + own*(size_t)b->lent[k], own*sizeof *out);
-        if (w->bodies.booked) memcpy(out + reals - 3, w->bodies.late + i, three);
-        memcpy(out, w->bodies.pos + i, three);
-        out[s->axis] += shift;
-        memcpy(out + 3, w->bodies.vel + i, three);
-        if (reals < 15) continue;
-        memcpy(out + 6, w->bodies.spin + i, three);
-        memcpy(out + 9, w->bodies.half_vel + i, three);
-        memcpy(out + 12, w->bodies.half_spin + i, three);
-        if (w->bodies.orienting) memcpy(out + 15, w->bodies.orient + i, 4*sizeof(dem_real));
-    }
-}
-/* Ghosts are where their owners say. */
-static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
-    dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), up = demi_slab_places(w);
-    const size_t own = (size_t)w->bodies.real_count;
-    const dem_real *in = b->ghost_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes
-        : 0;
-    int k;
-    for (k = 0; k < b->ghost_count; k++, in += up + own) {
-        const int i = b->ghost[k];
-        if (own) memcpy(w->bodies.reals + own*(size_t)i, in + up, own*sizeof *in);
-        if (w->bodies.booked) memcpy(w->bodies.late + 4*i, in + up - 3, three);
-        memcpy(w->bodies.pos + 4*i, in, three);
-        memcpy(w->bodies.vel + 4*i, in + 3, three);
-        w->bodies.inv_mass[i] = b->ghost_inv[2*k];
-        w->bodies.inv_inertia[i] = b->ghost_inv[2*k + 1];
-        if (up < 15) continue;
-        memcpy(w->bodies.spin + 4*i, in + 6, three);
-        memcpy(w->bodies.half_vel + 4*i, in + 9, three);
-        memcpy(w->bodies.half_spin + 4*i, in + 12, three);
-        if (!w->bodies.orienting) continue;
-        memcpy(w->bodies.orient + 4*i, in + 15, 4*sizeof(dem_real));
-        if (w->bodies.centres_valid && demi_shape_of(w, i) && demi_shape_of(w, i)->count)
-            demi_centres_rotate(w, i);
-    }
-}
-/* The near list, where it is due. */
-static void demi_slab_near(dem_slabs *s, demi_slab *b) {
-    dem_world *w = b->world;
-    demi_slab_receive(s, b);
-    if (!demi_near_due(w)) return;
-    demi_near_choose(w);
-    if (!demi_near_make(w, 0)) b->result = demi_no_memory(w, "dem_slabs_step");
-}
-/* 3 touch. Where bodies are not spheres it may run out of room; all agree before any force is
-   worked out, since memory follows a step once. Else there is room, see demi_kept_room. */
-static void demi_slab_touch(dem_slabs *s, demi_slab *b) {
-    demi_slab_receive(s, b);
-    if (!demi_touch(b->world)) b->result = demi_no_memory(b->world, "dem_slabs_step");
-}
-/* 4 respond, 5 gather, here; forces on ghosts go into the lower outbox. */
-static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
-    dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), down = demi_slab_pushes(w);
-    const size_t own = (size_t)w->bodies.real_count;
-    dem_real *out = (dem_real *)b->out[0].bytes;
-    int k, d, finite = 1;
-    if (!w->bodies.orienting) demi_slab_touch(s, b);
-    demi_forces(w);
-    for (k = 0; k < b->ghost_count; k++, out += down + own) {
-        if (own) memcpy(out + down, w->bodies.rates + own*(size_t)b->ghost[k], own*sizeof *out);
-        memcpy(out, w->bodies.force + 4*b->ghost[k], three);
-        if (down == 6) memcpy(out + 3, w->bodies.torque + 4*b->ghost[k], three);
-    }
-    if (!w->stage.forces_valid) return;               /* only looking */
-    for (d = 0; d < w->domain_count && demi_own(w); d++)
-        finite &= w->domains[d].check < 1e300;
-    if (!finite || !(demi_overlap(w) < 1)) b->result = demi_unstable(w);
-}
-/* Forces on own grains that are ghosts above come back, in the order in which they were lent. */
-static void demi_slab_add(dem_slabs *s, demi_slab *b) {
-    dem_world *w = b->world;
-    const size_t down = demi_slab_pushes(w), own = (size_t)w->bodies.real_count;
-    const dem_real *in = b->lent_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes
-        : 0;
-    size_t r;
-    int k, e;
-    for (k = 0; k < b->lent_count; k++, in += down + own) {
-        for (e = 0; e < 3; e++) {
-            w->bodies.force[4*b->lent[k] + e] += in[e];
-            if (down == 6) w->bodies.torque[4*b->lent[k] + e] += in[3 + e];
-        }
-        for (r = 0; r < own; r++) w->bodies.rates[own*(size_t)b->lent[k] + r] += in[down + r];
-    }
-}
-static void demi_slab_gain(dem_slabs *s, demi_slab *b) { (void)s; demi_reals_gain(b->world); }
-/* near: some slab's near list may have to be made anew first. */
-static dem_result demi_slabs_forces(dem_slabs *s, int near) {
-    dem_result result = DEM_OK;
-    if (s->count > 1) {
-        demi_slabs_phase(s, demi_slab_send);
-        result = demi_slabs_exchange(s, DEMI_UP, 1);
-        if (result != DEM_OK) return result;
-    }
-    if (near) {
-        demi_slabs_phase(s, demi_slab_near);
-        result = demi_slabs_agree(s, 0, 0);
-        if (result != DEM_OK) return result;
-    }
-    if (s->slabs[0].world->bodies.orienting) {
-        demi_slabs_phase(s, demi_slab_touch);
-        result = demi_slabs_agree(s, 0, 0);
-        if (result != DEM_OK) return result;
-    }
-    demi_slabs_phase(s, demi_slab_forces);
-    if (s->count == 1) return DEM_OK;
-    result = demi_slabs_exchange(s, DEMI_DOWN, 1);
-    if (result == DEM_OK) demi_slabs_phase(s, demi_slab_add);
-    return result;
-}
-
-static void demi_slab_finish(dem_slabs *s, demi_slab *b) { (void)s; demi_finish(b->world); }
-static void demi_slab_prime(dem_slabs *s, demi_slab *b) {
-    (void)s;
-    demi_finish(b->world);
-    demi_prime(b->world);
-}
-static void demi_slab_refresh(dem_slabs *s, demi_slab *b) {
-    (void)s;
-    demi_kernel_choose(b->world);
-    b->world->stage.forces_valid = 0;
-}
-static void demi_slab_sample(dem_slabs *s, demi_slab *b) {
-    (void)s;
-    demi_fields_sample(b->world);
-}
-
-/* As demi_refresh: forces at the present time, by a new list where somebody has none. */
-static dem_result demi_slabs_refresh(dem_slabs *s) {
-    dem_result result;
-    double stale = !s->head.stage.list_valid;
-    int k;
-    demi_slabs_phase(s, demi_slab_finish);
-    for (k = 0; k < s->local; k++) stale = DEMI_MAX(stale, !s->slabs[k].world->stage.list_valid);
-    result = demi_slabs_agree(s, &stale, 1);
-    if (result == DEM_OK && stale > 0) result = demi_slabs_rebuild(s);
-    if (result != DEM_OK) return result;
-    demi_slabs_phase(s, demi_slab_refresh);
-    result = demi_slabs_forces(s, 0);
-    if (result != DEM_OK) return result;
-    for (k = 0; k < s->local; k++) s->slabs[k].world->stage.forces_valid = 1;
-    s->head.stage.forces_valid = 1;
-    return DEM_OK;
-}
-
-/* One step, in the order of demi_step_once. */
-static dem_result demi_slabs_step_once(dem_slabs *s) {
-    dem_world *h = &s->head;
-    const dem_world *first = s->slabs[0].world;
-    /* speed, list stale, walls' reach, last change; near lists' creep, age over what they allow;
-       reach */
-    double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
-    const double dt = (double)h->clock.dt;
-    dem_result result;
-    int k, near, search;
-    demi_slabs_phase(s, demi_slab_move);
-    for (k = 0; k < s->local; k++) {
-        const dem_world *w = s->slabs[k].world;
-        flags[0] = DEMI_MAX(flags[0], w->booked.speed_max);
-        flags[1] = DEMI_MAX(flags[1], !w->stage.list_valid);
-        flags[3] = DEMI_MAX(flags[3], w->margin.last_change);
-        flags[4] = DEMI_MAX(flags[4],
-                            w->margin.creep + 2*w->margin.change*dt - w->margin.slack);
-        flags[5] = DEMI_MAX(flags[5], w->margin.age + dt - w->margin.span*(1 - 1e-9));
-        flags[6] = DEMI_MAX(flags[6], w->margin.step_gone);
-    }
-    flags[2] = first->margin.walls_gone;
-    if (!h->stage.moved) {
-        h->stage.moved = 1;
-        h->clock.time = first->clock.time;
-        h->clock.since = first->clock.since;
-        h->clock.steps++;
-        demi_slabs_poses(s);
-        result = demi_slabs_agree(s, flags, 7);
-        h->booked.speed_max = flags[0];
-        h->margin.gone += flags[6];
-        for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
-        h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->margin.skin || flags[5] > -1e-6*dt;
-    } else result = demi_slabs_agree(s, flags, 7);
-    if (result != DEM_OK) return result;
-    near = s->count == 1 || h->near_due;        /* each looks for itself again */
-    if (s->count == 1) h->margin.gone = first->margin.gone;
-    h->margin.walls_gone = flags[2];
-    for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
-        s->slabs[k].world->margin.gone = h->margin.gone;
-        s->slabs[k].world->margin.walls_gone = h->margin.walls_gone;
-    }
-    search = flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
-             2*h->margin.gone > h->margin.skin ||
-             h->margin.gone + h->margin.walls_gone > h->margin.skin;
-    if (first->outlet_count && (search || h->clock.steps%DEMI_OUTLET_REST == 0)) {
-        result = demi_slabs_outlets(s, &search);
-        if (result != DEM_OK) return result;
-    }
-    if (search) {
-        result = demi_slabs_rebuild(s);
-        if (result != DEM_OK) return result;
-        if (demi_outgrown(h)) h->stage.dt_valid = 0;
-        near = 0;
-    }
-    result = demi_slabs_forces(s, near);
-    if (result != DEM_OK) return result;
-    demi_slabs_phase(s, demi_slab_gain);
-    h->stage.moved = 0;
-    return DEM_OK;
 }

@@ -9,6 +9,8 @@
        send up  state of the grains that are ghosts in the upper neighbour
        respond  own - own, own - ghost, own - wall; ghost - ghost belongs to the owner
        return   forces on ghosts go down to their owners, who add them
+   The step itself is that of a world on its own (>>step): slabs are the parts of a team (>>team),
+   and here is what the parts exchange and agree on.
    [ALK07] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
    migrate, with a copy of every entry of contact memory that names them: so whichever slab computes
    a pair next has its memory. (It is the upper of the pair's two homes; the pair was computed where
@@ -42,8 +44,6 @@ typedef struct demi_slab {
     int lent_count, ghost_count, leavers;
     uint64_t bytes, migrated;
     double work, seconds;
-    double press_limit;            /* s, of the body that is pressed most: press_worst */
-    int press_worst;
     demi_crowd crowd;              /* who is near the region of a feed */
 } demi_slab;
 
@@ -66,6 +66,9 @@ struct dem_slabs {
     int dealt, told, slots;        /* how many slots: dealt, known to the world, there are */
     uint64_t border_moves;
     void (*phase)(struct dem_slabs *s, demi_slab *b);
+    demi_team team;
+    dem_result (*task)(dem_world *member);      /* of the phase that is running */
+    const demi_record *record;
 };
 
 /* --- messages --- */

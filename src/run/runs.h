@@ -1,0 +1,196 @@
+/* ---------------------------------------------------------------------------------------------
+   >>runs
+   Runs of many steps: for a time, up to a time, until the grains are at rest; what a run tells its
+   user on the way. Uses public functions and the numbers that a step leaves behind.
+   --------------------------------------------------------------------------------------------- */
+
+/* Asks the user's progress function, if any. `since`: s of wall time when the call began. */
+static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
+                                void *user, double done, double since) {
+    const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
+    const demi_calling was = demi_calls(w, call, 0);
+    const int stop = progress && progress(w, done, done < 1 ? left : 0, user) && done < 1;
+    w->look.calling = was;
+    return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
+                            call, w->clock.time) : DEM_OK;
+}
+DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
+                                 void *user) {
+    if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
+    const double start = w->clock.time, begun = demi_clock();
+    double last = begun, end;
+    int chunk = 1;
+    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
+                         ">= 0", seconds);
+    if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (progress) w->look.tenths_told = 0;      /* dem_world_settle tells for several runs */
+    end = start + seconds;
+    if (w->clock.run_steps == w->clock.steps &&
+        fabs(w->clock.run_end - start) <= (double)w->clock.dt)
+        end = w->clock.run_end + seconds;
+    for (;;) {
+        const double left = end - w->clock.time;
+        double now;
+        int steps = chunk;
+        dem_result result = demi_dt_settle(w);
+        if (result != DEM_OK) return result;
+        if (left < (double)w->clock.dt/2) break;
+        if (left/(double)w->clock.dt < chunk) steps = (int)(left/(double)w->clock.dt + 0.5);
+        if (steps < 1) steps = 1;
+        result = dem_world_step(w, steps);
+        if (result != DEM_OK) return result;
+        now = demi_clock();
+        if (now - last > 0.1) {
+            last = now;
+            result = demi_progress(w, "dem_world_run", progress, user,
+                                   (w->clock.time - start)/seconds, begun);
+            if (result != DEM_OK) return result;
+        }
+        /* short steps: look at the clock less often */
+        if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
+    }
+    w->clock.run_end = end;
+    w->clock.run_steps = w->clock.steps;
+    return demi_progress(w, "dem_world_run", progress, user, 1, begun);
+}
+
+DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
+                                    void *user) {
+    if (demi_null(w, "dem_world_run_to", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
+                         "and not before now (%g s); to go back in time, read a checkpoint", time,
+                         w->clock.time);
+    w->clock.run_steps = w->clock.steps + 1;        /* it does not follow the run before */
+    return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
+}
+
+/* m/s: largest speed of the bodies that can move, and the root of the mean of its square. */
+static double demi_speeds(const dem_world *w, double *mean) {
+    double sum = 0, most = 0, mass = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
+        const double vv = (double)demi_dot(v, v), m = (double)w->bodies.mass[i];
+        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        sum += m*vv;
+        mass += m;
+        most = DEMI_MAX(most, vv);
+    }
+    *mean = mass > 0 ? sqrt(sum/mass) : 0;
+    return sqrt(most);
+}
+/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius.
+   *look: s, the time to fall by half a radius, or to go that far: a body that turns round is not at
+   rest. */
+static double demi_calm(const dem_world *w, double speed, double *look) {
+    const double g = (double)demi_length(w->desc.gravity);
+    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
+    int i;
+    if (w->bodies.count) radius = 0;
+    for (i = 0; i < w->bodies.count; i++)
+        radius += (double)w->bodies.pos[4*i + 3]/w->bodies.count;
+    if (!(speed > 0) && g > 0) speed = 0.01*sqrt(2*g*radius);
+    *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
+    return speed;
+}
+/* The first feed that still brings grains; -1: none does. */
+static int demi_feed_coming(const dem_world *w) {
+    int i = 0;
+    while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
+    return i < w->feed_count ? i : -1;
+}
+/* Time is up: why the bodies are not at rest. */
+static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
+    const int i = demi_feed_coming(w);
+    double mean, most = demi_speeds(w, &mean);
+    if (i >= 0) {
+        const dem_feed_state *f = &demi_feed_at(w, i)->state;
+        return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: feed %d "
+                         "is not done (%llu grains inserted, %llu waiting for room), and grains "
+                         "can rest only when it is; allow more time, a higher rate or a larger box",
+                         seconds, i + 1, (unsigned long long)f->total,
+                         (unsigned long long)f->waiting);
+    }
+    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean speed "
+                     "%.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; allow more time, "
+                     "or find what drives the grains", seconds, mean, most, below, 10*below);
+}
+DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
+                                    dem_progress_fn progress, void *user) {
+    if (demi_null(w, "dem_world_settle", w, "world")) return DEM_ERROR_ARGUMENT;
+    const double begun = demi_clock(), start = w->clock.time;
+    double look, below = demi_calm(w, (double)speed, &look), last = begun;
+    int i, calm = 0;
+    if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
+        (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed is %g "
+                         "m/s; seconds must be > 0, speed >= 0, and > 0 without gravity, from "
+                         "which the default follows; set the speed that counts as rest", seconds,
+                         (double)speed);
+    for (i = 0; i < w->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(w, i);
+        if (!f->desc.limited && !(f->desc.end > 0))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: feed %d has limited 0 and "
+                             "end 0 s, one of them must be > 0, or the feed never ends; set one "
+                             "of them, or use dem_world_run", i + 1);
+    }
+    w->look.tenths_told = 0;
+    while (w->bodies.count || demi_feed_coming(w) >= 0) {
+        const double left = start + seconds - w->clock.time;
+        double mean, most = demi_speeds(w, &mean);
+        dem_result result;
+        below = demi_calm(w, (double)speed, &look);
+        calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
+        if (calm > 2) break;
+        if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
+        look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
+        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
+        if (result != DEM_OK) return result;
+        if (demi_clock() - last > 0.1) {
+            last = demi_clock();
+            result = demi_progress(w, "dem_world_settle", progress, user,
+                                   (w->clock.time - start)/seconds, begun);
+            if (result != DEM_OK) return result;
+        }
+    }
+    return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
+}
+
+/* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
+#if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
+    !defined(__CYGWIN__)
+int demi_isatty(int file) __asm__("isatty");
+int demi_fileno(FILE *file) __asm__("fileno");
+#elif defined(__APPLE__) && defined(__GNUC__)
+int demi_isatty(int file) __asm__("_isatty");
+int demi_fileno(FILE *file) __asm__("_fileno");
+#else
+static int demi_isatty(int file) { (void)file; return 1; }
+static int demi_fileno(FILE *file) { (void)file; return 0; }
+#endif
+DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
+    if (demi_null_look(w, "dem_progress_print", user, "user")) return 0;
+    FILE *out = (FILE *)user;
+    const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
+    if (line && tenths <= w->look.tenths_told) return 0;
+    ((dem_world *)w)->look.tenths_told = tenths;
+    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
+            100*done, w->clock.time, w->bodies.count, seconds_left);
+    if (w->booked.unsolved)
+        fprintf(out, "%llu steps above the tolerance   ",
+                (unsigned long long)w->booked.unsolved);
+    if (line || done >= 1) fputc('\n', out);
+    fflush(out);
+    return 0;
+}
+
+DEM_API double dem_world_time_get(const dem_world *w) {
+    if (demi_null_look(w, "dem_world_time_get", w, "world")) return 0;
+    return w->clock.time;
+}
+DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
+    if (demi_null_look(w, "dem_world_steps_get", w, "world")) return 0;
+    return w->clock.steps;
+}
