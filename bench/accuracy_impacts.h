@@ -19,6 +19,7 @@ static const struct { dem_integrator integrator; dem_tangent_law tangent; } pric
     {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_SPRING}, {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_MINDLIN},
     {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_MINDLIN_RESCALED}};
 static double price_ratio[PRICES];
+static double price_seconds;        /* s of processor time, a step of the library's own choice on the bed    */
 
 static void prices(void) { /* in turns; once                                                                */
     static double times[PRICES][BENCH_MOST_LOOPS];
@@ -47,6 +48,24 @@ static void prices(void) { /* in turns; once                                    
     price_seconds = ok ? bench_median(times[0], turns) : (double)NAN;
     bench_scene_free(&bed);
     if (!ok) study_fail("the bed broke");
+}
+/* What a step on the bed costs in each build. */
+static void variant_price(FILE *page) {
+    static const char *const names[2] = {"single", "one_domain"};
+    static const char *const what[2] = {"single precision", "all bodies in one domain, no threads"};
+    note n;
+    int k;
+    if (variant_file) {
+        prices();
+        variant_note("price", "bed", 1, price_seconds, 0, 0);
+    }
+    if (page) fprintf(page, "| build | time of a step on the bed [ordinary build = 1] |\n|---|---|\n");
+    for (k = 0; k < 2 && page; k++) {
+        if (!variant_notes(names[k], "price", &n, 1)) continue;
+        prices();
+        bench_result_short(names[k], n.unit/price_seconds, "of the time of a step on the bed");
+        fprintf(page, "| %s | %.2f |\n", what[k], n.unit/price_seconds);
+    }
 }
 static double price_of(dem_integrator integrator, dem_tangent_law tangent) {
     int k;

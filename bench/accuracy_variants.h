@@ -73,24 +73,4 @@ static void variant_scene(points *p, const choice *c, int count, int seeds, cons
     if (compare) reference = scene_mean(out, 2*seeds, what, &reference_bar);
     if (!variant_name()) variant_points(p, unit, reference, reference_bar);
 }
-static void prices(void);
-static double price_seconds;        /* s of processor time, a step of the library's own choice on the bed    */
-/* What a step on the bed costs in each build. */
-static void variant_price(FILE *page) {
-    static const char *const names[2] = {"single", "one_domain"};
-    static const char *const what[2] = {"single precision", "all bodies in one domain, no threads"};
-    note n;
-    int k;
-    if (variant_file) {
-        prices();
-        variant_note("price", "bed", 1, price_seconds, 0, 0);
-    }
-    if (page) fprintf(page, "| build | time of a step on the bed [ordinary build = 1] |\n|---|---|\n");
-    for (k = 0; k < 2 && page; k++) {
-        if (!variant_notes(names[k], "price", &n, 1)) continue;
-        prices();
-        bench_result_short(names[k], n.unit/price_seconds, "of the time of a step on the bed");
-        fprintf(page, "| %s | %.2f |\n", what[k], n.unit/price_seconds);
-    }
-}
 #endif /* ACCURACY_VARIANTS_H */

@@ -39,6 +39,7 @@
        >>sheets            connected facets of a surface, their orientation and open edges
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+       >>distances         distance of a point from an element of a wall
      search/ - which bodies may touch: from candidates to the pruned neighbour list
        >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
        >>lists             candidates on walls; persistent contacts carried over to new lists
@@ -181,6 +182,7 @@
 #include "surface/sheets.h"
 #include "surface/motions.h"
 #include "surface/walls.h"
+#include "surface/distances.h"
 #include "search/search.h"
 #include "search/lists.h"
 #include "search/near.h"

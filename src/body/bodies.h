@@ -376,9 +376,23 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
-/* Returns why contacts between a kind of part and a wall are not available, or null if they are
-   (>>polyhedra-sieves). */
-static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part);
+/* Returns why a part cannot touch a wall, and the remedy; 0 if it can. */
+static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
+    const dem_sieve_desc *s = &wall->sieve;
+    if (!demi_listed(demi_wall_kinds[wall->kind].touch, part))
+        return "contacts between the two are not available; make bodies clusters of spheres, or "
+               "the wall a mesh or a resolved profile";
+    if (part != DEMI_POLYHEDRON || wall->kind != DEMI_WALL_SIEVE) return 0;
+    if (s->kind == DEM_SIEVE_REDUCED)
+        return "reduced holes are only for spheres; use DEM_SIEVE_SQUARE";
+    if (s->radius > 0)
+        return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
+               "cylinder around it";
+    if (!demi_sieve_wires(s) && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
+        return "a sheet without thickness has no inside for springs to act on; give the sieve a "
+            "thickness, or use impulses";
+    return 0;
+}
 /* Returns the first kind of part of a shape (null: a sphere) whose contacts with a wall are not
    available; -1 if there is none. */
 static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const demi_shape *shape) {

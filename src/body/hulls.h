@@ -577,3 +577,33 @@ static double demi_polyhedron_curve(const demi_part *p, double h) {
 static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
     return demi_scale(demi_shape_alike(p->shape), p->scale);
 }
+/* Extent of a part from its centre along n (unit), m. */
+static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
+    if (p->kind == DEMI_BALL) return p->radius;
+    return p->scale*demi_shape_rows[p->kind].support(p->shape, dem_quat_unrotate(p->q, n));
+}
+/* The unit normal of a face, in the frame of its shape. */
+static dem_vec3 demi_face_normal(const demi_shape *s, int f) {
+    const double *a = s->hull + 4*f;
+    return demi_scale(demi_d3_real(demi_d3_at(a)), (dem_real)a[3]);
+}
+/* Largest separation of q from a face of p, m: a lower bound of their distance. */
+static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 gap) {
+    dem_real most = -DEM_R(1e30);
+    int f;
+    for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
+        const dem_vec3 n = dem_quat_rotate(p->q, demi_face_normal(p->shape, f));
+        const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
+            (dem_real)p->shape->hull[4*f + 3]*p->scale;
+        most = DEMI_MAX(most, off);
+    }
+    return most;
+}
+/* Lower bound, m, of the distance of two polyhedra, or of a polyhedron and another part. */
+static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                                   dem_real enough) {
+    const dem_real d = demi_length(gap), one = demi_faces_gap(p, q, gap);
+    const dem_real two = demi_faces_gap(q, p, demi_scale(gap, -1)), most = DEMI_MAX(one, two);
+    if (!(d > 0)) return -enough;
+    return DEMI_MAX(most, d - p->radius - q->radius);
+}

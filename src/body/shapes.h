@@ -118,6 +118,7 @@ typedef struct demi_shape_row {
     double (*curve)(const demi_part *p, double h);      /* m, radius of curvature at height h */
     dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes drawn in output files */
     dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
+    const char *touch;             /* functions for contacts with other kinds, see demi_listed */
 } demi_shape_row;
 #define DEMI_SHAPE_DECLARE(KIND, NAME, WORD, GAP, TOUCH) \
     static dem_real demi_##NAME##_support(const demi_shape *s, dem_vec3 n); \
@@ -129,7 +130,7 @@ typedef struct demi_shape_row {
 DEMI_SHAPES(DEMI_SHAPE_DECLARE)
 #define DEMI_SHAPE_ROW(KIND, NAME, WORD, GAP, TOUCH) \
     {WORD, demi_##NAME##_support, demi_##NAME##_thin, demi_##NAME##_equal, demi_##NAME##_curve, \
-     demi_##NAME##_drawn, GAP},
+     demi_##NAME##_drawn, GAP, #TOUCH},
 static const demi_shape_row demi_shape_rows[] = {DEMI_SHAPES(DEMI_SHAPE_ROW)};
 static int demi_shape_kind(const demi_shape *shape) { return shape ? shape->kind : DEMI_BALL; }
 /* Returns the "n" of the article in "an ellipsoid", or "". */
@@ -265,14 +266,13 @@ static void demi_shape_free(dem_world *w, demi_shape *shape) {
     demi_free(w, shape->hull);
     demi_free(w, shape->rim);
 }
-/* True if contacts between parts of these two kinds are available (>>meets). */
-static int demi_meet_known(int kind, int other);
 /* Returns 1 with an error message if contacts of a new kind with some shape are not available. */
 static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
     int i, other;
     for (i = -1; i <= w->shape_count; i++) {
         other = i < 0 ? DEMI_BALL : i < w->shape_count ? w->shapes[i].kind : kind;
-        if (demi_meet_known(kind, other)) continue;
+        if (demi_listed(demi_shape_rows[DEMI_MAX(kind, other)].touch, DEMI_MIN(kind, other)))
+            continue;
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts between shape %d, a%s %s, and shape %d, "
                   "a%s %s, are not available, so a world can hold only one of the two; nothing "
                   "was added", call, w->shape_count + 1, demi_an(demi_shape_rows[kind].name),

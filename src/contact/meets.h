@@ -215,4 +215,3 @@ static const demi_meet_fn demi_meets[][DEMI_SHAPE_KINDS] = {DEMI_SHAPES(DEMI_SHA
 DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
     return demi_meets[DEMI_MAX(kind, other)][DEMI_MIN(kind, other)];
 }
-static int demi_meet_known(int kind, int other) { return demi_meet_of(kind, other) != 0; }

@@ -9,8 +9,8 @@
    hole, that it is above or nearest to; rims of holes have the points of the body that lie on them.
    Where wires cross, the volume that they share counts twice. Polyhedra have no contacts with
    reduced holes or sieves cut out as a disc, and with springs none with sheets without thickness,
-   which have no inside: see demi_wall_why. At the end, the table of functions by kinds of walls and
-   parts.
+   which have no inside: see demi_wall_why in >>bodies. At the end, the table of functions by kinds
+   of walls and parts.
    --------------------------------------------------------------------------------------------- */
 
 /* The holes of a plate: half sizes along x and y, and periods. px 0: infinite along x. */
@@ -365,20 +365,3 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 /* The functions by kind of wall and kind of part. */
 #define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
-/* Returns why a part cannot touch a wall, and the remedy; 0 if it can. */
-static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
-    const dem_sieve_desc *s = &wall->sieve;
-    if (!demi_touches[wall->kind][part])
-        return "contacts between the two are not available; make bodies clusters of spheres, or "
-               "the wall a mesh or a resolved profile";
-    if (part != DEMI_POLYHEDRON || wall->kind != DEMI_WALL_SIEVE) return 0;
-    if (s->kind == DEM_SIEVE_REDUCED)
-        return "reduced holes are only for spheres; use DEM_SIEVE_SQUARE";
-    if (s->radius > 0)
-        return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
-               "cylinder around it";
-    if (!demi_sieve_wires(s) && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
-        return "a sheet without thickness has no inside for springs to act on; give the sieve a "
-            "thickness, or use impulses";
-    return 0;
-}

@@ -508,28 +508,6 @@ static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec
     for (k = 0; k < 3; k++) { back[k] *= axes.x; back[3 + k] *= axes.y; back[6 + k] *= axes.z; }
     for (i = 0; i < s->faces; i++) s->face[i].slope = demi_d3_rotate(back, s->face[i].slope);
 }
-/* Extent of a part from its centre along n (unit), m. */
-static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
-    if (p->kind == DEMI_BALL) return p->radius;
-    return p->scale*demi_shape_rows[p->kind].support(p->shape, dem_quat_unrotate(p->q, n));
-}
-/* The unit normal of a face, in the frame of its shape. */
-static dem_vec3 demi_face_normal(const demi_shape *s, int f) {
-    const double *a = s->hull + 4*f;
-    return demi_scale(demi_d3_real(demi_d3_at(a)), (dem_real)a[3]);
-}
-/* Largest separation of q from a face of p, m: a lower bound of their distance. */
-static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 gap) {
-    dem_real most = -DEM_R(1e30);
-    int f;
-    for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
-        const dem_vec3 n = dem_quat_rotate(p->q, demi_face_normal(p->shape, f));
-        const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
-            (dem_real)p->shape->hull[4*f + 3]*p->scale;
-        most = DEMI_MAX(most, off);
-    }
-    return most;
-}
 /* True if the face of p that most faces q's centre separates p from q. This rejects most pairs that
    are apart, from one side or the other. */
 static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap) {
@@ -545,11 +523,4 @@ static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap)
     n = dem_quat_rotate(p->q, demi_face_normal(p->shape, face));
     return (dem_real)most > demi_part_support(q, demi_scale(n, -1))*
         (1 + 16*(DEMI_SINGLE ? DEM_R(1e-7) : DEM_R(2e-16)));
-}
-static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
-                                   dem_real enough) {
-    const dem_real d = demi_length(gap), one = demi_faces_gap(p, q, gap);
-    const dem_real two = demi_faces_gap(q, p, demi_scale(gap, -1)), most = DEMI_MAX(one, two);
-    if (!(d > 0)) return -enough;
-    return DEMI_MAX(most, d - p->radius - q->radius);
 }

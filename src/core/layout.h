@@ -291,14 +291,23 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
       demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* a list as one field of a row: (a, b) */
+/* True if entry k of such a list, given as text, names a function: false if it is 0 or missing. */
+static int demi_listed(const char *list, int k) {
+    for (; list && k > 0; k--) list = strchr(list + 1, ',');
+    return list && *list && list[1 + (list[1] == ' ')] != '0';
+}
 #define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
 enum { DEMI_SHAPES(DEMI_SHAPE_CONSTANT) DEMI_SHAPE_KINDS };
 #define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_WALL_##KIND,
 enum { DEMI_WALL_NONE = 0, DEMI_WALLS(DEMI_WALL_CONSTANT) DEMI_WALL_KINDS };
-typedef struct demi_wall_kind { int corners, most, traits; const char *name; } demi_wall_kind;
+/* touch: the functions of the row as text, see demi_listed. */
+typedef struct demi_wall_kind {
+    int corners, most, traits;
+    const char *name, *touch;
+} demi_wall_kind;
 #define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, NEAR, TOUCH, BEND) \
-    {CORNERS, MOST, TRAITS, NAME},
-static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed"},
+    {CORNERS, MOST, TRAITS, NAME, #TOUCH},
+static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed", ""},
     DEMI_WALLS(DEMI_WALL_KIND)};
 
 /* Responses: how contacts act on bodies (desc.response, in the order of dem_response). A row: name
@@ -861,4 +870,8 @@ static int demi_wall_there(const dem_world *w, dem_wall wall) {
     const int place = demi_wall_place(wall);
     return wall.id > 0 && place < w->wall_count && w->walls[place].id == wall.id &&
         w->walls[place].kind != DEMI_WALL_NONE;
+}
+/* True if a sieve consists of round wires or bars; others are plates. */
+static int demi_sieve_wires(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
 }

@@ -431,7 +431,7 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
                                         size_t size, demi_checkpoint_head *head) {
     const char *call = "dem_checkpoint_read";
     uint64_t sum;
-    if (size < sizeof *head || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
+    if (size < sizeof *head + sizeof sum || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with "
                          "dem_checkpoint_write", call, path,
                          size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8)

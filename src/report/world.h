@@ -135,13 +135,6 @@ DEM_API const char *dem_world_error_get(const dem_world *w) {
     ((dem_world *)w)->refused = 0;              /* the message has been read */
     return w->error;
 }
-DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
-    if (!w) return DEM_WORLD_DESC;
-    dem_world_desc d = w->desc;
-    if (w->clock.dt > 0) d.dt = w->clock.dt;
-    d.skin = (dem_real)w->margin.skin;
-    return d;
-}
 
 /* Prints the levels of a hierarchical grid, and the estimated work of a search with levels and
    with one grid. */

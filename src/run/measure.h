@@ -619,3 +619,11 @@ DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
     }
     return demi_contacts_hash(w, h);
 }
+
+DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
+    if (!w) return DEM_WORLD_DESC;
+    dem_world_desc d = w->desc;
+    if (w->clock.dt > 0) d.dt = w->clock.dt;
+    d.skin = (dem_real)w->margin.skin;
+    return d;
+}

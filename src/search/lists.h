@@ -21,8 +21,6 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* allows for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
 }
-static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
-                                   dem_real enough);
 /* Sorts the candidates of one body and wall, from entry `first` on, by element and removes
    duplicates, so that their order does not depend on the wall's cells. */
 static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first) {

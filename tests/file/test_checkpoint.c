@@ -907,6 +907,28 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         remove(path);
     }
+    TEST("a file that ends within the header and the checksum of a checkpoint is rejected, even if the last bytes are the checksum of the others and the stated size is their difference") {
+        dem_world *world = tiny_world(2500);
+        demi_checkpoint_head head;
+        size_t size, n;
+        char *data;
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        data = file_get(path, &size);
+        for (n = 0; n < 8; n++) {
+            const size_t length = sizeof head + n;
+            uint64_t sum;
+            memcpy(&head, data, sizeof head);
+            head.body_size = (uint64_t)n - 8;           /* wraps */
+            memcpy(data, &head, sizeof head);
+            sum = demi_hash(DEMI_HASH_START, data, length - sizeof sum);
+            memcpy(data + length - sizeof sum, &sum, sizeof sum);
+            file_put(path, data, length);
+            refused(world, DEM_ERROR_FORMAT, "cut short within its header");
+        }
+        free(data);
+        dem_world_destroy(world);
+        remove(path);
+    }
     TEST("a checkpoint with any byte changed is rejected with a named error and leaves the world unchanged") {
         dem_world *world = tiny_world(2500);
         size_t size, n;
