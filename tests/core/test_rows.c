@@ -32,7 +32,7 @@ static void rows_cover(const char *text, const char *type, size_t size, const de
 enum { ROWS_WORLD, ROWS_MATERIAL, ROWS_PAIR, ROWS_SIEVE, ROWS_FEED, ROWS_OUTLET, ROWS_DESCS };
 static void row_spoil(const demi_field_row *r, void *item, int k, double x) {
     char *at = (char *)item + r->offset + (size_t)k*demi_row_item(r);
-    const int32_t i = (int32_t)x;
+    const int32_t i = fabs(x) < INT32_MAX ? (int32_t)x : 0;
     const dem_real y = (dem_real)x;
     if (r->type == 'i' || r->type == 'e') memcpy(at, &i, sizeof i);
     else if (r->type == 'd') memcpy(at, &x, sizeof x);
