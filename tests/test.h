@@ -10,6 +10,7 @@
 
    With the environment variable TEST_NUMBERS set, every test also prints one row of a table: its sentence and
    the number that came nearest to its tolerance (tests/validation.awk makes docs/data/validation.csv of these).
+   With TEST_TIMES set, every test prints its processor seconds.
 
    A check that fails prints the sentence and the numbers, and the test goes on. A test without a check
    fails. `continue` leaves a test early. Works with any C99 or C++11 compiler. */
@@ -19,12 +20,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 typedef struct test_state {
     const char *program, *filter, *sentence;  /* sentence: null between tests */
     int passed, failed;                       /* tests */
     int checks, wrong;                        /* of the present test */
     int numbers;                              /* print rows? */
+    int times;                                /* print processor seconds? */
+    clock_t began;
     double used, value, expected, tolerance;  /* of the tightest number of the present test */
     const char *text;
 } test_state;
@@ -36,6 +40,7 @@ static inline void test_begin(int argc, char **argv) {
     test_now.program = slash ? slash + 1 : argc > 0 ? argv[0] : "test";
     test_now.filter = argc > 1 ? argv[1] : "";
     test_now.numbers = getenv("TEST_NUMBERS") != 0;
+    test_now.times = getenv("TEST_TIMES") != 0;
 }
 static inline int test_close(void) {          /* 0: the for of TEST ends */
     if (!test_now.sentence) return 0;
@@ -44,6 +49,8 @@ static inline int test_close(void) {          /* 0: the for of TEST ends */
     if (test_now.numbers && test_now.text)
         printf("| %s | `%s` | %.9g | %.9g | %.2g | %.0f %% |\n", test_now.sentence, test_now.text, test_now.value,
                test_now.expected, test_now.tolerance, 100*test_now.used);
+    if (test_now.times)
+        printf("%8.2f s  %s: %s\n", (double)(clock() - test_now.began)/CLOCKS_PER_SEC, test_now.program, test_now.sentence);
     if (test_now.wrong > 0 || test_now.checks == 0) test_now.failed++;
     else test_now.passed++;
     test_now.sentence = 0;
@@ -54,6 +61,7 @@ static inline int test_open(const char *sentence) {
     test_close();                             /* the last one, when it was left by break */
     if (!strstr(sentence, test_now.filter)) return 0;
     test_now.sentence = sentence;
+    test_now.began = clock();
     test_now.checks = test_now.wrong = 0;
     test_now.text = 0;
     test_now.used = 0;
