@@ -1,24 +1,29 @@
 /* ---------------------------------------------------------------------------------------------
    >>step
-   One step in the order of the manual, for all members of a team together (>>team): a single world,
-   or slabs. A phase runs over the work groups of a member in parallel. A phase ends when all groups
-   have finished, since the next one needs their results: after the move (which bodies came near
-   each other), after touch (whether the lists had room), after respond (forces on bodies of other
-   groups). A step begins with the forces that the step before computed last. Its second half kick
-   is left open until the state is read (demi_finish), because the first half kick of the next step
-   adds the same force: velocities are written once a step, not twice. Quantities that only a reader
+   Time integration: one step, in the stages that section 10 of the manual lists, for all members
+   of a team together (>>team), that is for a single world or for slabs. A phase runs over the work
+   groups of a member in parallel. It ends when all groups have finished, because the next phase
+   needs their results: after the move, which bodies came near each other; after touch, whether the
+   lists had room; after respond, the forces on bodies of other groups.
+   This part owns the time, the stages of demi_stages, the displacements since the last rebuild, and
+   the poses and loads of walls. Integrators (>>integrators) move the bodies, responses
+   (>>responses) compute the forces.
+   A step begins with the forces that the previous step computed. Its second half kick is left open
+   until the state is read (demi_finish), because the first half kick of the next step adds the same
+   force: so velocities are written once per step instead of twice. Quantities that only a reader
    needs, for example the kinetic energy, are computed when they are read. An error is found in the
    step that caused it, and the message names the body. A step that ran out of memory after its move
-   is marked (stage.moved); the next call continues it.
+   is marked by stage.moved; the next call continues it.
    --------------------------------------------------------------------------------------------- */
 
-/* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite
-   (a maximum loses it). In groups, each place of which has its own maximum and sum: that is what
-   makes vectors of it. */
+/* Largest |v|^2 and |a|^2 of some bodies, and the sum of |v|^2. The sum is not finite if any
+   velocity is not finite; a maximum would lose that. Each lane has its own maxima and sum, so that
+   the compiler vectorizes the loop over bodies. */
 typedef struct demi_pace {
+    /* (m/s)^2, of half-step velocities; (m/s2)^2, of the forces that move the bodies; (m/s)^2 */
     dem_real speed2[DEMI_LANES], acceleration2[DEMI_LANES], sum[DEMI_LANES];
 } demi_pace;
-/* Maxima and a sum, per lane: the sum is not finite when any velocity is not. */
+/* Adds body i to lane l. */
 DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRICT pace, int l) {
     const dem_real *v = w->bodies.half_vel + 4*i, *f = w->bodies.force + 4*i,
         inv = w->bodies.inv_mass[i];
@@ -30,7 +35,8 @@ DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRI
     pace->acceleration2[l] = a > pace->acceleration2[l] ? a : pace->acceleration2[l];
     pace->sum[l] += s;
 }
-/* Moves some bodies, looks at their pace, clears their forces. */
+/* Moves the bodies begin .. end - 1 of a work group by one step, adds them to `pace`, and sets
+   their forces to 0; if `turning`, also rotates them and sets their torques to 0. */
 static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end, int turning,
                            demi_pace *pace) {
     const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
@@ -54,7 +60,8 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     memset(w->bodies.force + 4*begin, 0, bytes);
     if (turning) memset(w->bodies.torque + 4*begin, 0, bytes);
 }
-/* The same for a domain in which some bodies may be quiet. */
+/* The same for a whole work group in which some bodies may be isolated (demi_quiet). Isolated
+   bodies keep their velocity: only their positions change, and their stored speed is used. */
 static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
     demi_domain *domain = &w->domains[d];
     const dem_real *DEMI_RESTRICT u = w->bodies.half_vel, dt = w->clock.dt;
@@ -81,8 +88,9 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
 }
-/* J, of gravity in this step on the bodies of a domain: by their momentum, which rows of four sum
-   together. (What does not move has no velocity.) */
+/* Returns the work of gravity in this step on the bodies of a work group, J: their momentum times
+   g dt. The fourth column is summed only so that the loop vectorizes. Bodies that do not move add
+   nothing, because their velocity is 0. */
 static double demi_gravity_work(const dem_world *w, const demi_domain *domain) {
     const dem_real *DEMI_RESTRICT u = w->bodies.half_vel, *DEMI_RESTRICT mass = w->bodies.mass;
     const dem_vec3 g = w->desc.gravity;
@@ -93,7 +101,8 @@ static double demi_gravity_work(const dem_world *w, const demi_domain *domain) {
     return ((double)g.x*momentum[0] + (double)g.y*momentum[1] + (double)g.z*momentum[2])*
         (double)w->clock.dt;
 }
-/* All bodies of a domain, a few at a time; what is found on the way goes into the domain's sums. */
+/* Moves all bodies of work group d, a few at a time, and stores the maxima and sums found on the
+   way in the group. */
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const int turning = demi_turns(w), some = 64;   /* these stay in the nearest cache */
@@ -110,7 +119,7 @@ static void demi_domain_move(dem_world *w, int d) {
         domain->acceleration2 = DEMI_MAX(domain->acceleration2, (double)pace.acceleration2[i]);
         domain->check += (double)pace.sum[i];
     }
-    /* where contacts are found, bodies have gone with the velocity of the end of the step */
+    /* midpoint rule: between two contact detections bodies move with full-step velocities */
     for (i = domain->begin; i < domain->end && demi_response_is(w, DEMI_MIDWAY); i++) {
         const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
         domain->speed2 = DEMI_MAX(domain->speed2, (double)demi_dot(v, v));
@@ -118,8 +127,8 @@ static void demi_domain_move(dem_world *w, int d) {
     if (w->desc.ledger) domain->energy[DEMI_E_GRAVITY] = demi_gravity_work(w, domain);
 }
 
-/* Time and velocities that fields of force see: of now, or with the midpoint rule in the middle of
-   the next step, if velocities go on as in the last one. */
+/* Time, s, and velocity that force fields receive: the present ones. With the midpoint rule those
+   in the middle of the next step: velocities are extrapolated with the change of the last step. */
 static double demi_field_time(const dem_world *w) {
     return w->clock.time + (demi_response_is(w, DEMI_MIDWAY) ? (double)w->clock.dt/2 : 0);
 }
@@ -128,7 +137,7 @@ DEM_INLINE dem_vec3 demi_field_rate(const dem_world *w, const dem_real *now, con
     const dem_vec3 v = demi_at(now + 4*i);
     return demi_response_is(w, DEMI_MIDWAY) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
 }
-/* Forces and torques of a field that sees whole bodies. */
+/* Adds the forces and torques of desc.body_force to the bodies of work group d. */
 static void demi_domain_fields(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i;
@@ -149,7 +158,8 @@ static void demi_domain_fields(dem_world *w, int d) {
                                                               body.spin))*(double)w->clock.dt;
     }
 }
-/* Force field, or nothing, to start the sums with; after a move forces are clear already. */
+/* Starts the sums of forces and torques of work group d: with 0, or with the force fields. The move
+   of a step has already set forces to 0. */
 static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
@@ -173,8 +183,9 @@ static void demi_domain_clear(dem_world *w, int d) {
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
 }
-/* All contacts that a domain owns. Its own bodies are summed here; forces on bodies of other
-   domains stay in slots until all have answered (demi_cross_gather). */
+/* Computes the forces of all contacts that work group d owns. Forces on its own bodies are added
+   here. Forces on bodies of other groups are stored in cross_force until all groups have finished
+   (demi_cross_gather). */
 static void demi_domain_respond(dem_world *w, int d) {
     const demi_response_row *response = &demi_responses[w->desc.response];
     const size_t walls = (size_t)w->wall_count;
@@ -186,11 +197,13 @@ static void demi_domain_respond(dem_world *w, int d) {
     }
     if (response->respond) response->respond(w, d);
 }
-/* What others did to this domain's bodies, in the order of their entries. */
+/* Adds the forces that contacts of other work groups exert on the bodies of group d, in the order
+   of cross_incoming. With user-defined functions, which may return any number, it also stores a sum
+   that is not below 1e300 if any force or user-defined number is not finite or too large. */
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries && demi_responses[w->desc.response].respond) demi_cross_gather(w, d);
-    if (demi_own(w)) {                          /* those of your own may answer anything */
+    if (demi_own(w)) {
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
             sum += fabs((double)w->bodies.force[i]) + fabs((double)w->bodies.torque[i]);
@@ -200,11 +213,11 @@ static void demi_domain_gather(dem_world *w, int d) {
         w->domains[d].check = sum;
     }
     if (!w->desc.planar) return;
-    /* nothing pushes a disc out of its plane */
+    /* discs stay in the plane z = 0 */
     for (i = w->domains[d].begin; i < w->domains[d].end; i++)
         w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
 }
-/* What walls gain of the user's numbers per second: domains in order, as above. */
+/* Sums the rates, per second, of the walls' user-defined numbers over the work groups, in order. */
 static void demi_walls_rates(dem_world *w) {
     const size_t n = (size_t)w->bodies.real_count, walls = (size_t)w->wall_count;
     size_t i, k;
@@ -217,7 +230,10 @@ static void demi_walls_rates(dem_world *w) {
                 c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
         }
 }
-/* Forces at the present positions and velocities; wall loads. 0: memory ran out. */
+/* Computes the forces at the present positions and velocities, and the loads of walls. The
+   persistent contacts found by touch become the present ones. If forces_valid is 0 the forces
+   belong to no step (demi_refresh): contact histories and time integrals of loads stay as they are.
+   Returns 0 if memory ran out. */
 static int demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
     const demi_response_row *response = &demi_responses[w->desc.response];
@@ -234,7 +250,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
-    for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
+    for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
         double f[3] = {0, 0, 0}, t[3] = {0, 0, 0}, power = 0;
@@ -264,7 +280,8 @@ static int demi_forces(dem_world *w) {
     return 1;
 }
 
-/* Which two bodies overlap most, of the smaller radius. Answers by how much. */
+/* Finds the two bodies with the largest overlap, relative to the smaller radius. Returns that
+   overlap; 0 and no bodies if none overlap. */
 static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
     double most = 0;
     int d, k;
@@ -289,7 +306,9 @@ static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
     return most;
 }
 
-/* Names the body that went wrong. */
+/* Fails with a message that names the body at fault, and the likely cause. Tested in this order:
+   numbers that are not finite, an overlap with a wall or between bodies of at least the radius, and
+   otherwise the body with the largest speed or acceleration. */
 static dem_result demi_unstable(dem_world *w) {
     int i, d, first = 0, second = 0;
     double deepest;
@@ -378,7 +397,8 @@ static dem_result demi_outflow(dem_world *w) {
     return DEM_OK;
 }
 
-/* Time after one more step. */
+/* Advances the time by one step. The time is computed from the start of the present step length,
+   so that rounding errors do not accumulate (demi_since). */
 static void demi_time_pass(dem_world *w) {
     const double dt = (double)w->clock.dt;
     if (w->clock.since.dt < dt || w->clock.since.dt > dt) {
@@ -389,7 +409,9 @@ static void demi_time_pass(dem_world *w) {
     w->clock.steps++;
     w->clock.time = w->clock.since.time + (double)(w->clock.steps - w->clock.since.steps)*dt;
 }
-/* 1 move: first half kick, drift, predicted velocities; walls follow. */
+/* 1 move: first half kick, drift, predicted velocities; walls follow their motions. Also computes
+   what the move says about the lists: largest speed and displacements. Fails if a velocity is not
+   finite, a body rotates too far in the step, or a motion gives an impossible pose. */
 static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
@@ -406,7 +428,7 @@ static dem_result demi_step_move(dem_world *w) {
         turn_speed = DEMI_MAX(turn_speed, w->domains[d].turn_speed);
         turn_rate = DEMI_MAX(turn_rate, w->domains[d].turn_rate);
     }
-    /* series end there */
+    /* the power series of demi_orient_move are valid up to there */
     if (sqrt(turn_rate)*(double)w->clock.dt > (w->desc.allow_large_dt ? 2 : 1))
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
@@ -439,7 +461,7 @@ static dem_result demi_step_move(dem_world *w) {
         wall->pose = pose;
         wall->mid = mid;
         speed = demi_wall_speed(wall);
-        if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: look anew */
+        if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: search in every step */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
     w->margin.walls_gone += w->wall_fastest*(double)w->clock.dt;
@@ -447,7 +469,7 @@ static dem_result demi_step_move(dem_world *w) {
     return DEM_OK;
 }
 
-/* Largest overlap of the forces just worked out, over the smaller radius. */
+/* Returns the largest overlap in the forces just computed, relative to the smaller radius. */
 static double demi_overlap(const dem_world *w) {
     double overlap = 0;
     int d;
@@ -455,7 +477,8 @@ static double demi_overlap(const dem_world *w) {
     return overlap;
 }
 
-/* The user's numbers of a domain's bodies follow the rates of the step. */
+/* Integrates the user-defined numbers of work group d over the step: by body_reals_fn, or by the
+   explicit Euler scheme. */
 static void demi_domain_gain(dem_world *w, int d) {
     const int n = w->bodies.real_count;
     const dem_real dt = w->clock.dt;
@@ -472,7 +495,8 @@ static void demi_domain_gain(dem_world *w, int d) {
                                   w->desc.body_reals_user);
     }
 }
-/* After the forces of a step, not where they are only looked at: what the user's numbers gain. */
+/* Integrates the user-defined numbers of bodies, and what walls have gained of them, over the step.
+   Called once per step, and not when forces are computed without a step. */
 static void demi_reals_gain(dem_world *w) {
     int i, k;
     if (!w->bodies.real_count) return;
@@ -482,8 +506,8 @@ static void demi_reals_gain(dem_world *w) {
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
 }
 
-/* The force on a body by the contacts of one member, its torque if bodies rotate, and the rates of
-   user-defined numbers: of ghosts they are added to those of the owner. */
+/* The record (demi_record) of forces: a ghost's force, torque if bodies rotate, and rates of
+   user-defined numbers, which are added to those of its owner. */
 static size_t demi_pushes_size(const dem_world *w) {
     return ((demi_turns(w) ? 6 : 3) + (size_t)w->bodies.real_count)*sizeof(dem_real);
 }
@@ -507,6 +531,7 @@ static const demi_record demi_pushes = {demi_pushes_size, demi_pushes_put, demi_
 
 /* --- the phases of a step, each for one member --- */
 
+/* Moves the bodies unless this step has moved them already. Ghosts rest: their owner moves them. */
 static dem_result demi_member_move(dem_world *w) {
     dem_result result;
     if (w->stage.moved) return DEM_OK;
@@ -515,7 +540,7 @@ static dem_result demi_member_move(dem_world *w) {
     w->stage.moved = result == DEM_OK;
     return result;
 }
-/* Builds the pruned neighbour list, if it is due. */
+/* Rebuilds the pruned neighbour list if it is due. */
 static dem_result demi_member_near(dem_world *w) {
     if (!w->stage.near_stale && !demi_near_due(w)) return DEM_OK;
     if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
@@ -530,7 +555,8 @@ static dem_result demi_member_touch(dem_world *w) {
 static dem_result demi_member_forces(dem_world *w) {
     return demi_forces(w) ? DEM_OK : demi_no_memory(w, "dem_world_step");
 }
-/* Ends a step once all forces are known, except for the second half kick (see above). */
+/* Ends a step when all forces are known; only the second half kick stays open (see above). Fails if
+   user-defined functions returned impossible numbers, or an overlap has reached the radius. */
 static dem_result demi_member_end(dem_world *w) {
     int d;
     demi_reals_gain(w);
@@ -545,7 +571,8 @@ static dem_result demi_member_prime(dem_world *w) {
     return DEM_OK;
 }
 static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
-/* Before and after forces that belong to no step: contact histories stay as they are. */
+/* Run before and after forces are computed without a step. forces_valid = 0 makes contact histories
+   stay as they are. */
 static dem_result demi_member_look(dem_world *w) {
     demi_kernel_choose(w);
     w->stage.forces_valid = 0;
@@ -570,8 +597,9 @@ static void demi_walls_follow(dem_world *w, const dem_world *first) {
     }
 }
 
-/* After a move: updates the time and the margins of the lists, which are maxima over all members,
-   and decides whether a pruned list is due. */
+/* After a move: copies the time to the head, and takes maxima over all members of the speed and of
+   the displacements that limit the life of lists. Sets near_due if the pruned list of any member
+   may be due; then each member decides about its own (demi_member_near). */
 static dem_result demi_moved(dem_world *h) {
     enum { SPEED, WALLS, CHANGE, CREEP, AGE, GONE, COUNT };
     const dem_world *first = demi_member(h, 0);
@@ -628,10 +656,10 @@ static dem_result demi_all_rebuild(dem_world *h) {
     if (result == DEM_OK) demi_kernel_choose(h);
     return result;
 }
-/* Computes all forces: 3 touch, 4 respond, 5 gather of the manual. near: a pruned list may be due.
-   Lists of contacts of spheres always have room (demi_kept_room). With other shapes all members
-   agree that they had room before any computes forces, because a contact history may advance only
-   once per step. */
+/* Computes all forces: 3 touch, 4 respond, 5 gather. near: 1 if pruned lists may be due. Lists of
+   contacts of spheres always have room (demi_kept_room). With other shapes the members first agree
+   that touch has succeeded in all of them, and only then compute forces, because a contact history
+   may advance only once per step. */
 static dem_result demi_all_forces(dem_world *h, int near) {
     dem_result result = h->team ? h->team->lend(h) : DEM_OK;
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
@@ -641,14 +669,15 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
     return result;
 }
-/* A step after its move. Numbers as in the manual. */
+/* The part of a step after its move: outflow, outlets, 2 search, 3 to 5 forces. With impulses,
+   desc.unsolved_stops makes a step fail whose solver did not reach its tolerance. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
     const demi_margin *m = &h->margin;
     dem_result result = DEM_OK;
     int search = !h->stage.list_valid;
-    /* 2 search: when something may have come near that is not in the list. Outlets look then:
-       nobody gets farther than half a skin between two lists */
+    /* 2 search, if a pair that is not in the list may have come near. Outlets act at the same time
+       and every DEMI_OUTLET_REST steps: between two lists no body moves farther than half a skin */
     if (demi_outflows(h)) result = demi_all_lose(h, demi_outflow, &search);
     search |= m->skin <= 0 || 2*m->gone > m->skin || m->gone + m->walls_gone > m->skin;
     if (result == DEM_OK && demi_member(h, 0)->outlet_count &&
@@ -671,8 +700,8 @@ static dem_result demi_step_answer(dem_world *h) {
                      2*h->solver.limited > h->solver.count ? "where sweeps converge slowly"
                      : "the others carry more load than so many sweeps pass on");
 }
-/* Calls a function at the positions at which contacts are found: with the midpoint rule those half
-   a step ahead. */
+/* Calls a function at the positions of contact detection: the present ones, with the midpoint rule
+   those half a step ahead. */
 static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) {
     dem_result result;
     if (!demi_response_is(h, DEMI_MIDWAY)) return answer(h);
@@ -681,7 +710,7 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
     demi_ahead_back(h);
     return result;
 }
-/* One step. One that ran out of memory after its move goes on from there. */
+/* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
     if (!h->stage.moved) {
         dem_result result = demi_all(h, demi_member_move);
@@ -691,10 +720,11 @@ static dem_result demi_step_once(dem_world *h) {
     return demi_answer(h, demi_step_answer);
 }
 
+/* demi_refresh at the positions of contact detection. */
 static dem_result demi_refresh_answer(dem_world *h) {
     dem_result result = DEM_OK;
     int stale = 0;
-    if (h->stage.pairs_changed) {               /* half steps were of the old forces, and effects */
+    if (h->stage.pairs_changed) {               /* half-step velocities belong to the old forces */
         h->stage.primed = 0;
         if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");
     }
@@ -707,7 +737,8 @@ static dem_result demi_refresh_answer(dem_world *h) {
     h->stage.forces_valid = result == DEM_OK;
     return result;
 }
-/* Something changed since the last step: forces at t, by a new list if need be; memory stays. */
+/* Computes the forces at the present time, because the scene has changed since the last step;
+   rebuilds the lists if necessary. Contact histories stay as they are. */
 static dem_result demi_refresh(dem_world *h) {
     const dem_result result = demi_all(h, demi_member_finish);
     return result == DEM_OK ? demi_answer(h, demi_refresh_answer) : result;
@@ -719,7 +750,7 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_gravity_set: gravity is (%g, %g, %g) "
                          "m/s2, must be finite and at most %g; check what it was computed from",
                          (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
-    demi_finish(w);                             /* the half kick that is due is of the old one */
+    demi_finish(w);                             /* the open half kick belongs to the old gravity */
     w->desc.gravity = gravity;
     if (w->desc.planar) w->desc.gravity.z = 0;
     demi_scene_changed(w);
@@ -735,17 +766,19 @@ DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
                          "no contact time to choose it from; set it, for example 1e-3 s for "
                          "grains of millimetres");
-    demi_finish(w);                             /* half steps were of the old one */
+    demi_finish(w);                             /* the open half kick belongs to the old dt */
     w->desc.dt = dt;
     demi_scene_changed(w);
     return DEM_OK;
 }
-/* Films and outputs that are due at this step. */
+/* Records replay frames and writes outputs that are due at this step. */
 static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
-/* Before a step: its dt, new grains, forces of a scene that has changed. */
+/* Prepares a step: settles the time step, inserts grains of feeds, computes the forces of a scene
+   that has changed, checks the time step against the present contacts, and sets half-step
+   velocities. */
 static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
     if (result == DEM_OK && h->feed_count) {
@@ -766,7 +799,8 @@ static dem_result demi_step_ready(dem_world *h) {
     h->stage.primed = 1;
     return demi_all(h, demi_member_prime);
 }
-/* Runs steps of all members, with films and outputs in between. */
+/* Performs `steps` steps of all members, with replay frames and outputs between them. `call` names
+   the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     dem_result result = steps ? demi_look(h) : DEM_OK;
     int i, whole = 1;
@@ -781,8 +815,8 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
         h->look.calling = was;
         if (result == DEM_OK) result = demi_look(h);
     }
-    if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* on the last forces */
-    /* half a step: its velocities stay as predicted */
+    if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */
+    /* not in the middle of a step: velocities then stay as predicted */
     if (whole || !h->stage.moved) demi_all(h, demi_member_finish);
     return result;
 }
