@@ -1,10 +1,12 @@
 /* ---------------------------------------------------------------------------------------------
    >>runs
-   Runs of many steps: for a time, up to a time, until the grains are at rest; what a run tells its
-   user on the way. Uses public functions and the numbers that a step leaves behind.
+   Runs of many steps: for a time, up to a time, or until the grains are at rest; and reports of
+   progress. Owns the end of the last run (clock.run_end, run_steps) and the progress reported
+   (look.tenths_told). Otherwise it calls public functions and reads the state after a step.
    --------------------------------------------------------------------------------------------- */
 
-/* Asks the user's progress function, if any. `since`: s of wall time when the call began. */
+/* Calls the progress function, if there is one. Returns DEM_ERROR_STOPPED if it stops the run, else
+   DEM_OK. done: fraction of the run, 0 to 1; since: wall time at the begin of `call`, s. */
 static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
                                 void *user, double done, double since) {
     const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
@@ -24,8 +26,9 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
                          ">= 0", seconds);
     if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (progress) w->look.tenths_told = 0;      /* dem_world_settle tells for several runs */
+    if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
     end = start + seconds;
+    /* it continues the last run: from the end that was requested there, so that runs add up */
     if (w->clock.run_steps == w->clock.steps &&
         fabs(w->clock.run_end - start) <= (double)w->clock.dt)
         end = w->clock.run_end + seconds;
@@ -47,7 +50,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
                                    (w->clock.time - start)/seconds, begun);
             if (result != DEM_OK) return result;
         }
-        /* short steps: look at the clock less often */
+        /* short steps: read the clock less often */
         if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
     }
     w->clock.run_end = end;
@@ -62,11 +65,12 @@ DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn p
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
                          "and not before now (%g s); to go back in time, read a checkpoint", time,
                          w->clock.time);
-    w->clock.run_steps = w->clock.steps + 1;        /* it does not follow the run before */
+    w->clock.run_steps = w->clock.steps + 1;        /* it does not continue the last run */
     return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
 }
 
-/* m/s: largest speed of the bodies that can move, and the root of the mean of its square. */
+/* Returns the largest speed, m/s, of the bodies that can move. *mean receives the root of the mean
+   square speed, weighted by mass, m/s. */
 static double demi_speeds(const dem_world *w, double *mean) {
     double sum = 0, most = 0, mass = 0;
     int i;
@@ -81,12 +85,14 @@ static double demi_speeds(const dem_world *w, double *mean) {
     *mean = mass > 0 ? sqrt(sum/mass) : 0;
     return sqrt(most);
 }
-/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius.
-   *look: s, the time to fall by half a radius, or to go that far: a body that turns round is not at
-   rest. */
+/* Returns the speed below which grains count as at rest, m/s: `speed`, or if that is 0 a hundredth
+   of the speed after a fall through the mean radius. *look receives the time between two tests, s:
+   a fall through half a radius takes it, or without gravity a way of half a radius at that speed.
+   So a body that is at rest for an instant only, at its highest point, does not pass three tests.
+   */
 static double demi_calm(const dem_world *w, double speed, double *look) {
     const double g = (double)demi_length(w->desc.gravity);
-    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
+    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first grains */
     int i;
     if (w->bodies.count) radius = 0;
     for (i = 0; i < w->bodies.count; i++)
@@ -95,13 +101,13 @@ static double demi_calm(const dem_world *w, double speed, double *look) {
     *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
     return speed;
 }
-/* The first feed that still brings grains; -1: none does. */
+/* Returns the index of the first feed that has grains left to insert; -1: none has. */
 static int demi_feed_coming(const dem_world *w) {
     int i = 0;
     while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
     return i < w->feed_count ? i : -1;
 }
-/* Time is up: why the bodies are not at rest. */
+/* Fails because the time of dem_world_settle is over, and says why the bodies are not at rest. */
 static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
     const int i = demi_feed_coming(w);
     double mean, most = demi_speeds(w, &mean);
@@ -158,7 +164,9 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
 }
 
-/* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
+/* demi_isatty: true if a file is a terminal. Standard C has no such function. On the systems below
+   that of the C library is called under another name, as readlink in >>write; on others it returns
+   1. */
 #if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
     !defined(__CYGWIN__)
 int demi_isatty(int file) __asm__("isatty");
