@@ -1,12 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>advice
-   Which time step a scene bears: contact times and stable steps of the pairs that may meet, of the
-   contacts that are there, of spins and speeds; what dt = 0 chooses and what is refused by name.
-   Reads everything, writes only dt and room of its own.
+   The critical time step: the step that a scene allows, from the durations of collisions and the
+   stability limits of contacts that may occur, from the contacts that exist now, from spins and
+   from speeds. It chooses the step if desc.dt is 0, and rejects a given step that is too long, with
+   a message that names the cause. Owns dt, the reasons for it (clock.held), and work arrays (press,
+   press_whole, pressed). Reads everything else. A head (h) considers all members of its team.
    --------------------------------------------------------------------------------------------- */
 
-/* m/s, how fast a wall's surface will move, whether it has begun to or not; of a motion that is the
-   user's own, how fast it does now. */
+/* Returns the largest speed of a wall's surface during its motion, m/s, also before the motion has
+   begun. For a user-defined motion: its present speed. A table is sampled eight times per row. */
 static double demi_motion_speed(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     const double far = (double)DEMI_MAX(wall->extent, wall->radius);
@@ -38,13 +40,15 @@ static double demi_motion_speed(const demi_wall *wall) {
     }
     return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
 }
-/* The direction of gravity, or 0. */
+/* Returns the unit vector of gravity, or 0 without gravity. */
 static dem_vec3 demi_down(const dem_world *w) {
     return demi_length(w->desc.gravity) > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
 }
-/* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
-   one as light as a contact may find the body at worst; for Hertz, whose time goes with
-   (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
+/* Radius of the sphere, m, that replaces a body when contact times are estimated. For a shape with
+   a sphere of equal volume of radius `equal`, the mass of that sphere is the smallest effective
+   mass that a contact may find. The Hertz contact time is proportional to (m^2/R)^(1/5). So if the
+   radius of curvature of the flattest point is larger, the mass is also multiplied by the root of
+   the ratio of the two radii. demi_advise_radius: the same for a body. */
 static double demi_advise_shape(const dem_world *w, const demi_shape *shape, double equal) {
     const double scale = equal/(double)shape->equal, r = equal*demi_pow(shape->light, 1.0/3);
     const double sharp = r/((double)shape->blunt*scale);
@@ -55,16 +59,17 @@ static double demi_advise_radius(const dem_world *w, int body) {
     const double r = (double)w->bodies.pos[4*body + 3];
     return shape ? demi_advise_shape(w, shape, (double)shape->equal*(r/(double)shape->radius)) : r;
 }
-/* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
-   velocities: omega2 dt^2/4 + rate dt = 1, s. (For the other integrators about the same.) */
+/* Returns the largest step, s, at which velocity Verlet with predicted velocities integrates
+   x'' = -omega2 x - rate x' stably: omega2 dt^2/4 + rate dt = 1. (For the other integrators it is
+   about the same.) */
 static double demi_dt_stable(double omega2, double rate) {
     return 2/(rate + sqrt(rate*rate + omega2) + 1e-300);
 }
-/* How stiff and how damped one contact is at an overlap, for small motions: N/m and N s/m, rolling
-   N m and N m s. */
+/* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
+   rolling, N m. Damping: likewise, N s/m and N m s. */
 typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
-/* Slopes of force against way, and of damping against speed, at an overlap: what the stability of a
-   step hangs on. Of a law of the user's own, what desc.law_stiffness says. */
+/* Returns the derivatives of a contact's force with respect to displacement and velocity at an
+   overlap (m); the stability of a step depends on them. A user-defined law: desc.law_stiffness. */
 static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef, double m_eff,
                                         double overlap) {
     const double root = sqrt(overlap), r = (double)coef[DEMI_R_EFF];
@@ -89,7 +94,8 @@ static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef
     }
     return s;
 }
-/* Of one contact to come, of spheres that meet at a speed: at its deepest. */
+/* Returns the largest stable step, s, for a collision of two spheres at a speed (m/s): the limit at
+   the largest overlap. */
 static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, double m_eff,
                                  double speed) {
     const double deep = demi_pow(5*m_eff*speed*speed/(4*(double)coef[DEMI_KN]), 0.4);
@@ -98,16 +104,18 @@ static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, doubl
     const double slide = 3.5*s.kt/m_eff + s.kr/I;
     return demi_dt_stable(DEMI_MAX(s.k/m_eff, slide), DEMI_MAX(s.c/m_eff, 3.5*s.ct/m_eff + s.cr/I));
 }
-/* What the choice of a time step depends on: the grains that there are, of all parts, and those
-   that feeds will bring. */
+/* The properties of the grains of all members, and of those that feeds will insert, on which the
+   choice of a time step depends. Radii are those of demi_advise_radius. */
 typedef struct demi_grades {
-    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m: moving; largest that is fixed */
-    double many[DEMI_MATERIALS];                           /* that move, or more of their like */
-    double bodies;
-    double speed, spin;            /* m/s; rad/s, of bodies that are not spheres: the fastest */
-    double lo, hi;                 /* m, along gravity: from where to where there are bodies */
+    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m, by material: smallest radius of
+                                      bodies that can move; largest of fixed bodies */
+    double many[DEMI_MATERIALS];   /* by material: number of bodies that can move */
+    double bodies;                 /* number of all bodies */
+    double speed, spin;            /* largest speed, m/s; spin of bodies that are not spheres,
+                                      rad/s */
+    double lo, hi;                 /* m, extent of the bodies along gravity */
 } demi_grades;
-/* Adds the bodies of one part. */
+/* Adds the bodies of one member, without its ghosts. */
 static void demi_grades_add(const dem_world *w, demi_grades *g) {
     const dem_vec3 down = demi_down(w);
     int i;
@@ -126,7 +134,8 @@ static void demi_grades_add(const dem_world *w, demi_grades *g) {
         if (!g->many[m]++ || equal < g->smallest[m]) g->smallest[m] = equal;
     }
 }
-/* Feeds count as if two grains of each class were there already. */
+/* Fills in *g for all members and all processes. Feeds count as if two grains of each of their
+   classes were there already. */
 static dem_result demi_grades_of(const dem_world *h, demi_grades *g) {
     dem_result result = DEM_OK;
     int i, j;
@@ -148,15 +157,16 @@ static dem_result demi_grades_of(const dem_world *h, demi_grades *g) {
     }
     return result;
 }
-/* Impact speed to reckon with: given, or the largest of what grains do now, what walls will do and
-   what gravity can make of the height there is. */
+/* Returns the impact speed to expect, m/s: desc.impact_speed, or if that is 0 the largest of the
+   speeds of grains, feeds and walls and of a fall through the height of the scene; at least 1e-3.
+   */
 static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
     const dem_vec3 down = demi_down(w);
     const double gravity = (double)demi_length(w->desc.gravity);
     double speed = g->speed, lo = g->lo, hi = g->hi;
     int i, k;
     if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
-    for (i = 0; i < w->feed_count; i++) {       /* grains that are to come */
+    for (i = 0; i < w->feed_count; i++) {       /* grains to be inserted */
         const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
         for (k = 0; k < 2; k++) {
             const double h = (double)demi_dot(k ? d->box.hi : d->box.lo, down);
@@ -184,12 +194,16 @@ static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
     if (gravity > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*gravity*(hi - lo)));
     return DEMI_MAX(speed, 1e-3);
 }
-/* The contact that lasts shortest, of those looked at so far, and the least stable step. */
+/* The shortest contact among those examined so far, and the smallest stable step. */
 typedef struct demi_shortest {
-    double time, limit, radius, partner;       /* s, s, m, m */
-    int material, other, wall;                 /* indices; wall: 1 + index, 0: none */
+    double time, limit;            /* s: contact time; stable step, possibly of another contact */
+    double radius, partner;        /* m; partner 0: a wall */
+    int material, other, wall;     /* indices of materials, -1: no contact yet; wall: its id, 0:
+                                      two grains */
 } demi_shortest;
-/* Smallest grains of material i with one kind of partner: material `other` (fixed or not), wall. */
+/* Examines the smallest grain of material i in contact with a wall (index, material `other`) or, if
+   wall is -1, with the smallest grain of material `other`, or its largest fixed grain if `fixed`.
+   */
 static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, int other, int fixed,
                              int wall, double speed, demi_shortest *s) {
     const double r = g->smallest[i], m = demi_sphere_mass(w, i, r);
@@ -209,24 +223,27 @@ static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, in
         s->limit = DEMI_MIN(s->limit, demi_dt_of_contact(w, coef, m_eff, speed));
     }
     if (t >= s->time) return;
-    s->time = t > 1e-37 ? t : 1e-37;            /* 0 would mean that there is none */
+    s->time = t > 1e-37 ? t : 1e-37;            /* 0 would mean: no contact */
     s->radius = r;
     s->partner = partner;
     s->material = i;
     s->other = other;
     s->wall = wall < 0 ? 0 : w->walls[wall].id;
 }
-/* pi r sqrt(rho/G)/(.1631 nu + .8766), the time a surface wave takes over the smallest grain. */
+/* Returns the Rayleigh time of a grain, s: pi r sqrt(rho/G)/(0.1631 nu + 0.8766), the time in which
+   a surface wave travels half round it; 1e300 if G is 0. */
 static double demi_rayleigh(const dem_material_desc *d, double r) {
     const double nu = (double)d->poisson, G = (double)d->young/(2*(1 + nu));
     return G > 0 ? DEMI_PI*r*sqrt((double)d->density/G)/(0.1631*nu + 0.8766) : 1e300;
 }
-/* What sets dt_max: a share of the contact time, or stability where that is smaller. */
+/* Names what limits dt_max: a fraction of the contact time, or stability if that is smaller. */
 static const char *demi_dt_limit(const dem_advice *a) {
     return (double)a->dt_max < 0.0499*(double)a->contact_time
         ? "the stability limit of dashpots and rolling" : "t_c/20";
 }
-/* Shortest contact among all material pairs and walls there are, for their smallest grains. */
+/* Computes the advice from the shortest contact among all pairs of materials, and with all walls,
+   of their smallest grains. A lone grain is paired with one of its kind: for the contact time, but
+   not for the stability limit. */
 static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice *out) {
     const double speed = demi_speed_estimate(w, g);
     double rayleigh = 1e300;
@@ -242,11 +259,11 @@ static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice 
             if (w->walls[j].kind != DEMI_WALL_NONE)
                 demi_advise_pair(w, g, i, w->walls[j].material, 0, j, speed, &s);
     }
-    for (i = 0; i < w->material_count && s.material < 0; i++)     /* one grain alone: its like */
+    for (i = 0; i < w->material_count && s.material < 0; i++)     /* a lone grain */
         if (g->smallest[i] > 0) {
             const double limit = s.limit;
             demi_advise_pair(w, g, i, i, 0, -1, speed, &s);
-            s.limit = limit;                    /* which is not there to be unstable with */
+            s.limit = limit;
         }
     memset(out, 0, sizeof *out);
     out->speed = (dem_real)speed;
@@ -275,37 +292,47 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     demi_advise_by(w, &g, out);
 }
 
-/* --- contacts that are there: pressed, and many to a grain. Small motions x about a state, with
-       stiffness K, damping C and mass M, first grow by changing sign from step to step. Velocity
-       Verlet with predicted velocities keeps them from it while
-           dt^2/4 K + dt C < M    (no eigenvector of M^-1 times the left side reaches 1)
+/* --- stability with the contacts that exist now ("pressed" contacts: compressed, and several per
+       grain). Small motions x about a state, with stiffness K, damping C and mass M, become
+       unstable first in a mode that changes sign from step to step. Velocity Verlet with predicted
+       velocities is stable while
+           dt^2/4 K + dt C < M    (all eigenvalues of M^-1 times the left side are below 1)
        A contact stores k (n.(xa - xb))^2/2 <= k [(1 + Ra/Rb) (n.xa)^2 + (1 + Rb/Ra) (n.xb)^2]/2.
-       So it holds for the whole scene where it holds for each body, held by its own contacts alone,
-       each counted f = 1 + Ra/Rb times (once where the partner does not move): six rows,
-           A = sum f [k n n + kt (1 - n n)]/m,  B = sum f [kt l^2 + kr] (1 - n n)/I,
-           Q = sum f kt l [n x]/sqrt(m I),  n outwards; l from the centre; damping likewise
-       Contacts with walls count by their weights, as their forces do (>>facets: those of one place
-       on a curved surface add up to one, some are negative). The bound is exact for close packings
-       that shear and spin, and for one body between walls. A cheap bound per body comes first (the
-       largest of each contact, summed); few bodies need the matrices. Spheres only. Checked by "a
-       step just inside the limit of pressed contacts is stable; one 5 % outside oscillates". --- */
+       So the condition holds for the whole scene if it holds for each body with its own contacts
+       alone, each counted f = 1 + Ra/Rb times (once if the partner does not move). For one body the
+       left side is a 6 x 6 matrix with the blocks
+           A = sum f [k n n + kt (1 - n n)]/m  (displacement),
+           B = sum f [kt l^2 + kr] (1 - n n)/I  (rotation),
+           Q = sum f kt l [n x]/sqrt(m I)  (coupling of the two),
+       n outwards, l the distance of the contact point from the centre; likewise for damping.
+       Contacts with walls count with their weights, as their forces do (>>facets: the weights of
+       one contact with a curved surface add up to one; some are negative). The bound is exact for
+       close packings that shear and spin, and for one body between walls. A cheap bound is tested
+       first: the sum, over a body's contacts, of the largest eigenvalue of each. Few bodies need
+       the matrices. Spheres only. Test: "a step just inside the limit of pressed contacts is
+       stable; one 5 % outside oscillates". --- */
+/* The contacts of one body. */
 typedef struct demi_press {
-    double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
-    double contacts;               /* how many, by their weights */
-    double relax;                  /* 1/s: how fast its own numbers follow its partners' */
+    double omega2, rate;           /* 1/s2, 1/s: the cheap bound, as in demi_dt_stable */
+    double contacts;               /* their number, the sum of their weights */
+    double relax;                  /* 1/s: rate at which its user-defined numbers approach those of
+                                      its partners (desc.law_rate) */
     int32_t whole;                 /* 1 + index of its matrices, 0: none needed */
-    dem_real deepest;              /* of its radius */
+    dem_real deepest;              /* largest overlap, relative to its radius */
 } demi_press;
-typedef struct demi_press_whole {  /* per mass, inertia, root of both */
-    double A[2][6], B[2][6], q[2][3];          /* 0: stiffness, 1: damping */
+/* The matrices of one body: blocks A, B and Q. A and B: upper triangle, row by row. q: the sum of
+   f kt l n, of which Q is the cross product. First index 0: stiffness, 1/s2; 1: damping, 1/s. */
+typedef struct demi_press_whole {
+    double A[2][6], B[2][6], q[2][3];
 } demi_press_whole;
+/* One contact as a body has it. */
 typedef struct demi_pressed {
     demi_stiffness s;
-    dem_vec3 n;
-    dem_real overlap, weight;
+    dem_vec3 n;                    /* unit normal, outwards */
+    dem_real overlap, weight;      /* m; 1 for two spheres */
 } demi_pressed;
-/* The cheap bound: stiffnesses of all contacts of a body added as if they were along one line;
-   those that take away are left out. */
+/* Adds a contact to a body's cheap bound: the stiffness of all contacts is added as if they were
+   along one line. Contacts of negative weight are left out. f as above; arm: l, m. */
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, double f,
                            double arm, demi_press *p) {
     const double m = (double)w->bodies.mass[body];
@@ -317,8 +344,7 @@ static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, 
     p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
     p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
 }
-/* The close one, where the cheap bound is not enough: the matrices of stiffness and damping of the
-   body, for its way (A), its turning (B), and how one asks for the other (Q, by q: [n x]). */
+/* Adds a contact to a body's matrices, for the close bound. */
 static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, double f,
                                  double arm, demi_press_whole *p) {
     const double m = (double)w->bodies.mass[body];
@@ -337,7 +363,8 @@ static void demi_press_add_whole(const dem_world *w, int body, const demi_presse
     for (d = 0; d < 2; d++)
         for (i = 0; i < 3; i++) p->q[d][i] += f*(d ? c->s.ct : c->s.kt)*arm*n[i]/sqrt(m*I);
 }
-/* Is a step stable for one body? 1 less the matrix above must have a Cholesky factor L. */
+/* True if a step is stable for one body: if 1 minus its matrix dt^2/4 K + dt C is positive
+   definite, that is if it has a Cholesky factor L. */
 static int demi_press_stable(const demi_press_whole *p, double dt) {
     static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     const double by[2] = {dt*dt/4, dt};
@@ -357,7 +384,7 @@ static int demi_press_stable(const demi_press_whole *p, double dt) {
         }
     return 1;
 }
-/* The largest stable step of one body, dt at most. */
+/* Returns the largest stable step of one body, s, at most dt, by bisection. */
 static double demi_press_step(const demi_press_whole *p, double dt) {
     double lo = 0, hi = dt;
     int k;
@@ -368,8 +395,8 @@ static double demi_press_step(const demi_press_whole *p, double dt) {
     }
     return lo;
 }
-/* Asks the user's law how fast one contact changes the numbers of body a and of body b (-1: wall),
-   each counted `weight` times. */
+/* Calls desc.law_rate for one contact, and adds the rates at which it changes the user-defined
+   numbers of body a and of body b (-1: a wall), times `weight`, to their `relax`. */
 static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_contact *c,
                              double weight, demi_press *press) {
     dem_real rates[2] = {0, 0};
@@ -392,7 +419,7 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     press[a].relax += weight*(double)rates[0];
     if (b >= 0) press[b].relax += weight*(double)rates[1];
 }
-/* All contacts there are, of every shape, asked so. */
+/* Does so for all contacts that exist, of all shapes, if there is a desc.law_rate. */
 static void demi_press_rates(const dem_world *w, demi_press *press) {
     dem_contact c;
     int d, p;
@@ -423,11 +450,12 @@ static void demi_press_rates(const dem_world *w, demi_press *press) {
         }
     }
 }
-/* The largest step at which a body's own numbers are stable, dt at most. */
+/* Returns the largest step at which a body's user-defined numbers are stable, s, at most dt. */
 static double demi_press_rate_step(const demi_press *p, double dt) {
     return p->relax*dt > 1 ? 1/p->relax : dt;
 }
-/* All contacts of spheres with each other and with walls. */
+/* Adds all contacts of spheres, with each other and with walls, to the cheap bounds of their
+   bodies; or, if `whole` is not null, to the matrices of the bodies that have any. */
 static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_whole *whole) {
     int d, p, side;
     for (d = 0; d < w->domain_count; d++) {
@@ -482,8 +510,8 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
         }
     }
 }
-/* What a part knows of ghosts, which their owner adds to what it knows of the body: the cheap
-   bound, and the matrices. */
+/* Two records (demi_record) of ghosts, which are added to those of their owners: the cheap bound,
+   and the matrices. */
 static size_t demi_press_size(const dem_world *w) { return sizeof *w->press; }
 static void demi_press_put(const dem_world *w, int i, char *to) {
     memcpy(to, w->press + i, sizeof *w->press);
@@ -509,8 +537,8 @@ static void demi_whole_take(dem_world *w, int i, const char *from) {
         sum[k] += part;
     }
 }
-/* Works the cheap bounds out, and the matrices of the bodies that need them: in a team of all, for
-   no part knows which its neighbours' bodies need. */
+/* Compute the cheap bounds of all bodies, and the matrices of those that need them. In a team all
+   bodies get matrices, because no member knows which ghosts of its bodies need them. */
 static dem_result demi_member_press(dem_world *w) {
     const size_t n = (size_t)w->bodies.count;
     if (!DEMI_GROW(w, w->press, n)) return demi_no_memory(w, "dem_world_step");
@@ -529,17 +557,18 @@ static dem_result demi_member_press_whole(dem_world *w) {
     if (found) demi_press_visit(w, w->press, w->press_whole);
     return DEM_OK;
 }
-/* The largest stable step of one body of a part, the judged one at most: by the matrices where
-   there are any, else by the cheap bound. */
+/* Returns the largest stable step of body i, s, at most w->pressed.dt: by the cheap bound or, if
+   `whole`, by its matrices (a body without matrices does not limit the step by its forces). */
 static double demi_press_body(const dem_world *w, int i, int whole) {
     const demi_press *p = w->press + i;
     const double rates = demi_press_rate_step(p, w->pressed.dt);
     if (!whole) return DEMI_MIN(rates, demi_dt_stable(p->omega2, p->rate));
     return p->whole ? demi_press_step(w->press_whole + p->whole - 1, rates) : rates;
 }
-/* Finds the smallest of these over all bodies of all parts. */
+/* Finds the smallest of these steps over all bodies of all members, and stores it in `pressed` of
+   the head and of each member, with the member's own smallest one and the body that limits it. */
 static dem_result demi_press_least(dem_world *h, int whole) {
-    double least = -h->pressed.dt;              /* less than 0: maxima are what is agreed on */
+    double least = -h->pressed.dt;              /* negative, because members agree on maxima */
     dem_result result;
     int i, k;
     for (k = 0; k < demi_members(h); k++) {
@@ -556,7 +585,8 @@ static dem_result demi_press_least(dem_world *h, int whole) {
     h->pressed.least = -least;
     return result;
 }
-/* The largest stable step for the contacts there are, in h->pressed: dt or more than that is dt. */
+/* Sets h->pressed.least to the largest stable step with the contacts that exist now, s, at most dt.
+   The matrices are computed only if the cheap bound is below dt. */
 static dem_result demi_press_limit(dem_world *h, double dt) {
     static const demi_record bound = {demi_press_size, demi_press_put, demi_press_take};
     static const demi_record whole = {demi_whole_size, demi_whole_put, demi_whole_take};
@@ -573,7 +603,7 @@ static dem_result demi_press_limit(dem_world *h, double dt) {
     return result == DEM_OK ? demi_press_least(h, 1) : result;
 }
 
-/* Says that a body that is not a sphere turns too far in a step. */
+/* Fails because a body that is not a sphere rotates too far in a step. rate: its spin, rad/s. */
 static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere rotates "
                      "by %.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: "
@@ -592,7 +622,7 @@ DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
                      "grain that can move; add grains before this call");
 }
-/* Refuses a step that is chosen so short that time would stand still. */
+/* Fails because the chosen step is so short that the time would not advance. */
 static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene need a "
                      "step of %g s, must be at least %g s, or time does not advance (shortest: "
@@ -600,12 +630,13 @@ static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
                      "grain far too light: find it with dem_world_check_print", dt, DEMI_DT_LEAST,
                      by);
 }
-/* The time step of springs for the scene as it is, given or chosen; one that is not stable is
-   refused. A change of the step ends half steps of the old one first. */
+/* Springs: settles the time step for the present scene. Chooses it, with the reasons for the
+   report, or checks the given one, and fails if that is too long. First completes the open half
+   kick, so that a change of dt does not affect it. */
 static dem_result demi_springs_settle(dem_world *h) {
     dem_advice a;
     demi_grades g;
-    dem_result result = demi_all(h, demi_member_finish);  /* speeds of the present time */
+    dem_result result = demi_all(h, demi_member_finish);  /* velocities at the present time */
     if (result == DEM_OK) result = demi_grades_of(h, &g);
     if (result != DEM_OK) return result;
     if (!(g.bodies > 0) && !h->feed_count) {    /* nothing to limit it: walls still move */
@@ -639,13 +670,13 @@ static dem_result demi_springs_settle(dem_world *h) {
     demi_dt_share(h);
     return DEM_OK;
 }
-/* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
-   given stays. */
+/* True if grains are so much faster than the assumed impact speed that the step must be chosen
+   again. A given impact speed stays in force. */
 static int demi_outgrown(const dem_world *w) {
     return demi_response_is(w, DEMI_LASTING) && !(w->desc.impact_speed > 0) &&
         w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
-/* The fastest body that moves, m/s. */
+/* Returns the largest speed of the bodies that can move, m/s. */
 static double demi_fastest(const dem_world *w) {
     double most = 0;
     int i;
@@ -655,8 +686,8 @@ static double demi_fastest(const dem_world *w) {
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
-/* m/s, how fast a body may be in the next step by the forces that act now, with the midpoint rule
-   exactly. */
+/* Returns the largest speed, m/s, that a body may have in the next step by the present forces: a
+   bound, with the midpoint rule the exact speed. */
 static double demi_fastest_next(const dem_world *w) {
     double most = 0;
     int i, k;
@@ -665,7 +696,7 @@ static double demi_fastest_next(const dem_world *w) {
         const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
                              (double)w->desc.gravity.z};
         double a2 = 0, v2 = 0;
-        if (demi_is_ghost(w, i)) continue;      /* it is not known how all contacts push it */
+        if (demi_is_ghost(w, i)) continue;      /* its force here is incomplete */
         for (k = 0; k < 3; k++) {
             const double a = (double)w->bodies.force[4*i + k]*inv + g[k];
             const double v = (double)w->bodies.vel[4*i + k] + a*(double)w->clock.dt;
@@ -679,9 +710,10 @@ static double demi_fastest_next(const dem_world *w) {
     }
     return most;
 }
-/* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
-   and walls unseen; but for contacts that are foreseen from as far off as both may go together.
-   speed: a bound, m/s. */
+/* Fails if the fastest body may move farther than the smallest radius in a step, because it could
+   pass through others and walls undetected. Where contacts are found ahead of time (impulses), it
+   may move as far as half the distance at which they are found, since both bodies move. speed: an
+   upper bound, m/s. */
 static dem_result demi_speed_check(dem_world *w, double speed) {
     const int foreseen = demi_response_is(w, DEMI_FORESEEN);
     const double seen = foreseen ? w->margin.reach/2 : 0;
@@ -708,7 +740,8 @@ static dem_result demi_speed_check(dem_world *w, double speed) {
                      0.1*radius/speed,
                      foreseen ? ", or a law_range of twice that distance" : "");
 }
-/* The same of walls that are thin: planes and cylinders cannot be passed. */
+/* The same for moving walls that are thin. Planes and cylinders are not: a body on their other side
+   still touches them. */
 static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
@@ -727,7 +760,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
     }
     return DEM_OK;
 }
-/* Why dt is shorter than t_c/50, and by how much. */
+/* Prints why a chosen dt is shorter than t_c/50, and by what factor. */
 static void demi_held_report(const dem_world *w, FILE *out) {
     const demi_held *h = &w->clock.held;
     char who[64] = "a body";
@@ -746,14 +779,15 @@ static void demi_held_report(const dem_world *w, FILE *out) {
     else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
                  "used\n", h->limit);
 }
-/* What presses has been looked at: again more and more rarely while the scene stays, at least every
-   thousand steps; where a law has rates, which run away sooner, at least every eight. */
+/* Schedules the next examination of the present contacts: at increasing intervals while the scene
+   does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,
+   because user-defined numbers become unstable sooner. */
 static void demi_press_looked(demi_timing *clock, const dem_world *w) {
     clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
                                                w->desc.law_rate ? 8 : 1000);
 }
-/* Refuses a step that was given, in the part whose body is pressed so that no larger one is stable.
-   */
+/* Fails because the given step is not stable, in the member that has the body with the smallest
+   limit; the others return DEM_OK. */
 static dem_result demi_member_press_refuse(dem_world *w) {
     const demi_press *p = w->press + w->pressed.worst;
     const double limit = w->pressed.limit;
@@ -771,8 +805,9 @@ static dem_result demi_member_press_refuse(dem_world *w) {
                      (unsigned)w->bodies.slot[w->pressed.worst] + 1, p->contacts,
                      (double)p->deepest);
 }
-/* m/s, a bound of how fast a body may be in the next step. After a change of the scene the last
-   kick may be that of a body which is gone. */
+/* Computes an upper bound of the speed of all bodies in the next step, m/s: the last speed and the
+   last change of velocity. After a change of the scene, and with the midpoint rule, it is computed
+   from the present forces: the last change may be that of a body that was removed since. */
 static dem_result demi_speed_bound(dem_world *h, double *bound) {
     const int midway = demi_response_is(h, DEMI_MIDWAY);
     int k;
@@ -787,9 +822,9 @@ static dem_result demi_speed_bound(dem_world *h, double *bound) {
     }
     return demi_agree(h, bound, 1);
 }
-/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
-   bodies move. A step that was chosen is made smaller; one that was given is refused, before
-   anything moves. */
+/* Checks the step before bodies move, when lists and contacts are valid: against the speeds, and
+   against the contacts that exist now. A chosen step is shortened to half of the stable one (see
+   dt_share); a given step that is too long fails. */
 static dem_result demi_dt_check(dem_world *h) {
     const int chosen = !(h->desc.dt > 0);
     const double share = h->dt_share > 0 ? h->dt_share : 1, room = DEMI_MIN(share/2, 0.95);
@@ -817,7 +852,7 @@ static dem_result demi_dt_check(dem_world *h) {
     h->clock.held.by = DEMI_HELD_PRESSED;
     h->clock.held.limit = limit;
     h->clock.held.body = 0;
-    if (!h->team) {                             /* which other processes do not know */
+    if (!h->team) {                             /* other processes would not know the body */
         const demi_press *p = h->press + h->pressed.worst;
         h->clock.held.by = p->relax*limit > 0.999 ? DEMI_HELD_RATE : DEMI_HELD_PRESSED;
         h->clock.held.body = (int32_t)h->bodies.slot[h->pressed.worst] + 1;
