@@ -1,95 +1,110 @@
 /* ---------------------------------------------------------------------------------------------
    >>slabs
-   Spatial decomposition along one axis, after [ALK07] 3.5. Each slab is a world of its own: the
-   walls of the scene, its own grains, and copies of those grains of its lower neighbour that may
-   touch them: its ghosts. Slots are those of the whole scene, so that contact memory, filed by
-   slot, finds its pair in any slab. One step:
-       move     own grains; ghosts stand still
-       decide   a new list? a new near list? one maximum over all slabs
-       send up  state of the grains that are ghosts in the upper neighbour
-       respond  own - own, own - ghost, own - wall; ghost - ghost belongs to the owner
-       return   forces on ghosts go down to their owners, who add them
-   The step itself is that of a world on its own (>>step): slabs are the parts of a team (>>team),
-   and here is what the parts exchange and agree on.
-   [ALK07] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
-   migrate, with a copy of every entry of contact memory that names them: so whichever slab computes
-   a pair next has its memory. (It is the upper of the pair's two homes; the pair was computed where
-   one of them was, and that one either stays or passes through.) Then ghosts are chosen anew.
-   A slab is never thinner than two grains and the skin, so that only neighbours touch.
+   Domain decomposition along one axis, after [ALK07] 3.5. Each slab is a world with all walls of
+   the scene, its own grains, and ghost particles: copies of those grains of its lower neighbour
+   that may touch its own. Slots are those of the whole scene, so that contact history, which is
+   filed by slot, fits its pair in any slab. Slabs are the members of a team (>>team) and use the
+   step of a single world (>>step):
+       move     each slab moves its own grains; ghosts rest
+       agree    are new candidate lists or pruned lists due? one maximum over all slabs
+       lend     the states of grains are sent up to their ghosts
+       respond  contacts of own grains with own grains, ghosts and walls; the contacts of two ghosts
+                belong to the slab that owns them
+       give     the forces on ghosts are sent down to their owners, which add them
+   ([ALK07] sends copies down; this is the mirror image.) When lists are rebuilt, grains that have
+   crossed a border migrate, each with a copy of all contact history that names it. Then new ghosts
+   are chosen. The slab that computes a pair next always has its history: it is the upper one of the
+   two that own the bodies, and the body that it owns was in the slab that has the history, or
+   passes through that slab on its way. A slab is never thinner than the largest distance of two
+   candidates (two of the largest radii, the skin and the range of the law), so only neighbours
+   interact.
 
-   Work is done in phases: one function per slab, all slabs of this process in demi_parallel; a
-   phase writes only to its own slab and reads its neighbours' outboxes, which rest meanwhile.
-   Between phases outboxes that lead to other processes are exchanged. What is reduced over
-   processes is maxima, and sums of whole numbers, which are exact in any order: so bits hang on the
-   number of slabs alone, not on threads or processes.
+   Work is divided into phases: one function for each slab, called by demi_parallel for all slabs of
+   this process. In a phase a slab writes only to itself. It may read its neighbours' outboxes,
+   which then do not change. Between phases, outboxes that lead to other processes are exchanged.
+   Reductions over processes are maxima, or sums of whole numbers, which are exact in any order. So
+   the bits of a result depend on the number of slabs, but not on threads or processes.
 
-   All slabs but the first of a process see walls that never move by themselves: the poses are
-   copied, so that a motion of the user's own is called as often as ever.
+   In each process only the walls of the first slab move. Their poses are copied to the other slabs
+   (demi_walls_follow), so that a user-defined motion is called as often as without slabs.
+
+   This part owns messages: it packs grains with their contact history and unpacks them.
    --------------------------------------------------------------------------------------------- */
+/* Limits: number of slabs; bins per slab of the histogram from which borders are computed.
+   Directions of an exchange. Values of bodies.ghost by slot: 0, or DEMI_GHOST; while messages are
+   packed also one of the marks that follow. */
 enum { DEMI_SLABS = 1024, DEMI_SLAB_BINS = 32, DEMI_UP = 1, DEMI_DOWN = 2, DEMI_ALL = 0,
        DEMI_GHOST = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GHOST_ABOVE = 4 };
 
-/* A message: bytes that grow. */
+/* A message, or an array of bytes that grows. */
 typedef struct demi_message { char *bytes; size_t size; } demi_message;
 
 typedef struct demi_slab {
     dem_world *world;
-    int index;                     /* among all */
-    dem_result result;             /* of the last phases; looked at by demi_slabs_agree */
+    int index;                     /* among the slabs of all processes */
+    dem_result result;             /* of its phases since the last demi_slabs_agree */
     demi_message out[2];            /* to the lower, to the upper neighbour */
-    demi_message in[2];             /* from them, when they are in another process */
-    int32_t *lent, *ghost;         /* indices of own grains that are ghosts above; of ghosts here */
-    dem_real *ghost_inv;           /* x 2: 1/mass, 1/inertia of ghosts */
-    int32_t *add;                  /* see demi_pairs_unpack */
-    int lent_count, ghost_count, leavers;
-    uint64_t bytes, migrated;
-    double work, seconds;
-    demi_crowd crowd;              /* who is near the region of a feed */
+    demi_message in[2];             /* from them, if they are in another process */
+    int32_t *lent, *ghost;         /* indices of own grains with a ghost above; of ghosts here, in
+                                      the order in which the lower neighbour lends them */
+    dem_real *ghost_inv;           /* x 2: 1/mass, 1/inertia of ghosts, 1/kg, 1/(kg m2) */
+    int32_t *add;                  /* by row: new entries of contact history, demi_pairs_unpack */
+    int lent_count, ghost_count, leavers;      /* entries of `lent`, of `ghost`; grains that leave
+                                      in this round of migration */
+    uint64_t bytes, migrated;      /* sent to neighbours; grains that left, since the beginning */
+    double work, seconds;          /* as in dem_slab */
+    demi_crowd crowd;              /* occupancy tree of the bodies near the region of a feed */
 } demi_slab;
 
-/* The head is a world without grains of its own: it holds what the slabs have in common (time,
-   step, skin, errors), and lends itself to functions that ask a world for totals. It has the feeds,
-   too: every process draws for all slabs, and so all draw the same. It comes first, so that a task
-   finds its slabs. */
+/* The slabs of one process. The head is a world without grains. It holds what the slabs share
+   (time, time step, skin, errors), and stands for the whole scene in functions that need totals. It
+   also owns the feeds: every process draws all new grains, so all processes draw the same. The head
+   is the first field, so that a pointer to it is a pointer to its slabs. */
 struct dem_slabs {
     dem_world head;
     dem_slabs_desc desc;
+    /* number in all processes; index of this process's first slab, number of its slabs; 1: the axis
+       is periodic; 1: the transport has failed */
     int axis, count, first, local, ring, broken;
-    double period, cut;            /* m: along the axis; thinnest slab there may be */
-    double *borders;               /* count + 1 */
-    double *values;                /* for reductions: value_room */
+    double period, cut;            /* m: period along the axis; smallest thickness of a slab */
+    double *borders;               /* m, count + 1; -1e300 and 1e300 at the ends of an open axis */
+    double *values;                /* work array for reductions, value_room */
     size_t value_room;
     demi_slab *slabs;              /* local */
-    demi_domain total;             /* the head's only domain */
-    demi_message mine, all;         /* for dem_slabs_collect */
-    uint32_t *known;               /* by slot: generation of the body dealt or fed, 0: none */
-    int dealt, told, slots;        /* how many slots: dealt, known to the world, there are */
-    uint64_t border_moves;
-    void (*phase)(struct dem_slabs *s, demi_slab *b);
+    demi_domain total;             /* the head's only work group: totals for demi_skin_choose */
+    demi_message mine, all;         /* for dem_slabs_collect: reports of this process, of all */
+    uint32_t *known;               /* by slot: generation of the body that the slabs got when they
+                                      were created, or from a feed; 0: none */
+    int dealt, told, slots;        /* numbers of slots: when slabs were created; when they were last
+                                      collected into the world; now */
+    uint64_t border_moves;         /* how often the borders were moved */
+    void (*phase)(struct dem_slabs *s, demi_slab *b);   /* running */
     demi_team team;
-    dem_result (*task)(dem_world *member);      /* of the phase that is running */
-    const demi_record *record;
+    dem_result (*task)(dem_world *member);      /* of the phase demi_slab_run */
+    const demi_record *record;     /* of the exchange demi_slabs_give */
 };
 
 /* --- messages --- */
 
-/* Appends bytes. 0 when memory ran out; what was there stays. */
+/* Appends bytes to a message. Returns 0 if memory ran out; the message is then unchanged. */
 static int demi_message_put(dem_world *w, demi_message *p, const void *data, size_t size) {
     if (!DEMI_GROW(w, p->bytes, p->size + size)) return 0;
     if (size) memcpy(p->bytes + p->size, data, size);
     p->size += size;
     return 1;
 }
+/* Reads bytes of a message and moves *from behind them. */
 static void demi_unpack(const char **from, void *to, size_t size) {
-    if (!size) return;                          /* of a message that is not there, too */
+    if (!size) return;                          /* also if there is no message */
     memcpy(to, *from, size);
     *from += size;
 }
 
-/* --- a grain in a message: all it keeps, the rows of demi_body_arrays one after the other, its
+/* --- a grain in a message: all its state, the rows of demi_body_arrays one after the other, its
        slot first --- */
 
-/* Body i, its places moved by `shift` along axis. 0 when memory ran out. */
+/* Appends body i to a message. `shift`, m, is added to its positions along `axis`. host: the world
+   whose memory is used. Returns 0 if memory ran out. */
 static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w, int i, int axis,
                           dem_real shift) {
     int k;
@@ -107,7 +122,7 @@ static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w
     }
     return 1;
 }
-/* Body i becomes the one that arrived. */
+/* Overwrites body i with the next grain of a message. */
 static void demi_grain_unpack(dem_world *w, int i, const char **from) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -116,12 +131,14 @@ static void demi_grain_unpack(dem_world *w, int i, const char **from) {
             demi_unpack(from, demi_datum(w, a, i), demi_item(w, a));
     }
 }
+/* Returns the slot of the grain that begins here. */
 static uint32_t demi_grain_slot(const char *from) {
     uint32_t slot;
     memcpy(&slot, from, sizeof slot);
     return slot;
 }
-/* Room has been seen to. Answers its index. */
+/* Appends the next grain of a message to the bodies and returns its index. The caller has reserved
+   memory. */
 static int demi_grain_append(dem_world *w, const char **from) {
     const int i = w->bodies.count++;
     demi_grain_unpack(w, i, from);
@@ -130,7 +147,8 @@ static int demi_grain_append(dem_world *w, const char **from) {
     w->lll_valid = 0;
     return i;
 }
-/* Takes a grain out of a slab without its having left the scene. */
+/* Removes a body from a slab that stays in the scene: another slab owns it. Its generation and the
+   totals of the scene do not change, and its slot does not become free. */
 static void demi_grain_forget(dem_world *w, int i) {
     const int slot = (int)w->bodies.slot[i], pending = w->bodies.slot_pending;
     const double removed = w->booked.removed;
@@ -142,12 +160,15 @@ static void demi_grain_forget(dem_world *w, int i) {
     w->bodies.ghost[slot] = 0;
 }
 
-/* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
-   them, their contacts that are kept (all there are, for mark DEMI_ALL).
-   shift: added along axis. Memory must be filed: after demi_list_drop or demi_carry_collect. */
+/* The begin of a message of grains: numbers of grains, of filed histories of two spheres, and of
+   persistent contacts, which follow in this order; reals per history. */
 typedef struct demi_message_head {
     int32_t grains, pairs, contacts, stride;
 } demi_message_head;
+/* Appends to `out` all bodies with this mark (marks: by slot) and, if `memory`, the histories and
+   persistent contacts that name one of them (with DEMI_ALL: all that exist). `shift`, m, is added
+   to positions along `axis`. Histories must be filed, by demi_list_drop or demi_carry_collect.
+   host: the world whose memory is used. Returns 0 if memory ran out. */
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_message *out) {
     const size_t start = out->size;
@@ -185,8 +206,9 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     return ok;
 }
 
-/* Room for what is to arrive by these heads, beside what is filed already; `add` for
-   demi_pairs_unpack. Contacts that are there move to the first domain. 0 when memory ran out. */
+/* Reserves memory for the histories and contacts of `come`, besides those filed already, and for
+   `add` of demi_pairs_unpack. Moves all persistent contacts to the first work group. Returns 0 if
+   memory ran out. */
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0;
@@ -213,7 +235,8 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
     for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
     return 1;
 }
-/* Files pairs that arrived behind those already in their rows. */
+/* Adds `pairs` histories of a message to the filed ones, each at the end of its row. add: work
+   array, the number of new entries of each row. */
 static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int pairs) {
     const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
     int32_t *start = w->filed.start, row, shift = pairs;
@@ -224,7 +247,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
         memcpy(&row, from + (size_t)k*item, sizeof row);
         add[row]++;
     }
-    for (row = w->filed.rows - 1; row >= 0; row--) {          /* make gaps, from the far end on */
+    for (row = w->filed.rows - 1; row >= 0; row--) {          /* make gaps, from the last row on */
         const int32_t begin = start[row], n = start[row + 1] - begin;
         start[row + 1] += shift;
         shift -= add[row];
@@ -243,7 +266,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
     }
     w->filed.count += pairs;
 }
-/* What a message has besides grains, which end at `from`: files all of it. */
+/* Files all histories and persistent contacts of a message. from: the end of its grains. */
 static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_head *h,
                             const char *from) {
     demi_domain *first = &w->domains[0];
