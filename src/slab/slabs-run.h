@@ -1,19 +1,20 @@
 /* ---------------------------------------------------------------------------------------------
    >>slabs-run
-   Feeds into slabs, and one step after the other. The head has the feeds and draws, in every
-   process the same; each slab says who is near; the one whose part of the scene a new grain is in
-   takes it. Its slot is one nobody has had, and all lists are made anew before the step; forces
-   stay as they are, for it touches nobody.
+   Feeds of slabs, and dem_slabs_step. The head owns the feeds and draws new grains, the same in
+   every process. Each slab tests its bodies for overlaps with a new grain. The slab between whose
+   borders the grain is then inserts it. The grain gets a slot that was never used. All lists are
+   rebuilt before the step. Forces stay valid, because a new grain touches nothing.
    --------------------------------------------------------------------------------------------- */
 
-/* Slot numbers are those of the whole scene: every slab gets room for one more. 0: no memory. */
+/* Reserves memory for one more body and for one more slot: slot numbers are those of the whole
+   scene, so every slab has all slots. Returns 0 if memory ran out. */
 static int demi_slab_widen(demi_slab *b, int slot) {
     dem_world *w = b->world;
     return demi_bodies_reserve(w, (size_t)w->bodies.count + 1) &&
            DEMI_GROW(w, w->bodies.ghost, (size_t)slot + 2);
 }
-/* Who is near a feed's region, each slab for itself; distances are those of the whole scene, which
-   may be periodic where a slab is not. */
+/* `look` of demi_feeder: each slab collects its bodies near a feed's region. Distances are those of
+   the whole scene, which may be periodic along the axis where a slab is not. */
 static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
     dem_slabs *s = (dem_slabs *)who;
     int k;
@@ -25,8 +26,8 @@ static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radi
     }
     return demi_slabs_agree(&s->head, 0, 0);
 }
-/* Room for a grain at x of radius r, and for its slot; `owner`: the slab that takes it, if it is in
-   this process. */
+/* Reserves memory in all slabs for a grain of radius r (m) at x, and for its slot. owner: the slab
+   that will insert it; null if another process holds that slab. */
 static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 x, dem_real r) {
     int k;
     for (k = 0; k < s->local; k++)
@@ -40,8 +41,9 @@ static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 
         owner->result = demi_no_memory(owner->world, "dem_slabs_step");
     return demi_slabs_agree(&s->head, 0, 0);
 }
-/* All places that may be tried are asked about at once: is anybody in the way? Then the first that
-   is free counts, as in a world that tries one after the other. */
+/* `put` of demi_feeder. Draws all positions that may be tried and tests them in all processes with
+   a single reduction. Takes the first free one, as a single world does, which tries one after the
+   other; the random numbers of the others are not used up. */
 static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     dem_slabs *s = (dem_slabs *)who;
     dem_world *h = &s->head;
@@ -79,7 +81,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     for (k = 0; k < s->local; k++) {
         demi_bodies *bodies = &s->slabs[k].world->bodies;
         const int rest = bodies->slot_free;
-        bodies->slot_free = -1;                 /* a number nobody has had: the next */
+        bodies->slot_free = -1;                 /* take the next slot that was never used */
         bodies->slot_index[s->slots] = -1;
         bodies->slot_generation[s->slots] = 1;
         bodies->ghost[s->slots] = 0;
@@ -97,7 +99,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     demi_feed_count(f);
     return 1;
 }
-/* All that is due. */
+/* Inserts all grains that are due before a step. */
 static dem_result demi_slabs_feed(dem_world *h) {
     demi_feeder feeder;
     feeder.look = demi_slabs_look;
@@ -106,7 +108,7 @@ static dem_result demi_slabs_feed(dem_world *h) {
     return demi_feeds_run(h, &feeder);
 }
 
-/* Not after the transport has failed. */
+/* Fails if the transport has failed before. */
 static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
     if (!s->broken) return DEM_OK;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed earlier, so slabs may "
