@@ -1,40 +1,46 @@
 /* ---------------------------------------------------------------------------------------------
    >>slabs-step
-   What slabs exchange and agree on in a step: the team of >>team. Borders, migration and ghosts of
-   a new list; states of ghosts up, forces on ghosts down; maxima and sums over processes.
+   Communication of slabs in a step: the functions of their team (demi_team). Reductions over
+   processes and exchanges between neighbours; for a rebuild the borders, which balance the load,
+   the migration of grains and the choice of ghosts; in every step the states of ghosts, sent up,
+   and the forces on ghosts, sent down. Owns borders, outboxes and inboxes, and the lists of ghosts.
    --------------------------------------------------------------------------------------------- */
 
-/* One slab's share of a phase, timed. */
+/* Runs the present phase for slab k of this process and adds the time that it takes. */
 static void demi_slab_task(dem_world *w, int k) {
     dem_slabs *s = (dem_slabs *)(void *)w;      /* the head comes first */
     const double begun = demi_clock();
     s->phase(s, &s->slabs[k]);
     s->slabs[k].seconds += demi_clock() - begun;
 }
+/* Runs a phase for all slabs of this process, in parallel. */
 static void demi_slabs_phase(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
     s->phase = phase;
     demi_parallel(&s->head, s->head.desc.threads, s->local, demi_slab_task);
 }
 
-/* Is there a slab above (side 1) or below (side 0)? */
+/* True if there is a slab above (side 1) or below (side 0). */
 static int demi_slab_has(const dem_slabs *s, const demi_slab *b, int side) {
     return s->ring || (side ? b->index + 1 < s->count : b->index > 0);
 }
-/* What the neighbour on one side sent here. */
+/* Returns the message that the neighbour on one side has sent here: its outbox if it is in this
+   process, otherwise the inbox. */
 static const demi_message *demi_slab_inbox(const dem_slabs *s, const demi_slab *b, int side) {
     int k = b->index - s->first + (side ? 1 : -1);
     if (s->local == s->count) k = (k + s->count)%s->count;
     return k >= 0 && k < s->local ? &s->slabs[k].out[!side] : &b->in[side];
 }
 
-/* From here on processes may differ: nothing but collecting from elsewhere makes sense. */
+/* Fails because the transport has failed. Processes may be out of step from here on, so later calls
+   fail as well (demi_slabs_usable). */
 static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, int answer) {
     s->broken = 1;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "dem_slabs_step: %s of the transport returned "
                      "%d, must be 0; the slabs cannot continue: repair the connection and create "
                      "them again from the last collected world or checkpoint", what, answer);
 }
-/* Maxima over processes, or sums, which are of whole numbers. */
+/* Replaces `count` values by their maxima over processes or, if `sum`, by their sums, which must be
+   sums of whole numbers. */
 static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
     int answer;
     if (s->local == s->count) return DEM_OK;
@@ -42,8 +48,9 @@ static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int
     return answer ? demi_slabs_transport_failed(s, "reduce_fn", answer) : DEM_OK;
 }
 
-/* Looks at the results of the last phases. When one is bad, all processes return it; the sentence
-   is that of the lowest slab concerned. flags (count): replaced by their maxima over processes. */
+/* `agree` of demi_team. Returns the results of the phases since the last call: DEM_OK, or in all
+   processes the same failure, that of the lowest slab concerned; only its process has the full
+   message. Replaces `count` flags (at most 7) by their maxima over processes. */
 static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     double v[8] = {0, 0, 0, 0, 0, 0, 0, 0};
@@ -68,10 +75,11 @@ static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
 }
-/* Runs a task on all slabs but those of which something bad is to be agreed on. */
+/* Runs the present task on a slab, unless it has failed since the last agreement. */
 static void demi_slab_run(dem_slabs *s, demi_slab *b) {
     if (b->result == DEM_OK) b->result = s->task(b->world);
 }
+/* `all` of demi_team. */
 static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *member)) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     s->task = task;
@@ -79,8 +87,9 @@ static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *mem
     return DEM_OK;
 }
 
-/* Outboxes that lead to other processes, up, down or both ways. Sizes are told first unless both
-   ends know them. */
+/* Exchanges the outboxes that lead to other processes, in the directions `ways` (DEMI_UP,
+   DEMI_DOWN or both). sized: 1 if the sizes of the inboxes are set, because the receivers know what
+   will arrive; 0: the sizes are exchanged first and the inboxes get room. */
 static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
     demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
     const dem_transport *t = &s->desc.transport;
@@ -118,7 +127,8 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
 
 /* --- borders --- */
 
-/* Borders that share the weight in `bins` (n of them over lo..hi) out evenly. */
+/* Sets the inner borders so that each slab has the same part of the weight in `bins`, n equal
+   intervals from lo to hi, m. */
 static void demi_slabs_lay(dem_slabs *s, const double *bins, int n, double lo, double hi) {
     double total = 0, sum = 0;
     int i, j = 1;
@@ -130,14 +140,15 @@ static void demi_slabs_lay(dem_slabs *s, const double *bins, int n, double lo, d
     }
     for (; j < s->count; j++) s->borders[j] = hi;
 }
-/* No slab thinner than the cut. Outermost slabs of an open axis have no end. */
+/* Moves borders until no slab is thinner than s->cut. The outermost slabs of an open axis have no
+   outer border. */
 static void demi_slabs_space(dem_slabs *s) {
     double *b = s->borders;
     int j;
     for (j = s->ring ? 1 : 2; j < s->count; j++) b[j] = DEMI_MAX(b[j], b[j - 1] + s->cut);
     for (j = s->count - 1; s->ring && j > 0; j--) b[j] = DEMI_MIN(b[j], b[j + 1] - s->cut);
 }
-/* Adds a slab's own grains to bins. */
+/* Adds `weight` for each own grain of a slab to n bins from lo to hi, m. */
 static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight, double *bins,
                            int n, double lo, double hi) {
     int i;
@@ -146,7 +157,8 @@ static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight
         if (!demi_is_ghost(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
     }
 }
-/* The highest place of its own grains, and minus the lowest: one reduction finds both. */
+/* Updates the highest position of own grains along the axis, m, in ends[0], and minus the lowest in
+   ends[1]: one reduction of maxima finds both. */
 static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *ends) {
     int i;
     for (i = 0; i < w->bodies.count; i++) {
@@ -156,8 +168,9 @@ static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *en
         ends[1] = DEMI_MAX(ends[1], -x);
     }
 }
-/* Moves the borders when counted work is shared too unevenly: each grain weighs what a grain of its
-   slab costs on average, in whole numbers, so that sums are the same in any order. */
+/* Load balancing: moves the borders if the counted work of the busiest slab exceeds the mean too
+   much (desc.balance). The weight of a grain is the mean work of a grain of its slab, in sixteenths
+   and rounded, because sums of whole numbers are the same in any order. */
 static dem_result demi_slabs_balance(dem_slabs *s) {
     const int n = DEMI_SLAB_BINS*s->count;
     const int every = s->desc.balance_interval > 0 ? s->desc.balance_interval : 8;
@@ -191,10 +204,11 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
     return DEM_OK;
 }
 
-/* The skin of a rebuild, by the model that serves a single world, from totals over all slabs; and
-   with it the thinnest slab there may be. */
+/* Chooses the skin of a rebuild from totals over all slabs, by the cost model of a single world
+   (demi_skin_choose), and sets the smallest thickness of a slab, s->cut. Fails if a period is too
+   short for so many slabs. */
 static dem_result demi_slabs_skin(dem_slabs *s) {
-    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; near_span */
+    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; span */
     dem_world *h = &s->head;
     dem_result result;
     int k, i, d;
@@ -229,8 +243,8 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
         const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0] - h->margin.reach;
         if (room > 0) h->margin.skin = h->margin.skin_auto = DEMI_MIN(h->margin.skin, room);
     }
-    h->margin.skin = (double)(dem_real)h->margin.skin;        /* as the slabs get it */
-    s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding costs no ghost */
+    h->margin.skin = (double)(dem_real)h->margin.skin;        /* rounded as in the slabs */
+    s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding loses no ghost */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
                          "%g m thick, must be at least %g m (two grains and the skin%s); use at "
@@ -242,7 +256,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
 
 /* --- a rebuild, phase by phase --- */
 
-/* Memory is filed, ghosts are dropped. */
+/* Files the contact histories of a slab and removes its ghosts. */
 static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int i;
@@ -251,8 +265,9 @@ static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     for (i = w->bodies.count - 1; i >= 0; i--) if (demi_is_ghost(w, i)) demi_grain_forget(w, i);
     b->ghost_count = b->lent_count = 0;
 }
-/* Where a grain belongs: -1 below, 0 here, 1 above; *shift: what its position changes by on the
-   way. A grain that a whole period would put back on the same border stays. */
+/* Returns the side to which a grain at x (m, along the axis) belongs: -1 below, 0 here, 1 above.
+   *shift receives what is added to its position on the way there, m: a period or 0. A grain below
+   the first border stays if x + period is rounded to the last border or beyond. */
 static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, dem_real *shift) {
     const dem_real period = (dem_real)s->period;
     *shift = 0;
@@ -266,11 +281,13 @@ static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, de
     }
     return 0;
 }
+/* Returns that shift, m, for all grains sent up (side 1) or down (side 0). */
 static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side) {
     if (side && b->index == s->count - 1) return -(dem_real)s->period;
     return !side && b->index == 0 ? (dem_real)s->period : 0;
 }
-/* Those that crossed a border go into the outboxes; they stay here until there is room for them. */
+/* Packs the grains that have crossed a border into the outboxes. They also stay here until their
+   receivers have reserved memory. */
 static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     dem_real shift;
@@ -290,7 +307,8 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     for (i = 0; b->leavers && i < w->bodies.count; i++) w->bodies.ghost[w->bodies.slot[i]] = 0;
     if (!ok) b->result = demi_no_memory(w, "dem_slabs_step");
 }
-/* What a neighbour sent, in numbers, and where its grains begin; zeros where there is none. */
+/* Returns the head of the message from one side, and sets *grains to the begin of its grains; zeros
+   if there is no slab on that side. */
 static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
                                        const char **grains) {
     demi_message_head head = {0, 0, 0, 0};
@@ -300,7 +318,7 @@ static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, 
     }
     return head;
 }
-/* Room for all that arrives from both sides, before anything leaves. */
+/* Reserves memory for all that arrives from both sides, before anything leaves. */
 static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     const char *from = 0;
     const demi_message_head l = demi_slab_head(s, b, 0, &from);
@@ -312,7 +330,7 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
         !demi_filed_reserve(w, &b->add, &come))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
-/* Leavers go, arrivals come in: nothing can fail any more. */
+/* Removes the grains that leave, and appends those that arrive. Nothing can fail any more. */
 static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     dem_real shift;
@@ -327,7 +345,8 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
         demi_filed_unpack(w, b->add, &h, from);
     }
 }
-/* Grains near enough to the upper border to touch something beyond it. */
+/* Chooses the grains that become ghosts in the upper neighbour, all that are near enough to the
+   upper border to be candidates with a grain beyond it, and packs them. */
 static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int i, n = 0;
@@ -350,14 +369,15 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
     b->lent_count = n;
 }
-/* --- what owners tell of the bodies that are ghosts elsewhere: as much of their state as the laws
-   in
-       force look at --- */
+/* --- the record (demi_record) that owners lend to ghosts: the state of a body that the laws in
+   force
+       use. Its position comes first --- */
 static size_t demi_lent_size(const dem_world *w) {
     const size_t state = w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
     return (state + (w->bodies.booked ? 3 : 0) + (size_t)w->bodies.real_count)*sizeof(dem_real);
 }
-/* The arrays that are told of, one after the other, and how many reals of each body. */
+/* Lists the arrays of the record, in order: the distance between two bodies, and how many reals of
+   each body are sent. Returns the number of arrays. */
 static int demi_lent_arrays(const dem_world *w, dem_real *array[8], int stride[8], int count[8]) {
     const demi_bodies *b = &w->bodies;
     int n = 0;
@@ -395,7 +415,8 @@ static void demi_lent_take(dem_world *w, int i, const char *from) {
 }
 static const demi_record demi_lent = {demi_lent_size, demi_lent_put, demi_lent_take};
 
-/* Up: owners put the state of what is lent, ghosts take it and have their mass again. */
+/* Up: owners put the states of lent grains into the outbox, shifted by a period where the ring
+   closes. Ghosts take them, and get back the mass that demi_slab_rest has removed. */
 static void demi_slab_put_up(dem_slabs *s, demi_slab *b) {
     const size_t size = demi_lent.size(b->world);
     const dem_real shift = demi_slab_shift(s, b, 1);
@@ -421,6 +442,7 @@ static void demi_slab_take_up(dem_slabs *s, demi_slab *b) {
         b->world->bodies.inv_inertia[b->ghost[k]] = b->ghost_inv[2*k + 1];
     }
 }
+/* `lend` of demi_team. */
 static dem_result demi_slabs_lend(dem_world *h) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     dem_result result;
@@ -430,7 +452,8 @@ static dem_result demi_slabs_lend(dem_world *h) {
     if (result == DEM_OK) demi_slabs_phase(s, demi_slab_take_up);
     return result;
 }
-/* Down: ghosts put what is known of them here, owners take it in the order in which they lent. */
+/* Down: the record s->record of all ghosts is put into the outbox. Owners take it in the order in
+   which they lent. demi_slabs_give: `give` of demi_team. */
 static void demi_slab_put_down(dem_slabs *s, demi_slab *b) {
     const size_t size = s->record->size(b->world);
     int k;
@@ -456,7 +479,8 @@ static dem_result demi_slabs_give(dem_world *h, const demi_record *what) {
     if (result == DEM_OK) demi_slabs_phase(s, demi_slab_take_down);
     return result;
 }
-/* Ghosts stand still, weightless: their owner moves them. */
+/* `rest` of demi_team: during a move ghosts are at rest and have no inverse mass, because their
+   owner moves them. */
 static void demi_slab_rest(dem_world *w) {
     const dem_slabs *s = (const dem_slabs *)(void *)w->team->head;
     const demi_slab *b = &s->slabs[w->member];
@@ -477,7 +501,7 @@ static void demi_slab_rest(dem_world *w) {
 
 /* --- a new list --- */
 
-/* Ghosts come in; then the list is made as in any world, and steps get their room. */
+/* Appends the ghosts and rebuilds the lists as in any world, with the skin that all slabs share. */
 static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const char *from = 0;
@@ -505,8 +529,9 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     for (d = 0; d < w->domain_count; d++)
         b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
 }
-/* The outboxes rest until everybody has taken from them; only then they get the room that steps and
-   the judgement of steps need, so that no exchange runs out of memory. */
+/* Reserves, after all slabs have read their messages, the room that outboxes and inboxes need in
+   steps, so that no exchange in a step runs out of memory: up for the states of ghosts, down for
+   forces or for the data from which the time step is checked. */
 static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t up = demi_lent.size(w);
@@ -519,7 +544,8 @@ static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
 
-/* Migration: round by round, since a grain moves on by one slab at a time. */
+/* Sends grains to the slabs to which they belong. In each round a grain moves on by one slab; the
+   last round finds none that leaves. */
 static dem_result demi_slabs_migrate(dem_slabs *s) {
     dem_result result;
     for (;;) {
@@ -537,8 +563,8 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         demi_slabs_phase(s, demi_slab_migrate);
     }
 }
-/* DEM_ERROR_MEMORY leaves every grain in one slab and its memory beside it: the next call begins
-   again. */
+/* `rebuild` of demi_team. After DEM_ERROR_MEMORY every grain is still in exactly one slab, with its
+   contact history; the next call starts again. */
 static dem_result demi_slabs_rebuild(dem_world *h) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     const double skin_before = h->margin.skin_auto;
@@ -576,7 +602,8 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     return DEM_OK;
 }
 
-/* --- what the choice of a time step depends on, of all processes --- */
+/* `grades` of demi_team: replaces the data on which the choice of a time step depends (demi_grades)
+   by those of all processes. */
 static dem_result demi_slabs_grades(dem_world *h, demi_grades *g) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     const int m = h->material_count;
