@@ -1,18 +1,20 @@
 /* ---------------------------------------------------------------------------------------------
    >>deal
-   Dealing a scene to slabs and collecting it again: their worlds, what each process finds out
-   about the others' when they are made, and the state of all of them written into one world. A
-   slab's world has the scene's materials, shapes, walls, fields and outlets, and slots for all
-   bodies there are; geometry is held once in a process. Collecting first asks whether the world
-   can take everything, then gets all its room, then writes: refused, it has changed nothing.
+   Creation of slabs from a world, and collection of their state into a world. The world of a slab
+   has the materials, shapes, walls, fields and outlets of the scene, and slots for all bodies that
+   exist; the slabs of one process share the geometry of the first. Creation checks that all
+   processes have built the same scene. Collection first checks whether the world can take
+   everything, then allocates, then writes. If the check fails, the world has not changed; if memory
+   runs out, it may have lost its contact histories. Writes to slabs, and in dem_slabs_collect to
+   the world.
    --------------------------------------------------------------------------------------------- */
 
-/* --- an allocator of the user's own, as slabs on several threads see it --- */
+/* --- a user-defined allocator, as slabs on several threads call it: one call at a time --- */
 static void *demi_slabs_alloc(size_t size, void *user) {
     const dem_allocator *a = (const dem_allocator *)user;
     void *p;
 #if DEMI_OPENMP
-    #pragma omp critical(demi_slabs)            /* the user's may be called by one at a time */
+    #pragma omp critical(demi_slabs)
 #endif
     p = a->alloc_fn(size, a->user);
     return p;
@@ -25,7 +27,8 @@ static void demi_slabs_free(void *memory, size_t size, void *user) {
     a->free_fn(memory, size, a->user);
 }
 
-/* Copies the walls; slabs after the first share the geometry of the first. */
+/* Copies the walls of a scene. The first slab of a process gets its own geometry. Later slabs share
+   it, and their walls have no motion. Returns 0 if memory ran out. */
 static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world *first) {
     const size_t n = (size_t)from->wall_count;
     int i;
@@ -42,7 +45,8 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
     to->facets_valid = first || from->facets_valid;
     return to->facets_valid || demi_facets_weigh(to);
 }
-/* Copies the shapes; slabs after the first share those of the first. 0 when memory ran out. */
+/* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
+   ran out. */
 static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_world *first) {
     int i;
     if (first) {
@@ -57,8 +61,9 @@ static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_worl
     }
     return 1;
 }
-/* Sums over time begin in slab 0 with the world's, elsewhere at 0; collecting begins at 0, too.
-   booked: uses of the fields of demi_booked that are cleared. */
+/* Sets the sums over time to 0. Slab 0 starts with those of the world, the other slabs start at 0;
+   collecting also starts at 0. booked: the uses (DEMI_SUM, ...) of the fields of demi_booked that
+   are cleared. */
 static void demi_slab_sums_clear(dem_world *w, int booked) {
     int i;
     demi_rows_clear(demi_booked_rows, &w->booked, booked);
@@ -68,7 +73,8 @@ static void demi_slab_sums_clear(dem_world *w, int booked) {
     for (i = 0; i < w->outlet_count; i++)
         demi_rows_clear(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, DEMI_SUM);
 }
-/* Every slab has all outlets: they stand where they stand, and take what is in that slab. */
+/* Copies the outlets. Every slab has all of them, and applies them to its own grains. Returns 0 if
+   memory ran out. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
     if (from->outlet_count)
@@ -76,14 +82,15 @@ static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     to->outlet_count = from->outlet_count;
     return !from->bodies.zoned || demi_zones_begin(to);
 }
-/* The head has the feeds; slabs look at them. 0 when memory ran out. */
+/* Copies the feeds to the head; slabs refer to them there. Returns 0 if memory ran out. */
 static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
     if (!DEMI_GROW(h, h->feeds, (size_t)w->feed_count)) return 0;
     if (w->feed_count) memcpy(h->feeds, w->feeds, (size_t)w->feed_count*sizeof *h->feeds);
     h->feed_count = w->feed_count;
     return 1;
 }
-/* Each slab sums what its own grains add; what there is already, one slab inherits. */
+/* Copies the fields. Each slab sums the contributions of its own grains. The slab with `inherit`
+   starts with the sums of the world, the others start at 0. Returns 0 if memory ran out. */
 static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     int i;
     for (i = 0; i < from->field_count; i++) {
@@ -95,7 +102,9 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     }
     return 1;
 }
-/* A slab's world: everything of the scene but the grains. */
+/* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
+   first slab of this process, null for that slab itself. Returns null, or an incomplete world
+   (demi_slab_ready), if memory ran out. */
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
                                   const dem_world *first, dem_allocator *allocator) {
     dem_world_desc desc = from->asked;
@@ -126,7 +135,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
         !demi_slab_outlets_copy(w, from)) return w;
-    s->head.shapes = w->shapes;                 /* for what feeds draw */
+    s->head.shapes = w->shapes;                 /* for the grains of feeds */
     s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
@@ -138,14 +147,15 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     return w;
 }
-/* Has it got all it was to get? */
+/* True if demi_slab_world has completed this world. */
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
     return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
            w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
            w->wall_count == from->wall_count && w->field_count == from->field_count &&
            w->outlet_count == from->outlet_count;
 }
-/* The grains of one slab, from the world. */
+/* Copies the grains between the borders of one slab from the world, with their contact histories.
+   marks: work array, one per slot. Returns 0 if memory ran out. */
 static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uint8_t *marks) {
     dem_world *w = b->world;
     const char *at;
@@ -166,7 +176,7 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     return 1;
 }
 
-/* What is wrong with a desc, as a sentence in the world; DEM_OK when nothing is. */
+/* Returns DEM_OK if slabs can be created from this world and desc; otherwise fails in the world. */
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
@@ -198,8 +208,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
                          "ran out of memory; finish the step with dem_world_step first", call);
     return DEM_OK;
 }
-/* Do all processes hold the same scene in the same order, with a list or without, have they got
-   their memory, and all slabs between them? Digests travel as whole numbers of 32 bits. */
+/* Fails in all processes unless all hold the same scene, with bodies in the same order, all or none
+   with a list, none ran out of memory, and together they hold every slab once. A digest is sent as
+   two whole numbers of 32 bits, which doubles hold exactly; a value is the same everywhere if the
+   maxima of it and of its negative add up to 0. */
 static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
     uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash_get(w) << 1);
     double v[9], slabs = s->local;
@@ -226,7 +238,8 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
                      ? "built different scenes" : "do not match", (int)slabs, s->count);
 }
 
-/* The head's share of a world. 0 when memory ran out. */
+/* Fills the head from a world, allocates the arrays of `s` and sets the functions of the team.
+   Returns 0 if memory ran out. */
 static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
     const size_t n = (size_t)s->count;
@@ -262,7 +275,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return demi_slabs_feeds_copy(h, w);
 }
-/* First borders: the same number of grains in every slab. */
+/* Sets the first borders: about the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
     const int n = DEMI_SLAB_BINS*s->count;
     double ends[2] = {-1e300, -1e300}, lo[3], hi[3];
@@ -287,6 +300,7 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     demi_free_chain(&s->head, DEMI_RUN);
     demi_raw_free(&allocator, s, sizeof *s);
 }
+/* dem_slabs_create without the check for null. Returns null after an error. */
 static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     const size_t slots = (size_t)w->bodies.slot_count + 1;
     dem_slabs *s;
@@ -294,7 +308,7 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     int k, ok;
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
-    /* the world keeps its list: it is only read */
+    /* files the contact histories; the world keeps its list */
     if (w->stage.list_valid && !demi_carry_collect(w)) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
@@ -344,15 +358,15 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 
 /* --- collect --- */
 
-/* What a slab has besides grains and memory; then come the walls' loads, fields, outlets, a
-   message. */
+/* The begin of a slab's report. The loads of walls, the sums of fields and the states of outlets
+   follow, and then a message with the grains and contact histories (demi_pack). */
 typedef struct demi_slab_sums {
-    int32_t index, walls;
-    uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
+    int32_t index, walls;          /* of the slab; number of walls */
+    uint64_t size, left;           /* bytes of the report; grains that outflow and outlets took */
     demi_booked booked;
 } demi_slab_sums;
 
-/* All that one slab holds, as one message. */
+/* Appends the report of one slab to s->mine. Returns 0 if memory ran out. */
 static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world, *h = &s->head;
     demi_message *out = &s->mine;
@@ -381,7 +395,8 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     memcpy(out->bytes + start, &sums, sizeof sums);
     return 1;
 }
-/* Reports of all processes, passed round the ring: each hands on what it got from below. */
+/* Collects the reports of all slabs in s->all, in every process. In each round a process passes up
+   the ring what it received from below in the round before. */
 static dem_result demi_slabs_gather(dem_slabs *s) {
     demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
     double processes = 1;
@@ -407,7 +422,7 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     }
     return result;
 }
-/* The report of one slab; null when it is missing. */
+/* Finds the report of one slab: fills *sums and returns what follows it; null if it is missing. */
 static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums *sums) {
     const char *from = s->all.bytes, *end = from + s->all.size;
     for (; from < end; from += sums->size) {
@@ -416,8 +431,8 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
     }
     return 0;
 }
-/* Adds a slab's sums to the world's, which were cleared before. Answers where its message
-   begins. */
+/* Adds the sums of a report to those of the world, which were set to 0 before. Returns the begin of
+   the report's message of grains. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i;
     demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
@@ -444,7 +459,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     }
     return from;
 }
-/* From a slab's sums to its grains. */
+/* Returns the begin of that message without adding anything. */
 static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
                                    const char *from) {
     int i;
@@ -452,7 +467,8 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
     for (i = 0; i < w->field_count; i++) from += demi_field_reals(&w->fields[i])*sizeof(double);
     return from + (size_t)w->outlet_count*sizeof(dem_outlet_state);
 }
-/* Time, step, and what else is the same in all slabs. */
+/* Copies to the world what is the same in all slabs (time, time step, poses of walls, feeds), and
+   sets its sums to 0. */
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
@@ -466,7 +482,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         w->walls[i].mid = from->walls[i].mid;
     }
     for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc desc = w->feeds[i].desc;           /* pointers are the world's own */
+        const dem_feed_desc desc = w->feeds[i].desc;           /* its pointers are the world's */
         w->feeds[i] = h->feeds[i];
         w->feeds[i].desc = desc;
     }
@@ -477,7 +493,8 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         f->next = from->fields[i].next;
     }
 }
-/* Grains, memory and contacts of one slab; those that were fed since are new in the world. */
+/* Writes the grains and contact histories of one slab to the world. Grains that feeds have inserted
+   are new in the world. seen: by slot, 1 for grains in any slab. */
 static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
     demi_message_head head;
     int i;
@@ -494,14 +511,14 @@ static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const ch
     w->lll_valid = 0;
     demi_filed_unpack(w, add, &head, from);
 }
-/* Slots of grains that were fed since the world was told the last time, nobody's as yet. */
+/* Adds the slots of grains inserted since the last collection to the world, without bodies yet. */
 static void demi_slabs_slots(const dem_slabs *s, dem_world *w) {
     for (; w->bodies.slot_count < s->slots; w->bodies.slot_count++) {
         w->bodies.slot_generation[w->bodies.slot_count] = 1;
         w->bodies.slot_index[w->bodies.slot_count] = -1;
     }
 }
-/* Those from `first` on whose grains have gone again are free. */
+/* Frees the slots from `first` on whose grains have left the scene again. */
 static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) {
     int slot;
     for (slot = w->bodies.slot_count - 1; slot >= first; slot--) {
@@ -511,7 +528,9 @@ static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) 
         w->bodies.slot_free = slot;
     }
 }
-/* Room for all that was gathered, and whether the world can hold it. */
+/* Checks that the world can take the reports: it must be the scene of the slabs, without walls or
+   grains added or removed since. Then drops its list and its contact histories, and allocates room
+   for the reports. */
 static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
@@ -531,7 +550,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                          "from which they were created, unchanged, or one built like it", call,
                          w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
                          s->dealt, h->wall_count, h->material_count, h->feed_count);
-    for (i = 0; i < w->wall_count; i++) {       /* a place may have got another wall */
+    for (i = 0; i < w->wall_count; i++) {       /* another wall may have this index now */
         const demi_wall *here = &w->walls[i], *there = &s->slabs[0].world->walls[i];
         const int none = here->kind == DEMI_WALL_NONE, gone = there->kind == DEMI_WALL_NONE;
         if (none == gone && (none || here->id == there->id)) continue;
@@ -606,17 +625,17 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         }
         demi_slabs_slots_free(w, seen, slots);
         s->told = s->slots;
-        /* in no slab: left through an outflow boundary or an outlet */
+        /* not in any slab: it left through an outflow boundary or an outlet */
         for (i = w->bodies.count - 1; i >= 0; i--)
             if (!seen[w->bodies.slot[i]]) {
                 const double removed = w->booked.removed;
                 demi_body_take_out(w, i);
                 w->booked.removed = removed;
             }
-        /* whatever happened here since */
+        /* counts of the slabs replace those of the world */
         w->bodies.balance.inserted = s->head.bodies.balance.inserted;
         w->bodies.balance.removed = s->head.bodies.balance.removed;
-        demi_effects(w);                        /* the world may never have taken a step itself */
+        demi_effects(w);                        /* the world itself may never have been stepped */
         demi_kernel_choose(w);
     }
     w->look.calling = was[1];
