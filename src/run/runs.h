@@ -88,8 +88,7 @@ static double demi_speeds(const dem_world *w, double *mean) {
 /* Returns the speed below which grains count as at rest, m/s: `speed`, or if that is 0 a hundredth
    of the speed after a fall through the mean radius. *look receives the time between two tests, s:
    a fall through half a radius takes it, or without gravity a way of half a radius at that speed.
-   So a body that is at rest for an instant only, at its highest point, does not pass three tests.
-   */
+   So a body that is at rest only for an instant, at its highest point, does not pass all tests. */
 static double demi_calm(const dem_world *w, double speed, double *look) {
     const double g = (double)demi_length(w->desc.gravity);
     double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first grains */
