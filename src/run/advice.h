@@ -157,9 +157,8 @@ static dem_result demi_grades_of(const dem_world *h, demi_grades *g) {
     }
     return result;
 }
-/* Returns the impact speed to expect, m/s: desc.impact_speed, or if that is 0 the largest of the
-   speeds of grains, feeds and walls and of a fall through the height of the scene; at least 1e-3.
-   */
+/* Returns the impact speed to expect, m/s: desc.impact_speed, or if that is 0 the largest speed of
+   grains, feeds, walls and of a fall through the height of the scene; at least 1e-3. */
 static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
     const dem_vec3 down = demi_down(w);
     const double gravity = (double)demi_length(w->desc.gravity);
@@ -196,14 +195,13 @@ static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
 }
 /* The shortest contact among those examined so far, and the smallest stable step. */
 typedef struct demi_shortest {
-    double time, limit;            /* s: contact time; stable step, possibly of another contact */
-    double radius, partner;        /* m; partner 0: a wall */
+    /* s: contact time; stable step, possibly of another contact; m: radii, partner 0: a wall */
+    double time, limit, radius, partner;
     int material, other, wall;     /* indices of materials, -1: no contact yet; wall: its id, 0:
                                       two grains */
 } demi_shortest;
 /* Examines the smallest grain of material i in contact with a wall (index, material `other`) or, if
-   wall is -1, with the smallest grain of material `other`, or its largest fixed grain if `fixed`.
-   */
+   wall is -1, with the smallest grain of material `other`; if `fixed`, its largest fixed one. */
 static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, int other, int fixed,
                              int wall, double speed, demi_shortest *s) {
     const double r = g->smallest[i], m = demi_sphere_mass(w, i, r);
