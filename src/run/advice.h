@@ -536,7 +536,7 @@ static void demi_whole_take(dem_world *w, int i, const char *from) {
     }
 }
 /* Compute the cheap bounds of all bodies, and the matrices of those that need them. In a team all
-   bodies get matrices, because no member knows which ghosts of its bodies need them. */
+   bodies get matrices, because a member does not know which of its ghosts need them. */
 static dem_result demi_member_press(dem_world *w) {
     const size_t n = (size_t)w->bodies.count;
     if (!DEMI_GROW(w, w->press, n)) return demi_no_memory(w, "dem_world_step");
@@ -803,9 +803,9 @@ static dem_result demi_member_press_refuse(dem_world *w) {
                      (unsigned)w->bodies.slot[w->pressed.worst] + 1, p->contacts,
                      (double)p->deepest);
 }
-/* Computes an upper bound of the speed of all bodies in the next step, m/s: the last speed and the
-   last change of velocity. After a change of the scene, and with the midpoint rule, it is computed
-   from the present forces: the last change may be that of a body that was removed since. */
+/* Sets *bound to an upper bound of the speed of all bodies in the next step, m/s: the last speed
+   and the last change of velocity. After a change of the scene, and with the midpoint rule, it
+   follows from the present forces: the last change may be that of a body that was removed since. */
 static dem_result demi_speed_bound(dem_world *h, double *bound) {
     const int midway = demi_response_is(h, DEMI_MIDWAY);
     int k;

@@ -32,7 +32,7 @@
    --------------------------------------------------------------------------------------------- */
 /* Limits: number of slabs; bins per slab of the histogram from which borders are computed.
    Directions of an exchange. Values of bodies.ghost by slot: 0, or DEMI_GHOST; while messages are
-   packed also one of the marks that follow. */
+   packed also one of the marks that follow. DEMI_ALL: the mark of all own grains, 0. */
 enum { DEMI_SLABS = 1024, DEMI_SLAB_BINS = 32, DEMI_UP = 1, DEMI_DOWN = 2, DEMI_ALL = 0,
        DEMI_GHOST = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GHOST_ABOVE = 4 };
 
@@ -63,8 +63,8 @@ typedef struct demi_slab {
 struct dem_slabs {
     dem_world head;
     dem_slabs_desc desc;
-    /* number in all processes; index of this process's first slab, number of its slabs; 1: the axis
-       is periodic; 1: the transport has failed */
+    /* axis 0 to 2; slabs in all processes; first slab of this process, number of its slabs; 1: the
+       axis is periodic; 1: the transport has failed */
     int axis, count, first, local, ring, broken;
     double period, cut;            /* m: period along the axis; smallest thickness of a slab */
     double *borders;               /* m, count + 1; -1e300 and 1e300 at the ends of an open axis */
@@ -166,9 +166,10 @@ typedef struct demi_message_head {
     int32_t grains, pairs, contacts, stride;
 } demi_message_head;
 /* Appends to `out` all bodies with this mark (marks: by slot) and, if `memory`, the histories and
-   persistent contacts that name one of them (with DEMI_ALL: all that exist). `shift`, m, is added
-   to positions along `axis`. Histories must be filed, by demi_list_drop or demi_carry_collect.
-   host: the world whose memory is used. Returns 0 if memory ran out. */
+   persistent contacts that name one of them (DEMI_ALL: all own bodies, and all histories and
+   contacts that exist). `shift`, m, is added to positions along `axis`. Histories must be filed, by
+   demi_list_drop or demi_carry_collect. host: the world whose memory is used. Returns 0 if memory
+   ran out. */
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_message *out) {
     const size_t start = out->size;
