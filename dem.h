@@ -23625,32 +23625,36 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
 
 /* ---------------------------------------------------------------------------------------------
    >>team
-   The worlds that step together. There is one step (>>step). It runs its phases on every member of
-   a team; between phases the members exchange and agree on numbers. A single world is the only
-   member: then an exchange does nothing, and an agreement returns the member's own numbers. >>slabs
-   provides the exchange between slabs and between processes. Owns nothing.
+   The worlds that step together: a single world, or the slabs of a domain decomposition. There is
+   one step (>>step), which runs its phases on every member of a team. Between phases the members
+   exchange data of ghost particles and agree on maxima and failures. A single world has no team and
+   is its own only member: an exchange then does nothing, and an agreement returns the member's own
+   numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
+   for slabs. Owns nothing.
    --------------------------------------------------------------------------------------------- */
 
-/* The number of members in this process, and member k. h: the head, or a single world. */
+/* Return the number of members in this process, and member k. In all parts `h` is the head of a
+   team, or a single world, and `w` is a member. */
 static int demi_members(const dem_world *h) { return h->team ? h->team->count : 1; }
 static dem_world *demi_member(const dem_world *h, int k) {
     return h->team ? h->team->members[k] : (dem_world *)h;
 }
-/* Runs a task on each member. A single world returns the result of the task; a team returns DEM_OK
-   and keeps the results until the next agreement. */
+/* Runs a task on each member. A single world returns the result of the task. A team always returns
+   DEM_OK; it stores the results, and the next agreement returns a failure. */
 static dem_result demi_all(dem_world *h, dem_result (*task)(dem_world *member)) {
     return h->team ? h->team->all(h, task) : task(h);
 }
-/* Returns the failure of any member since the last agreement, DEM_OK if there was none. most
-   (count): replaced by the maxima over all processes. */
+/* Returns a failure of any member since the last agreement, or DEM_OK. Replaces each of the `count`
+   values of `most` by its maximum over all processes; count <= 7 (demi_slabs_agree). */
 static dem_result demi_agree(dem_world *h, double *most, int count) {
     return h->team ? h->team->agree(h, most, count) : DEM_OK;
 }
+/* Runs a task on each member and returns a failure of any of them. */
 static dem_result demi_all_agree(dem_world *h, dem_result (*task)(dem_world *member)) {
     const dem_result result = demi_all(h, task);
     return result == DEM_OK ? demi_agree(h, 0, 0) : result;
 }
-/* Copies the time step from the head to the members. */
+/* Copies the time step, and the impact speed it was chosen for, from the head to the members. */
 static void demi_dt_share(dem_world *h) {
     int k;
     for (k = 0; k < demi_members(h); k++) {
@@ -23660,17 +23664,20 @@ static void demi_dt_share(dem_world *h) {
         w->stage.dt_valid = h->stage.dt_valid;
     }
 }
+/* Completes the half kick that the last step left open (demi_finish), as a task for demi_all. */
 static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }
 
 /* ---------------------------------------------------------------------------------------------
    >>advice
-   Which time step a scene bears: contact times and stable steps of the pairs that may meet, of the
-   contacts that are there, of spins and speeds; what dt = 0 chooses and what is refused by name.
-   Reads everything, writes only dt and room of its own.
+   The critical time step: the step that a scene allows, from the durations of collisions and the
+   stability limits of contacts that may occur, from the contacts that exist now, from spins and
+   from speeds. It chooses the step if desc.dt is 0, and rejects a given step that is too long, with
+   a message that names the cause. Owns dt, the reasons for it (clock.held), and work arrays (press,
+   press_whole, pressed). Reads everything else. A head (h) considers all members of its team.
    --------------------------------------------------------------------------------------------- */
 
-/* m/s, how fast a wall's surface will move, whether it has begun to or not; of a motion that is the
-   user's own, how fast it does now. */
+/* Returns the largest speed of a wall's surface during its motion, m/s, also before the motion has
+   begun. For a user-defined motion: its present speed. A table is sampled eight times per row. */
 static double demi_motion_speed(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     const double far = (double)DEMI_MAX(wall->extent, wall->radius);
@@ -23702,13 +23709,15 @@ static double demi_motion_speed(const demi_wall *wall) {
     }
     return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
 }
-/* The direction of gravity, or 0. */
+/* Returns the unit vector of gravity, or 0 without gravity. */
 static dem_vec3 demi_down(const dem_world *w) {
     return demi_length(w->desc.gravity) > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
 }
-/* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
-   one as light as a contact may find the body at worst; for Hertz, whose time goes with
-   (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
+/* Radius of the sphere, m, that replaces a body when contact times are estimated. For a shape with
+   a sphere of equal volume of radius `equal`, the mass of that sphere is the smallest effective
+   mass that a contact may find. The Hertz contact time is proportional to (m^2/R)^(1/5). So if the
+   radius of curvature of the flattest point is larger, the mass is also multiplied by the root of
+   the ratio of the two radii. demi_advise_radius: the same for a body. */
 static double demi_advise_shape(const dem_world *w, const demi_shape *shape, double equal) {
     const double scale = equal/(double)shape->equal, r = equal*demi_pow(shape->light, 1.0/3);
     const double sharp = r/((double)shape->blunt*scale);
@@ -23719,16 +23728,17 @@ static double demi_advise_radius(const dem_world *w, int body) {
     const double r = (double)w->bodies.pos[4*body + 3];
     return shape ? demi_advise_shape(w, shape, (double)shape->equal*(r/(double)shape->radius)) : r;
 }
-/* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
-   velocities: omega2 dt^2/4 + rate dt = 1, s. (For the other integrators about the same.) */
+/* Returns the largest step, s, at which velocity Verlet with predicted velocities integrates
+   x'' = -omega2 x - rate x' stably: omega2 dt^2/4 + rate dt = 1. (For the other integrators it is
+   about the same.) */
 static double demi_dt_stable(double omega2, double rate) {
     return 2/(rate + sqrt(rate*rate + omega2) + 1e-300);
 }
-/* How stiff and how damped one contact is at an overlap, for small motions: N/m and N s/m, rolling
-   N m and N m s. */
+/* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
+   rolling, N m. Damping: likewise, N s/m and N m s. */
 typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
-/* Slopes of force against way, and of damping against speed, at an overlap: what the stability of a
-   step hangs on. Of a law of the user's own, what desc.law_stiffness says. */
+/* Returns the derivatives of a contact's force with respect to displacement and velocity at an
+   overlap (m); the stability of a step depends on them. A user-defined law: desc.law_stiffness. */
 static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef, double m_eff,
                                         double overlap) {
     const double root = sqrt(overlap), r = (double)coef[DEMI_R_EFF];
@@ -23753,7 +23763,8 @@ static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef
     }
     return s;
 }
-/* Of one contact to come, of spheres that meet at a speed: at its deepest. */
+/* Returns the largest stable step, s, for a collision of two spheres at a speed (m/s): the limit at
+   the largest overlap. */
 static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, double m_eff,
                                  double speed) {
     const double deep = demi_pow(5*m_eff*speed*speed/(4*(double)coef[DEMI_KN]), 0.4);
@@ -23762,16 +23773,18 @@ static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, doubl
     const double slide = 3.5*s.kt/m_eff + s.kr/I;
     return demi_dt_stable(DEMI_MAX(s.k/m_eff, slide), DEMI_MAX(s.c/m_eff, 3.5*s.ct/m_eff + s.cr/I));
 }
-/* What the choice of a time step depends on: the grains that there are, of all parts, and those
-   that feeds will bring. */
+/* The properties of the grains of all members, and of those that feeds will insert, on which the
+   choice of a time step depends. Radii are those of demi_advise_radius. */
 typedef struct demi_grades {
-    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m: moving; largest that is fixed */
-    double many[DEMI_MATERIALS];                           /* that move, or more of their like */
-    double bodies;
-    double speed, spin;            /* m/s; rad/s, of bodies that are not spheres: the fastest */
-    double lo, hi;                 /* m, along gravity: from where to where there are bodies */
+    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m, by material: smallest radius of
+                                      bodies that can move; largest of fixed bodies */
+    double many[DEMI_MATERIALS];   /* by material: number of bodies that can move */
+    double bodies;                 /* number of all bodies */
+    double speed, spin;            /* largest speed, m/s; spin of bodies that are not spheres,
+                                      rad/s */
+    double lo, hi;                 /* m, extent of the bodies along gravity */
 } demi_grades;
-/* Adds the bodies of one part. */
+/* Adds the bodies of one member, without its ghosts. */
 static void demi_grades_add(const dem_world *w, demi_grades *g) {
     const dem_vec3 down = demi_down(w);
     int i;
@@ -23790,7 +23803,8 @@ static void demi_grades_add(const dem_world *w, demi_grades *g) {
         if (!g->many[m]++ || equal < g->smallest[m]) g->smallest[m] = equal;
     }
 }
-/* Feeds count as if two grains of each class were there already. */
+/* Fills in *g for all members and all processes. Feeds count as if two grains of each of their
+   classes were there already. */
 static dem_result demi_grades_of(const dem_world *h, demi_grades *g) {
     dem_result result = DEM_OK;
     int i, j;
@@ -23812,15 +23826,15 @@ static dem_result demi_grades_of(const dem_world *h, demi_grades *g) {
     }
     return result;
 }
-/* Impact speed to reckon with: given, or the largest of what grains do now, what walls will do and
-   what gravity can make of the height there is. */
+/* Returns the impact speed to expect, m/s: desc.impact_speed, or if that is 0 the largest speed of
+   grains, feeds, walls and of a fall through the height of the scene; at least 1e-3. */
 static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
     const dem_vec3 down = demi_down(w);
     const double gravity = (double)demi_length(w->desc.gravity);
     double speed = g->speed, lo = g->lo, hi = g->hi;
     int i, k;
     if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
-    for (i = 0; i < w->feed_count; i++) {       /* grains that are to come */
+    for (i = 0; i < w->feed_count; i++) {       /* grains to be inserted */
         const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
         for (k = 0; k < 2; k++) {
             const double h = (double)demi_dot(k ? d->box.hi : d->box.lo, down);
@@ -23848,12 +23862,15 @@ static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
     if (gravity > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*gravity*(hi - lo)));
     return DEMI_MAX(speed, 1e-3);
 }
-/* The contact that lasts shortest, of those looked at so far, and the least stable step. */
+/* The shortest contact among those examined so far, and the smallest stable step. */
 typedef struct demi_shortest {
-    double time, limit, radius, partner;       /* s, s, m, m */
-    int material, other, wall;                 /* indices; wall: 1 + index, 0: none */
+    /* s: contact time; stable step, possibly of another contact; m: radii, partner 0: a wall */
+    double time, limit, radius, partner;
+    int material, other, wall;     /* indices of materials, -1: no contact yet; wall: its id, 0:
+                                      two grains */
 } demi_shortest;
-/* Smallest grains of material i with one kind of partner: material `other` (fixed or not), wall. */
+/* Examines the smallest grain of material i in contact with a wall (index, material `other`) or, if
+   wall is -1, with the smallest grain of material `other`; if `fixed`, its largest fixed one. */
 static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, int other, int fixed,
                              int wall, double speed, demi_shortest *s) {
     const double r = g->smallest[i], m = demi_sphere_mass(w, i, r);
@@ -23873,24 +23890,27 @@ static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, in
         s->limit = DEMI_MIN(s->limit, demi_dt_of_contact(w, coef, m_eff, speed));
     }
     if (t >= s->time) return;
-    s->time = t > 1e-37 ? t : 1e-37;            /* 0 would mean that there is none */
+    s->time = t > 1e-37 ? t : 1e-37;            /* 0 would mean: no contact */
     s->radius = r;
     s->partner = partner;
     s->material = i;
     s->other = other;
     s->wall = wall < 0 ? 0 : w->walls[wall].id;
 }
-/* pi r sqrt(rho/G)/(.1631 nu + .8766), the time a surface wave takes over the smallest grain. */
+/* Returns the Rayleigh time of a grain, s: pi r sqrt(rho/G)/(0.1631 nu + 0.8766), the time in which
+   a surface wave travels half round it; 1e300 if G is 0. */
 static double demi_rayleigh(const dem_material_desc *d, double r) {
     const double nu = (double)d->poisson, G = (double)d->young/(2*(1 + nu));
     return G > 0 ? DEMI_PI*r*sqrt((double)d->density/G)/(0.1631*nu + 0.8766) : 1e300;
 }
-/* What sets dt_max: a share of the contact time, or stability where that is smaller. */
+/* Names what limits dt_max: a fraction of the contact time, or stability if that is smaller. */
 static const char *demi_dt_limit(const dem_advice *a) {
     return (double)a->dt_max < 0.0499*(double)a->contact_time
         ? "the stability limit of dashpots and rolling" : "t_c/20";
 }
-/* Shortest contact among all material pairs and walls there are, for their smallest grains. */
+/* Computes the advice from the shortest contact among all pairs of materials, and with all walls,
+   of their smallest grains. A lone grain is paired with one of its kind: for the contact time, but
+   not for the stability limit. */
 static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice *out) {
     const double speed = demi_speed_estimate(w, g);
     double rayleigh = 1e300;
@@ -23906,11 +23926,11 @@ static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice 
             if (w->walls[j].kind != DEMI_WALL_NONE)
                 demi_advise_pair(w, g, i, w->walls[j].material, 0, j, speed, &s);
     }
-    for (i = 0; i < w->material_count && s.material < 0; i++)     /* one grain alone: its like */
+    for (i = 0; i < w->material_count && s.material < 0; i++)     /* a lone grain */
         if (g->smallest[i] > 0) {
             const double limit = s.limit;
             demi_advise_pair(w, g, i, i, 0, -1, speed, &s);
-            s.limit = limit;                    /* which is not there to be unstable with */
+            s.limit = limit;
         }
     memset(out, 0, sizeof *out);
     out->speed = (dem_real)speed;
@@ -23939,37 +23959,47 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     demi_advise_by(w, &g, out);
 }
 
-/* --- contacts that are there: pressed, and many to a grain. Small motions x about a state, with
-       stiffness K, damping C and mass M, first grow by changing sign from step to step. Velocity
-       Verlet with predicted velocities keeps them from it while
-           dt^2/4 K + dt C < M    (no eigenvector of M^-1 times the left side reaches 1)
+/* --- stability with the contacts that exist now ("pressed" contacts: compressed, and several per
+       grain). Small motions x about a state, with stiffness K, damping C and mass M, become
+       unstable first in a mode that changes sign from step to step. Velocity Verlet with predicted
+       velocities is stable while
+           dt^2/4 K + dt C < M    (all eigenvalues of M^-1 times the left side are below 1)
        A contact stores k (n.(xa - xb))^2/2 <= k [(1 + Ra/Rb) (n.xa)^2 + (1 + Rb/Ra) (n.xb)^2]/2.
-       So it holds for the whole scene where it holds for each body, held by its own contacts alone,
-       each counted f = 1 + Ra/Rb times (once where the partner does not move): six rows,
-           A = sum f [k n n + kt (1 - n n)]/m,  B = sum f [kt l^2 + kr] (1 - n n)/I,
-           Q = sum f kt l [n x]/sqrt(m I),  n outwards; l from the centre; damping likewise
-       Contacts with walls count by their weights, as their forces do (>>facets: those of one place
-       on a curved surface add up to one, some are negative). The bound is exact for close packings
-       that shear and spin, and for one body between walls. A cheap bound per body comes first (the
-       largest of each contact, summed); few bodies need the matrices. Spheres only. Checked by "a
-       step just inside the limit of pressed contacts is stable; one 5 % outside oscillates". --- */
+       So the condition holds for the whole scene if it holds for each body with its own contacts
+       alone, each counted f = 1 + Ra/Rb times (once if the partner does not move). For one body the
+       left side is a 6 x 6 matrix with the blocks
+           A = sum f [k n n + kt (1 - n n)]/m  (displacement),
+           B = sum f [kt l^2 + kr] (1 - n n)/I  (rotation),
+           Q = sum f kt l [n x]/sqrt(m I)  (coupling of the two),
+       n outwards, l the distance of the contact point from the centre; likewise for damping.
+       Contacts with walls count with their weights, as their forces do (>>facets: the weights of
+       one contact with a curved surface add up to one; some are negative). The bound is exact for
+       close packings that shear and spin, and for one body between walls. A cheap bound is tested
+       first: the sum, over a body's contacts, of the largest eigenvalue of each. Few bodies need
+       the matrices. Spheres only. Test: "a step just inside the limit of pressed contacts is
+       stable; one 5 % outside oscillates". --- */
+/* The contacts of one body. */
 typedef struct demi_press {
-    double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
-    double contacts;               /* how many, by their weights */
-    double relax;                  /* 1/s: how fast its own numbers follow its partners' */
+    double omega2, rate;           /* 1/s2, 1/s: the cheap bound, as in demi_dt_stable */
+    double contacts;               /* their number, the sum of their weights */
+    double relax;                  /* 1/s: rate at which its user-defined numbers approach those of
+                                      its partners (desc.law_rate) */
     int32_t whole;                 /* 1 + index of its matrices, 0: none needed */
-    dem_real deepest;              /* of its radius */
+    dem_real deepest;              /* largest overlap, relative to its radius */
 } demi_press;
-typedef struct demi_press_whole {  /* per mass, inertia, root of both */
-    double A[2][6], B[2][6], q[2][3];          /* 0: stiffness, 1: damping */
+/* The matrices of one body: blocks A, B and Q. A and B: upper triangle, row by row. q: the sum of
+   f kt l n, of which Q is the cross product. First index 0: stiffness, 1/s2; 1: damping, 1/s. */
+typedef struct demi_press_whole {
+    double A[2][6], B[2][6], q[2][3];
 } demi_press_whole;
+/* One contact as a body has it. */
 typedef struct demi_pressed {
     demi_stiffness s;
-    dem_vec3 n;
-    dem_real overlap, weight;
+    dem_vec3 n;                    /* unit normal, outwards */
+    dem_real overlap, weight;      /* m; 1 for two spheres */
 } demi_pressed;
-/* The cheap bound: stiffnesses of all contacts of a body added as if they were along one line;
-   those that take away are left out. */
+/* Adds a contact to a body's cheap bound: the stiffness of all contacts is added as if they were
+   along one line. Contacts of negative weight are left out. f as above; arm: l, m. */
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, double f,
                            double arm, demi_press *p) {
     const double m = (double)w->bodies.mass[body];
@@ -23981,8 +24011,7 @@ static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, 
     p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
     p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
 }
-/* The close one, where the cheap bound is not enough: the matrices of stiffness and damping of the
-   body, for its way (A), its turning (B), and how one asks for the other (Q, by q: [n x]). */
+/* Adds a contact to a body's matrices, for the close bound. */
 static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, double f,
                                  double arm, demi_press_whole *p) {
     const double m = (double)w->bodies.mass[body];
@@ -24001,7 +24030,8 @@ static void demi_press_add_whole(const dem_world *w, int body, const demi_presse
     for (d = 0; d < 2; d++)
         for (i = 0; i < 3; i++) p->q[d][i] += f*(d ? c->s.ct : c->s.kt)*arm*n[i]/sqrt(m*I);
 }
-/* Is a step stable for one body? 1 less the matrix above must have a Cholesky factor L. */
+/* True if a step is stable for one body: if 1 minus its matrix dt^2/4 K + dt C is positive
+   definite, that is if it has a Cholesky factor L. */
 static int demi_press_stable(const demi_press_whole *p, double dt) {
     static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     const double by[2] = {dt*dt/4, dt};
@@ -24021,7 +24051,7 @@ static int demi_press_stable(const demi_press_whole *p, double dt) {
         }
     return 1;
 }
-/* The largest stable step of one body, dt at most. */
+/* Returns the largest stable step of one body, s, at most dt, by bisection. */
 static double demi_press_step(const demi_press_whole *p, double dt) {
     double lo = 0, hi = dt;
     int k;
@@ -24032,8 +24062,8 @@ static double demi_press_step(const demi_press_whole *p, double dt) {
     }
     return lo;
 }
-/* Asks the user's law how fast one contact changes the numbers of body a and of body b (-1: wall),
-   each counted `weight` times. */
+/* Calls desc.law_rate for one contact, and adds the rates at which it changes the user-defined
+   numbers of body a and of body b (-1: a wall), times `weight`, to their `relax`. */
 static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_contact *c,
                              double weight, demi_press *press) {
     dem_real rates[2] = {0, 0};
@@ -24056,7 +24086,7 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     press[a].relax += weight*(double)rates[0];
     if (b >= 0) press[b].relax += weight*(double)rates[1];
 }
-/* All contacts there are, of every shape, asked so. */
+/* Does so for all contacts that exist, of all shapes, if there is a desc.law_rate. */
 static void demi_press_rates(const dem_world *w, demi_press *press) {
     dem_contact c;
     int d, p;
@@ -24087,11 +24117,12 @@ static void demi_press_rates(const dem_world *w, demi_press *press) {
         }
     }
 }
-/* The largest step at which a body's own numbers are stable, dt at most. */
+/* Returns the largest step at which a body's user-defined numbers are stable, s, at most dt. */
 static double demi_press_rate_step(const demi_press *p, double dt) {
     return p->relax*dt > 1 ? 1/p->relax : dt;
 }
-/* All contacts of spheres with each other and with walls. */
+/* Adds all contacts of spheres, with each other and with walls, to the cheap bounds of their
+   bodies; or, if `whole` is not null, to the matrices of the bodies that have any. */
 static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_whole *whole) {
     int d, p, side;
     for (d = 0; d < w->domain_count; d++) {
@@ -24146,8 +24177,8 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
         }
     }
 }
-/* What a part knows of ghosts, which their owner adds to what it knows of the body: the cheap
-   bound, and the matrices. */
+/* Two records (demi_record) of ghosts, which are added to those of their owners: the cheap bound,
+   and the matrices. */
 static size_t demi_press_size(const dem_world *w) { return sizeof *w->press; }
 static void demi_press_put(const dem_world *w, int i, char *to) {
     memcpy(to, w->press + i, sizeof *w->press);
@@ -24173,8 +24204,8 @@ static void demi_whole_take(dem_world *w, int i, const char *from) {
         sum[k] += part;
     }
 }
-/* Works the cheap bounds out, and the matrices of the bodies that need them: in a team of all, for
-   no part knows which its neighbours' bodies need. */
+/* Compute the cheap bounds of all bodies, and the matrices of those that need them. In a team all
+   bodies get matrices, because a member does not know which of its ghosts need them. */
 static dem_result demi_member_press(dem_world *w) {
     const size_t n = (size_t)w->bodies.count;
     if (!DEMI_GROW(w, w->press, n)) return demi_no_memory(w, "dem_world_step");
@@ -24193,17 +24224,18 @@ static dem_result demi_member_press_whole(dem_world *w) {
     if (found) demi_press_visit(w, w->press, w->press_whole);
     return DEM_OK;
 }
-/* The largest stable step of one body of a part, the judged one at most: by the matrices where
-   there are any, else by the cheap bound. */
+/* Returns the largest stable step of body i, s, at most w->pressed.dt: by the cheap bound or, if
+   `whole`, by its matrices (a body without matrices does not limit the step by its forces). */
 static double demi_press_body(const dem_world *w, int i, int whole) {
     const demi_press *p = w->press + i;
     const double rates = demi_press_rate_step(p, w->pressed.dt);
     if (!whole) return DEMI_MIN(rates, demi_dt_stable(p->omega2, p->rate));
     return p->whole ? demi_press_step(w->press_whole + p->whole - 1, rates) : rates;
 }
-/* Finds the smallest of these over all bodies of all parts. */
+/* Finds the smallest of these steps over all bodies of all members, and stores it in `pressed` of
+   the head and of each member, with the member's own smallest one and the body that limits it. */
 static dem_result demi_press_least(dem_world *h, int whole) {
-    double least = -h->pressed.dt;              /* less than 0: maxima are what is agreed on */
+    double least = -h->pressed.dt;              /* negative, because members agree on maxima */
     dem_result result;
     int i, k;
     for (k = 0; k < demi_members(h); k++) {
@@ -24220,7 +24252,8 @@ static dem_result demi_press_least(dem_world *h, int whole) {
     h->pressed.least = -least;
     return result;
 }
-/* The largest stable step for the contacts there are, in h->pressed: dt or more than that is dt. */
+/* Sets h->pressed.least to the largest stable step with the contacts that exist now, s, at most dt.
+   The matrices are computed only if the cheap bound is below dt. */
 static dem_result demi_press_limit(dem_world *h, double dt) {
     static const demi_record bound = {demi_press_size, demi_press_put, demi_press_take};
     static const demi_record whole = {demi_whole_size, demi_whole_put, demi_whole_take};
@@ -24237,7 +24270,7 @@ static dem_result demi_press_limit(dem_world *h, double dt) {
     return result == DEM_OK ? demi_press_least(h, 1) : result;
 }
 
-/* Says that a body that is not a sphere turns too far in a step. */
+/* Fails because a body that is not a sphere rotates too far in a step. rate: its spin, rad/s. */
 static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere rotates "
                      "by %.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: "
@@ -24256,7 +24289,7 @@ DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
                      "grain that can move; add grains before this call");
 }
-/* Refuses a step that is chosen so short that time would stand still. */
+/* Fails because the chosen step is so short that the time would not advance. */
 static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene need a "
                      "step of %g s, must be at least %g s, or time does not advance (shortest: "
@@ -24264,12 +24297,13 @@ static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
                      "grain far too light: find it with dem_world_check_print", dt, DEMI_DT_LEAST,
                      by);
 }
-/* The time step of springs for the scene as it is, given or chosen; one that is not stable is
-   refused. A change of the step ends half steps of the old one first. */
+/* Springs: settles the time step for the present scene. Chooses it, with the reasons for the
+   report, or checks the given one, and fails if that is too long. First completes the open half
+   kick, so that a change of dt does not affect it. */
 static dem_result demi_springs_settle(dem_world *h) {
     dem_advice a;
     demi_grades g;
-    dem_result result = demi_all(h, demi_member_finish);  /* speeds of the present time */
+    dem_result result = demi_all(h, demi_member_finish);  /* velocities at the present time */
     if (result == DEM_OK) result = demi_grades_of(h, &g);
     if (result != DEM_OK) return result;
     if (!(g.bodies > 0) && !h->feed_count) {    /* nothing to limit it: walls still move */
@@ -24303,13 +24337,13 @@ static dem_result demi_springs_settle(dem_world *h) {
     demi_dt_share(h);
     return DEM_OK;
 }
-/* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
-   given stays. */
+/* True if grains are so much faster than the assumed impact speed that the step must be chosen
+   again. A given impact speed stays in force. */
 static int demi_outgrown(const dem_world *w) {
     return demi_response_is(w, DEMI_LASTING) && !(w->desc.impact_speed > 0) &&
         w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
-/* The fastest body that moves, m/s. */
+/* Returns the largest speed of the bodies that can move, m/s. */
 static double demi_fastest(const dem_world *w) {
     double most = 0;
     int i;
@@ -24319,8 +24353,8 @@ static double demi_fastest(const dem_world *w) {
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
-/* m/s, how fast a body may be in the next step by the forces that act now, with the midpoint rule
-   exactly. */
+/* Returns the largest speed, m/s, that a body may have in the next step by the present forces: a
+   bound, with the midpoint rule the exact speed. */
 static double demi_fastest_next(const dem_world *w) {
     double most = 0;
     int i, k;
@@ -24329,7 +24363,7 @@ static double demi_fastest_next(const dem_world *w) {
         const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
                              (double)w->desc.gravity.z};
         double a2 = 0, v2 = 0;
-        if (demi_is_ghost(w, i)) continue;      /* it is not known how all contacts push it */
+        if (demi_is_ghost(w, i)) continue;      /* its force here is incomplete */
         for (k = 0; k < 3; k++) {
             const double a = (double)w->bodies.force[4*i + k]*inv + g[k];
             const double v = (double)w->bodies.vel[4*i + k] + a*(double)w->clock.dt;
@@ -24343,9 +24377,10 @@ static double demi_fastest_next(const dem_world *w) {
     }
     return most;
 }
-/* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
-   and walls unseen; but for contacts that are foreseen from as far off as both may go together.
-   speed: a bound, m/s. */
+/* Fails if the fastest body may move farther than the smallest radius in a step, because it could
+   pass through others and walls undetected. Where contacts are found ahead of time (impulses), it
+   may move as far as half the distance at which they are found, since both bodies move. speed: an
+   upper bound, m/s. */
 static dem_result demi_speed_check(dem_world *w, double speed) {
     const int foreseen = demi_response_is(w, DEMI_FORESEEN);
     const double seen = foreseen ? w->margin.reach/2 : 0;
@@ -24372,7 +24407,8 @@ static dem_result demi_speed_check(dem_world *w, double speed) {
                      0.1*radius/speed,
                      foreseen ? ", or a law_range of twice that distance" : "");
 }
-/* The same of walls that are thin: planes and cylinders cannot be passed. */
+/* The same for moving walls that are thin. Planes and cylinders are not: a body on their other side
+   still touches them. */
 static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
@@ -24391,7 +24427,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
     }
     return DEM_OK;
 }
-/* Why dt is shorter than t_c/50, and by how much. */
+/* Prints why a chosen dt is shorter than t_c/50, and by what factor. */
 static void demi_held_report(const dem_world *w, FILE *out) {
     const demi_held *h = &w->clock.held;
     char who[64] = "a body";
@@ -24410,14 +24446,15 @@ static void demi_held_report(const dem_world *w, FILE *out) {
     else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
                  "used\n", h->limit);
 }
-/* What presses has been looked at: again more and more rarely while the scene stays, at least every
-   thousand steps; where a law has rates, which run away sooner, at least every eight. */
+/* Schedules the next examination of the present contacts: at increasing intervals while the scene
+   does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,
+   because user-defined numbers become unstable sooner. */
 static void demi_press_looked(demi_timing *clock, const dem_world *w) {
     clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
                                                w->desc.law_rate ? 8 : 1000);
 }
-/* Refuses a step that was given, in the part whose body is pressed so that no larger one is stable.
-   */
+/* Fails because the given step is not stable, in the member that has the body with the smallest
+   limit; the others return DEM_OK. */
 static dem_result demi_member_press_refuse(dem_world *w) {
     const demi_press *p = w->press + w->pressed.worst;
     const double limit = w->pressed.limit;
@@ -24435,8 +24472,9 @@ static dem_result demi_member_press_refuse(dem_world *w) {
                      (unsigned)w->bodies.slot[w->pressed.worst] + 1, p->contacts,
                      (double)p->deepest);
 }
-/* m/s, a bound of how fast a body may be in the next step. After a change of the scene the last
-   kick may be that of a body which is gone. */
+/* Sets *bound to an upper bound of the speed of all bodies in the next step, m/s: the last speed
+   and the last change of velocity. After a change of the scene, and with the midpoint rule, it
+   follows from the present forces: the last change may be that of a body that was removed since. */
 static dem_result demi_speed_bound(dem_world *h, double *bound) {
     const int midway = demi_response_is(h, DEMI_MIDWAY);
     int k;
@@ -24451,9 +24489,9 @@ static dem_result demi_speed_bound(dem_world *h, double *bound) {
     }
     return demi_agree(h, bound, 1);
 }
-/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
-   bodies move. A step that was chosen is made smaller; one that was given is refused, before
-   anything moves. */
+/* Checks the step before bodies move, when lists and contacts are valid: against the speeds, and
+   against the contacts that exist now. A chosen step is shortened to half of the stable one (see
+   dt_share); a given step that is too long fails. */
 static dem_result demi_dt_check(dem_world *h) {
     const int chosen = !(h->desc.dt > 0);
     const double share = h->dt_share > 0 ? h->dt_share : 1, room = DEMI_MIN(share/2, 0.95);
@@ -24481,7 +24519,7 @@ static dem_result demi_dt_check(dem_world *h) {
     h->clock.held.by = DEMI_HELD_PRESSED;
     h->clock.held.limit = limit;
     h->clock.held.body = 0;
-    if (!h->team) {                             /* which other processes do not know */
+    if (!h->team) {                             /* other processes would not know the body */
         const demi_press *p = h->press + h->pressed.worst;
         h->clock.held.by = p->relax*limit > 0.999 ? DEMI_HELD_RATE : DEMI_HELD_PRESSED;
         h->clock.held.body = (int32_t)h->bodies.slot[h->pressed.worst] + 1;
@@ -25043,25 +25081,30 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
 
 /* ---------------------------------------------------------------------------------------------
    >>step
-   One step in the order of the manual, for all members of a team together (>>team): a single world,
-   or slabs. A phase runs over the work groups of a member in parallel. A phase ends when all groups
-   have finished, since the next one needs their results: after the move (which bodies came near
-   each other), after touch (whether the lists had room), after respond (forces on bodies of other
-   groups). A step begins with the forces that the step before computed last. Its second half kick
-   is left open until the state is read (demi_finish), because the first half kick of the next step
-   adds the same force: velocities are written once a step, not twice. Quantities that only a reader
+   Time integration: one step, in the stages that section 10 of the manual lists, for all members
+   of a team together (>>team), that is for a single world or for slabs. A phase runs over the work
+   groups of a member in parallel. It ends when all groups have finished, because the next phase
+   needs their results: after the move, which bodies came near each other; after touch, whether the
+   lists had room; after respond, the forces on bodies of other groups.
+   This part owns the time, the stages of demi_stages, the displacements since the last rebuild, and
+   the poses and loads of walls. Integrators (>>integrators) move the bodies, responses
+   (>>responses) compute the forces.
+   A step begins with the forces that the previous step computed. Its second half kick is left open
+   until the state is read (demi_finish), because the first half kick of the next step adds the same
+   force: so velocities are written once per step instead of twice. Quantities that only a reader
    needs, for example the kinetic energy, are computed when they are read. An error is found in the
    step that caused it, and the message names the body. A step that ran out of memory after its move
-   is marked (stage.moved); the next call continues it.
+   is marked by stage.moved; the next call continues it.
    --------------------------------------------------------------------------------------------- */
 
-/* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite
-   (a maximum loses it). In groups, each place of which has its own maximum and sum: that is what
-   makes vectors of it. */
+/* Largest |v|^2 and |a|^2 of some bodies, and the sum of |v|^2. The sum is not finite if any
+   velocity is not finite; a maximum would lose that. Each lane has its own maxima and sum, so that
+   the compiler vectorizes the loop over bodies. */
 typedef struct demi_pace {
+    /* (m/s)^2, of half-step velocities; (m/s2)^2, of the forces that move the bodies; (m/s)^2 */
     dem_real speed2[DEMI_LANES], acceleration2[DEMI_LANES], sum[DEMI_LANES];
 } demi_pace;
-/* Maxima and a sum, per lane: the sum is not finite when any velocity is not. */
+/* Adds body i to lane l. */
 DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRICT pace, int l) {
     const dem_real *v = w->bodies.half_vel + 4*i, *f = w->bodies.force + 4*i,
         inv = w->bodies.inv_mass[i];
@@ -25073,7 +25116,8 @@ DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRI
     pace->acceleration2[l] = a > pace->acceleration2[l] ? a : pace->acceleration2[l];
     pace->sum[l] += s;
 }
-/* Moves some bodies, looks at their pace, clears their forces. */
+/* Moves the bodies begin .. end - 1 of a work group by one step, adds them to `pace`, and sets
+   their forces to 0; if `turning`, also rotates them and sets their torques to 0. */
 static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end, int turning,
                            demi_pace *pace) {
     const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
@@ -25097,7 +25141,8 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     memset(w->bodies.force + 4*begin, 0, bytes);
     if (turning) memset(w->bodies.torque + 4*begin, 0, bytes);
 }
-/* The same for a domain in which some bodies may be quiet. */
+/* The same for a whole work group in which some bodies may be isolated (demi_quiet). Isolated
+   bodies keep their velocity: only their positions change, and their stored speed is used. */
 static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
     demi_domain *domain = &w->domains[d];
     const dem_real *DEMI_RESTRICT u = w->bodies.half_vel, dt = w->clock.dt;
@@ -25124,8 +25169,9 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
 }
-/* J, of gravity in this step on the bodies of a domain: by their momentum, which rows of four sum
-   together. (What does not move has no velocity.) */
+/* Returns the work of gravity in this step on the bodies of a work group, J: their momentum times
+   g dt. The fourth column is summed only so that the loop vectorizes. Bodies that do not move add
+   nothing, because their velocity is 0. */
 static double demi_gravity_work(const dem_world *w, const demi_domain *domain) {
     const dem_real *DEMI_RESTRICT u = w->bodies.half_vel, *DEMI_RESTRICT mass = w->bodies.mass;
     const dem_vec3 g = w->desc.gravity;
@@ -25136,7 +25182,8 @@ static double demi_gravity_work(const dem_world *w, const demi_domain *domain) {
     return ((double)g.x*momentum[0] + (double)g.y*momentum[1] + (double)g.z*momentum[2])*
         (double)w->clock.dt;
 }
-/* All bodies of a domain, a few at a time; what is found on the way goes into the domain's sums. */
+/* Moves all bodies of work group d, a few at a time, and stores the maxima and sums found on the
+   way in the group. */
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const int turning = demi_turns(w), some = 64;   /* these stay in the nearest cache */
@@ -25153,7 +25200,7 @@ static void demi_domain_move(dem_world *w, int d) {
         domain->acceleration2 = DEMI_MAX(domain->acceleration2, (double)pace.acceleration2[i]);
         domain->check += (double)pace.sum[i];
     }
-    /* where contacts are found, bodies have gone with the velocity of the end of the step */
+    /* midpoint rule: between two contact detections bodies move with full-step velocities */
     for (i = domain->begin; i < domain->end && demi_response_is(w, DEMI_MIDWAY); i++) {
         const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
         domain->speed2 = DEMI_MAX(domain->speed2, (double)demi_dot(v, v));
@@ -25161,8 +25208,8 @@ static void demi_domain_move(dem_world *w, int d) {
     if (w->desc.ledger) domain->energy[DEMI_E_GRAVITY] = demi_gravity_work(w, domain);
 }
 
-/* Time and velocities that fields of force see: of now, or with the midpoint rule in the middle of
-   the next step, if velocities go on as in the last one. */
+/* Time, s, and velocity that force fields receive: the present ones. With the midpoint rule those
+   in the middle of the next step: velocities are extrapolated with the change of the last step. */
 static double demi_field_time(const dem_world *w) {
     return w->clock.time + (demi_response_is(w, DEMI_MIDWAY) ? (double)w->clock.dt/2 : 0);
 }
@@ -25171,7 +25218,7 @@ DEM_INLINE dem_vec3 demi_field_rate(const dem_world *w, const dem_real *now, con
     const dem_vec3 v = demi_at(now + 4*i);
     return demi_response_is(w, DEMI_MIDWAY) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
 }
-/* Forces and torques of a field that sees whole bodies. */
+/* Adds the forces and torques of desc.body_force to the bodies of work group d. */
 static void demi_domain_fields(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i;
@@ -25192,7 +25239,8 @@ static void demi_domain_fields(dem_world *w, int d) {
                                                               body.spin))*(double)w->clock.dt;
     }
 }
-/* Force field, or nothing, to start the sums with; after a move forces are clear already. */
+/* Starts the sums of forces and torques of work group d: with 0, or with the force fields. The move
+   of a step has already set forces to 0. */
 static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
@@ -25216,8 +25264,9 @@ static void demi_domain_clear(dem_world *w, int d) {
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
 }
-/* All contacts that a domain owns. Its own bodies are summed here; forces on bodies of other
-   domains stay in slots until all have answered (demi_cross_gather). */
+/* Computes the forces of all contacts that work group d owns. Forces on its own bodies are added
+   here. Forces on bodies of other groups are stored in cross_force until all groups have finished
+   (demi_cross_gather). */
 static void demi_domain_respond(dem_world *w, int d) {
     const demi_response_row *response = &demi_responses[w->desc.response];
     const size_t walls = (size_t)w->wall_count;
@@ -25229,11 +25278,13 @@ static void demi_domain_respond(dem_world *w, int d) {
     }
     if (response->respond) response->respond(w, d);
 }
-/* What others did to this domain's bodies, in the order of their entries. */
+/* Adds the forces that contacts of other work groups exert on the bodies of group d, in the order
+   of cross_incoming. With user-defined functions, which may return any number, it also stores a sum
+   that is not below 1e300 if any force or user-defined number is not finite or too large. */
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries && demi_responses[w->desc.response].respond) demi_cross_gather(w, d);
-    if (demi_own(w)) {                          /* those of your own may answer anything */
+    if (demi_own(w)) {
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
             sum += fabs((double)w->bodies.force[i]) + fabs((double)w->bodies.torque[i]);
@@ -25243,11 +25294,11 @@ static void demi_domain_gather(dem_world *w, int d) {
         w->domains[d].check = sum;
     }
     if (!w->desc.planar) return;
-    /* nothing pushes a disc out of its plane */
+    /* discs stay in the plane z = 0 */
     for (i = w->domains[d].begin; i < w->domains[d].end; i++)
         w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
 }
-/* What walls gain of the user's numbers per second: domains in order, as above. */
+/* Sums the rates, per second, of the walls' user-defined numbers over the work groups, in order. */
 static void demi_walls_rates(dem_world *w) {
     const size_t n = (size_t)w->bodies.real_count, walls = (size_t)w->wall_count;
     size_t i, k;
@@ -25260,7 +25311,10 @@ static void demi_walls_rates(dem_world *w) {
                 c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
         }
 }
-/* Forces at the present positions and velocities; wall loads. 0: memory ran out. */
+/* Computes the forces at the present positions and velocities, and the loads of walls. The
+   persistent contacts found by touch become the present ones. If forces_valid is 0 the forces
+   belong to no step (demi_refresh): contact histories and time integrals of loads stay as they are.
+   Returns 0 if memory ran out. */
 static int demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
     const demi_response_row *response = &demi_responses[w->desc.response];
@@ -25277,7 +25331,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
-    for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
+    for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
         double f[3] = {0, 0, 0}, t[3] = {0, 0, 0}, power = 0;
@@ -25307,7 +25361,8 @@ static int demi_forces(dem_world *w) {
     return 1;
 }
 
-/* Which two bodies overlap most, of the smaller radius. Answers by how much. */
+/* Finds the two bodies with the largest overlap, relative to the smaller radius. Returns that
+   overlap; 0 and no bodies if none overlap. */
 static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
     double most = 0;
     int d, k;
@@ -25332,7 +25387,9 @@ static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
     return most;
 }
 
-/* Names the body that went wrong. */
+/* Fails with a message that names the body at fault, and the likely cause. Tested in this order:
+   numbers that are not finite, an overlap with a wall or between bodies of at least the radius, and
+   otherwise the body with the largest speed or acceleration. */
 static dem_result demi_unstable(dem_world *w) {
     int i, d, first = 0, second = 0;
     double deepest;
@@ -25421,7 +25478,8 @@ static dem_result demi_outflow(dem_world *w) {
     return DEM_OK;
 }
 
-/* Time after one more step. */
+/* Advances the time by one step. The time is computed from the start of the present step length,
+   so that rounding errors do not accumulate (demi_since). */
 static void demi_time_pass(dem_world *w) {
     const double dt = (double)w->clock.dt;
     if (w->clock.since.dt < dt || w->clock.since.dt > dt) {
@@ -25432,7 +25490,9 @@ static void demi_time_pass(dem_world *w) {
     w->clock.steps++;
     w->clock.time = w->clock.since.time + (double)(w->clock.steps - w->clock.since.steps)*dt;
 }
-/* 1 move: first half kick, drift, predicted velocities; walls follow. */
+/* 1 move: first half kick, drift, predicted velocities; walls follow their motions. Also computes
+   what the move says about the lists: largest speed and displacements. Fails if a velocity is not
+   finite, a body rotates too far in the step, or a motion gives an impossible pose. */
 static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
@@ -25449,7 +25509,7 @@ static dem_result demi_step_move(dem_world *w) {
         turn_speed = DEMI_MAX(turn_speed, w->domains[d].turn_speed);
         turn_rate = DEMI_MAX(turn_rate, w->domains[d].turn_rate);
     }
-    /* series end there */
+    /* the power series of demi_orient_move are valid up to there */
     if (sqrt(turn_rate)*(double)w->clock.dt > (w->desc.allow_large_dt ? 2 : 1))
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
@@ -25482,7 +25542,7 @@ static dem_result demi_step_move(dem_world *w) {
         wall->pose = pose;
         wall->mid = mid;
         speed = demi_wall_speed(wall);
-        if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: look anew */
+        if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: search in every step */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
     w->margin.walls_gone += w->wall_fastest*(double)w->clock.dt;
@@ -25490,7 +25550,7 @@ static dem_result demi_step_move(dem_world *w) {
     return DEM_OK;
 }
 
-/* Largest overlap of the forces just worked out, over the smaller radius. */
+/* Returns the largest overlap in the forces just computed, relative to the smaller radius. */
 static double demi_overlap(const dem_world *w) {
     double overlap = 0;
     int d;
@@ -25498,7 +25558,8 @@ static double demi_overlap(const dem_world *w) {
     return overlap;
 }
 
-/* The user's numbers of a domain's bodies follow the rates of the step. */
+/* Integrates the user-defined numbers of work group d over the step: by body_reals_fn, or by the
+   explicit Euler scheme. */
 static void demi_domain_gain(dem_world *w, int d) {
     const int n = w->bodies.real_count;
     const dem_real dt = w->clock.dt;
@@ -25515,7 +25576,8 @@ static void demi_domain_gain(dem_world *w, int d) {
                                   w->desc.body_reals_user);
     }
 }
-/* After the forces of a step, not where they are only looked at: what the user's numbers gain. */
+/* Integrates the user-defined numbers of bodies, and what walls have gained of them, over the step.
+   Called once per step, and not when forces are computed without a step. */
 static void demi_reals_gain(dem_world *w) {
     int i, k;
     if (!w->bodies.real_count) return;
@@ -25525,8 +25587,8 @@ static void demi_reals_gain(dem_world *w) {
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
 }
 
-/* The force on a body by the contacts of one member, its torque if bodies rotate, and the rates of
-   user-defined numbers: of ghosts they are added to those of the owner. */
+/* The record (demi_record) of forces: a ghost's force, torque if bodies rotate, and rates of
+   user-defined numbers, which are added to those of its owner. */
 static size_t demi_pushes_size(const dem_world *w) {
     return ((demi_turns(w) ? 6 : 3) + (size_t)w->bodies.real_count)*sizeof(dem_real);
 }
@@ -25550,6 +25612,7 @@ static const demi_record demi_pushes = {demi_pushes_size, demi_pushes_put, demi_
 
 /* --- the phases of a step, each for one member --- */
 
+/* Moves the bodies unless this step has moved them already. Ghosts rest: their owner moves them. */
 static dem_result demi_member_move(dem_world *w) {
     dem_result result;
     if (w->stage.moved) return DEM_OK;
@@ -25558,7 +25621,7 @@ static dem_result demi_member_move(dem_world *w) {
     w->stage.moved = result == DEM_OK;
     return result;
 }
-/* Builds the pruned neighbour list, if it is due. */
+/* Rebuilds the pruned neighbour list if it is due. */
 static dem_result demi_member_near(dem_world *w) {
     if (!w->stage.near_stale && !demi_near_due(w)) return DEM_OK;
     if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
@@ -25573,7 +25636,8 @@ static dem_result demi_member_touch(dem_world *w) {
 static dem_result demi_member_forces(dem_world *w) {
     return demi_forces(w) ? DEM_OK : demi_no_memory(w, "dem_world_step");
 }
-/* Ends a step once all forces are known, except for the second half kick (see above). */
+/* Ends a step when all forces are known; only the second half kick stays open (see above). Fails if
+   user-defined functions returned impossible numbers, or an overlap has reached the radius. */
 static dem_result demi_member_end(dem_world *w) {
     int d;
     demi_reals_gain(w);
@@ -25588,7 +25652,8 @@ static dem_result demi_member_prime(dem_world *w) {
     return DEM_OK;
 }
 static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
-/* Before and after forces that belong to no step: contact histories stay as they are. */
+/* Run before and after forces are computed without a step. forces_valid = 0 makes contact histories
+   stay as they are. */
 static dem_result demi_member_look(dem_world *w) {
     demi_kernel_choose(w);
     w->stage.forces_valid = 0;
@@ -25613,8 +25678,9 @@ static void demi_walls_follow(dem_world *w, const dem_world *first) {
     }
 }
 
-/* After a move: updates the time and the margins of the lists, which are maxima over all members,
-   and decides whether a pruned list is due. */
+/* After a move: copies the time to the head, and takes maxima over all members of the speed and of
+   the displacements that limit the life of lists. Sets near_due if the pruned list of any member
+   may be due; then each member decides about its own (demi_member_near). */
 static dem_result demi_moved(dem_world *h) {
     enum { SPEED, WALLS, CHANGE, CREEP, AGE, GONE, COUNT };
     const dem_world *first = demi_member(h, 0);
@@ -25671,10 +25737,10 @@ static dem_result demi_all_rebuild(dem_world *h) {
     if (result == DEM_OK) demi_kernel_choose(h);
     return result;
 }
-/* Computes all forces: 3 touch, 4 respond, 5 gather of the manual. near: a pruned list may be due.
-   Lists of contacts of spheres always have room (demi_kept_room). With other shapes all members
-   agree that they had room before any computes forces, because a contact history may advance only
-   once per step. */
+/* Computes all forces: 3 touch, 4 respond, 5 gather. near: 1 if pruned lists may be due. Lists of
+   contacts of spheres always have room (demi_kept_room). With other shapes the members first agree
+   that touch has succeeded in all of them, and only then compute forces, because a contact history
+   may advance only once per step. */
 static dem_result demi_all_forces(dem_world *h, int near) {
     dem_result result = h->team ? h->team->lend(h) : DEM_OK;
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
@@ -25684,14 +25750,15 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
     return result;
 }
-/* A step after its move. Numbers as in the manual. */
+/* The part of a step after its move: outflow, outlets, 2 search, 3 to 5 forces. With impulses,
+   desc.unsolved_stops makes a step fail whose solver did not reach its tolerance. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
     const demi_margin *m = &h->margin;
     dem_result result = DEM_OK;
     int search = !h->stage.list_valid;
-    /* 2 search: when something may have come near that is not in the list. Outlets look then:
-       nobody gets farther than half a skin between two lists */
+    /* 2 search, if a pair that is not in the list may have come near. Outlets act at the same time
+       and every DEMI_OUTLET_REST steps: between two lists no body moves farther than half a skin */
     if (demi_outflows(h)) result = demi_all_lose(h, demi_outflow, &search);
     search |= m->skin <= 0 || 2*m->gone > m->skin || m->gone + m->walls_gone > m->skin;
     if (result == DEM_OK && demi_member(h, 0)->outlet_count &&
@@ -25714,8 +25781,8 @@ static dem_result demi_step_answer(dem_world *h) {
                      2*h->solver.limited > h->solver.count ? "where sweeps converge slowly"
                      : "the others carry more load than so many sweeps pass on");
 }
-/* Calls a function at the positions at which contacts are found: with the midpoint rule those half
-   a step ahead. */
+/* Calls a function at the positions of contact detection: the present ones, with the midpoint rule
+   those half a step ahead. */
 static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) {
     dem_result result;
     if (!demi_response_is(h, DEMI_MIDWAY)) return answer(h);
@@ -25724,7 +25791,7 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
     demi_ahead_back(h);
     return result;
 }
-/* One step. One that ran out of memory after its move goes on from there. */
+/* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
     if (!h->stage.moved) {
         dem_result result = demi_all(h, demi_member_move);
@@ -25734,10 +25801,11 @@ static dem_result demi_step_once(dem_world *h) {
     return demi_answer(h, demi_step_answer);
 }
 
+/* demi_refresh at the positions of contact detection. */
 static dem_result demi_refresh_answer(dem_world *h) {
     dem_result result = DEM_OK;
     int stale = 0;
-    if (h->stage.pairs_changed) {               /* half steps were of the old forces, and effects */
+    if (h->stage.pairs_changed) {               /* half-step velocities belong to the old forces */
         h->stage.primed = 0;
         if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");
     }
@@ -25750,7 +25818,8 @@ static dem_result demi_refresh_answer(dem_world *h) {
     h->stage.forces_valid = result == DEM_OK;
     return result;
 }
-/* Something changed since the last step: forces at t, by a new list if need be; memory stays. */
+/* Computes the forces at the present time, because the scene has changed since the last step;
+   rebuilds the lists if necessary. Contact histories stay as they are. */
 static dem_result demi_refresh(dem_world *h) {
     const dem_result result = demi_all(h, demi_member_finish);
     return result == DEM_OK ? demi_answer(h, demi_refresh_answer) : result;
@@ -25762,7 +25831,7 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_gravity_set: gravity is (%g, %g, %g) "
                          "m/s2, must be finite and at most %g; check what it was computed from",
                          (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
-    demi_finish(w);                             /* the half kick that is due is of the old one */
+    demi_finish(w);                             /* the open half kick belongs to the old gravity */
     w->desc.gravity = gravity;
     if (w->desc.planar) w->desc.gravity.z = 0;
     demi_scene_changed(w);
@@ -25778,17 +25847,19 @@ DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
                          "no contact time to choose it from; set it, for example 1e-3 s for "
                          "grains of millimetres");
-    demi_finish(w);                             /* half steps were of the old one */
+    demi_finish(w);                             /* the open half kick belongs to the old dt */
     w->desc.dt = dt;
     demi_scene_changed(w);
     return DEM_OK;
 }
-/* Films and outputs that are due at this step. */
+/* Records replay frames and writes outputs that are due at this step. */
 static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
-/* Before a step: its dt, new grains, forces of a scene that has changed. */
+/* Prepares a step: settles the time step, inserts grains of feeds, computes the forces of a scene
+   that has changed, checks the time step against the present contacts, and sets half-step
+   velocities. */
 static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
     if (result == DEM_OK && h->feed_count) {
@@ -25809,7 +25880,8 @@ static dem_result demi_step_ready(dem_world *h) {
     h->stage.primed = 1;
     return demi_all(h, demi_member_prime);
 }
-/* Runs steps of all members, with films and outputs in between. */
+/* Performs `steps` steps of all members, with replay frames and outputs between them. `call` names
+   the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     dem_result result = steps ? demi_look(h) : DEM_OK;
     int i, whole = 1;
@@ -25824,8 +25896,8 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
         h->look.calling = was;
         if (result == DEM_OK) result = demi_look(h);
     }
-    if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* on the last forces */
-    /* half a step: its velocities stay as predicted */
+    if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */
+    /* not in the middle of a step: velocities then stay as predicted */
     if (whole || !h->stage.moved) demi_all(h, demi_member_finish);
     return result;
 }
@@ -25843,11 +25915,13 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
 
 /* ---------------------------------------------------------------------------------------------
    >>runs
-   Runs of many steps: for a time, up to a time, until the grains are at rest; what a run tells its
-   user on the way. Uses public functions and the numbers that a step leaves behind.
+   Runs of many steps: for a time, up to a time, or until the grains are at rest; and reports of
+   progress. Owns the end of the last run (clock.run_end, run_steps) and the progress reported
+   (look.tenths_told). Otherwise it calls public functions and reads the state after a step.
    --------------------------------------------------------------------------------------------- */
 
-/* Asks the user's progress function, if any. `since`: s of wall time when the call began. */
+/* Calls the progress function, if there is one. Returns DEM_ERROR_STOPPED if it stops the run, else
+   DEM_OK. done: fraction of the run, 0 to 1; since: wall time at the begin of `call`, s. */
 static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
                                 void *user, double done, double since) {
     const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
@@ -25867,8 +25941,9 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
                          ">= 0", seconds);
     if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (progress) w->look.tenths_told = 0;      /* dem_world_settle tells for several runs */
+    if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
     end = start + seconds;
+    /* it continues the last run: from the end that was requested there, so that runs add up */
     if (w->clock.run_steps == w->clock.steps &&
         fabs(w->clock.run_end - start) <= (double)w->clock.dt)
         end = w->clock.run_end + seconds;
@@ -25890,7 +25965,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
                                    (w->clock.time - start)/seconds, begun);
             if (result != DEM_OK) return result;
         }
-        /* short steps: look at the clock less often */
+        /* short steps: read the clock less often */
         if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
     }
     w->clock.run_end = end;
@@ -25905,11 +25980,12 @@ DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn p
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
                          "and not before now (%g s); to go back in time, read a checkpoint", time,
                          w->clock.time);
-    w->clock.run_steps = w->clock.steps + 1;        /* it does not follow the run before */
+    w->clock.run_steps = w->clock.steps + 1;        /* it does not continue the last run */
     return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
 }
 
-/* m/s: largest speed of the bodies that can move, and the root of the mean of its square. */
+/* Returns the largest speed, m/s, of the bodies that can move. *mean receives the root of the mean
+   square speed, weighted by mass, m/s. */
 static double demi_speeds(const dem_world *w, double *mean) {
     double sum = 0, most = 0, mass = 0;
     int i;
@@ -25924,12 +26000,13 @@ static double demi_speeds(const dem_world *w, double *mean) {
     *mean = mass > 0 ? sqrt(sum/mass) : 0;
     return sqrt(most);
 }
-/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius.
-   *look: s, the time to fall by half a radius, or to go that far: a body that turns round is not at
-   rest. */
+/* Returns the speed below which grains count as at rest, m/s: `speed`, or if that is 0 a hundredth
+   of the speed after a fall through the mean radius. *look receives the time between two tests, s:
+   a fall through half a radius takes it, or without gravity a way of half a radius at that speed.
+   So a body that is at rest only for an instant, at its highest point, does not pass all tests. */
 static double demi_calm(const dem_world *w, double speed, double *look) {
     const double g = (double)demi_length(w->desc.gravity);
-    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
+    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first grains */
     int i;
     if (w->bodies.count) radius = 0;
     for (i = 0; i < w->bodies.count; i++)
@@ -25938,13 +26015,13 @@ static double demi_calm(const dem_world *w, double speed, double *look) {
     *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
     return speed;
 }
-/* The first feed that still brings grains; -1: none does. */
+/* Returns the index of the first feed that has grains left to insert; -1: none has. */
 static int demi_feed_coming(const dem_world *w) {
     int i = 0;
     while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
     return i < w->feed_count ? i : -1;
 }
-/* Time is up: why the bodies are not at rest. */
+/* Fails because the time of dem_world_settle is over, and says why the bodies are not at rest. */
 static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
     const int i = demi_feed_coming(w);
     double mean, most = demi_speeds(w, &mean);
@@ -26001,7 +26078,9 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
 }
 
-/* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
+/* demi_isatty: true if a file is a terminal. Standard C has no such function. On the systems below
+   that of the C library is called under another name, as readlink in >>write; on others it returns
+   1. */
 #if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
     !defined(__CYGWIN__)
 int demi_isatty(int file) __asm__("isatty");
@@ -33495,96 +33574,111 @@ DEM_API void dem_world_report(const dem_world *w, FILE *out) {
 
 /* ---------------------------------------------------------------------------------------------
    >>slabs
-   Spatial decomposition along one axis, after [ALK07] 3.5. Each slab is a world of its own: the
-   walls of the scene, its own grains, and copies of those grains of its lower neighbour that may
-   touch them: its ghosts. Slots are those of the whole scene, so that contact memory, filed by
-   slot, finds its pair in any slab. One step:
-       move     own grains; ghosts stand still
-       decide   a new list? a new near list? one maximum over all slabs
-       send up  state of the grains that are ghosts in the upper neighbour
-       respond  own - own, own - ghost, own - wall; ghost - ghost belongs to the owner
-       return   forces on ghosts go down to their owners, who add them
-   The step itself is that of a world on its own (>>step): slabs are the parts of a team (>>team),
-   and here is what the parts exchange and agree on.
-   [ALK07] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
-   migrate, with a copy of every entry of contact memory that names them: so whichever slab computes
-   a pair next has its memory. (It is the upper of the pair's two homes; the pair was computed where
-   one of them was, and that one either stays or passes through.) Then ghosts are chosen anew.
-   A slab is never thinner than two grains and the skin, so that only neighbours touch.
+   Domain decomposition along one axis, after [ALK07] 3.5. Each slab is a world with all walls of
+   the scene, its own grains, and ghost particles: copies of those grains of its lower neighbour
+   that may touch its own. Slots are those of the whole scene, so that contact history, which is
+   filed by slot, fits its pair in any slab. Slabs are the members of a team (>>team) and use the
+   step of a single world (>>step):
+       move     each slab moves its own grains; ghosts rest
+       agree    are new candidate lists or pruned lists due? one maximum over all slabs
+       lend     the states of grains are sent up to their ghosts
+       respond  contacts of own grains with own grains, ghosts and walls; the contacts of two ghosts
+                belong to the slab that owns them
+       give     the forces on ghosts are sent down to their owners, which add them
+   ([ALK07] sends copies down; this is the mirror image.) When lists are rebuilt, grains that have
+   crossed a border migrate, each with a copy of all contact history that names it. Then new ghosts
+   are chosen. The slab that computes a pair next always has its history: it is the upper one of the
+   two that own the bodies, and the body that it owns was in the slab that has the history, or
+   passes through that slab on its way. A slab is never thinner than the largest distance of two
+   candidates (two of the largest radii, the skin and the range of the law), so only neighbours
+   interact.
 
-   Work is done in phases: one function per slab, all slabs of this process in demi_parallel; a
-   phase writes only to its own slab and reads its neighbours' outboxes, which rest meanwhile.
-   Between phases outboxes that lead to other processes are exchanged. What is reduced over
-   processes is maxima, and sums of whole numbers, which are exact in any order: so bits hang on the
-   number of slabs alone, not on threads or processes.
+   Work is divided into phases: one function for each slab, called by demi_parallel for all slabs of
+   this process. In a phase a slab writes only to itself. It may read its neighbours' outboxes,
+   which then do not change. Between phases, outboxes that lead to other processes are exchanged.
+   Reductions over processes are maxima, or sums of whole numbers, which are exact in any order. So
+   the bits of a result depend on the number of slabs, but not on threads or processes.
 
-   All slabs but the first of a process see walls that never move by themselves: the poses are
-   copied, so that a motion of the user's own is called as often as ever.
+   In each process only the walls of the first slab move. Their poses are copied to the other slabs
+   (demi_walls_follow), so that a user-defined motion is called as often as without slabs.
+
+   This part owns messages: it packs grains with their contact history and unpacks them.
    --------------------------------------------------------------------------------------------- */
+/* Limits: number of slabs; bins per slab of the histogram from which borders are computed.
+   Directions of an exchange. Values of bodies.ghost by slot: 0, or DEMI_GHOST; while messages are
+   packed also one of the marks that follow. DEMI_ALL: the mark of all own grains, 0. */
 enum { DEMI_SLABS = 1024, DEMI_SLAB_BINS = 32, DEMI_UP = 1, DEMI_DOWN = 2, DEMI_ALL = 0,
        DEMI_GHOST = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GHOST_ABOVE = 4 };
 
-/* A message: bytes that grow. */
+/* A message, or an array of bytes that grows. */
 typedef struct demi_message { char *bytes; size_t size; } demi_message;
 
 typedef struct demi_slab {
     dem_world *world;
-    int index;                     /* among all */
-    dem_result result;             /* of the last phases; looked at by demi_slabs_agree */
+    int index;                     /* among the slabs of all processes */
+    dem_result result;             /* of its phases since the last demi_slabs_agree */
     demi_message out[2];            /* to the lower, to the upper neighbour */
-    demi_message in[2];             /* from them, when they are in another process */
-    int32_t *lent, *ghost;         /* indices of own grains that are ghosts above; of ghosts here */
-    dem_real *ghost_inv;           /* x 2: 1/mass, 1/inertia of ghosts */
-    int32_t *add;                  /* see demi_pairs_unpack */
-    int lent_count, ghost_count, leavers;
-    uint64_t bytes, migrated;
-    double work, seconds;
-    demi_crowd crowd;              /* who is near the region of a feed */
+    demi_message in[2];             /* from them, if they are in another process */
+    int32_t *lent, *ghost;         /* indices of own grains with a ghost above; of ghosts here, in
+                                      the order in which the lower neighbour lends them */
+    dem_real *ghost_inv;           /* x 2: 1/mass, 1/inertia of ghosts, 1/kg, 1/(kg m2) */
+    int32_t *add;                  /* by row: new entries of contact history, demi_pairs_unpack */
+    int lent_count, ghost_count, leavers;      /* entries of `lent`, of `ghost`; grains that leave
+                                      in this round of migration */
+    uint64_t bytes, migrated;      /* sent to neighbours; grains that left, since the beginning */
+    double work, seconds;          /* as in dem_slab */
+    demi_crowd crowd;              /* occupancy tree of the bodies near the region of a feed */
 } demi_slab;
 
-/* The head is a world without grains of its own: it holds what the slabs have in common (time,
-   step, skin, errors), and lends itself to functions that ask a world for totals. It has the feeds,
-   too: every process draws for all slabs, and so all draw the same. It comes first, so that a task
-   finds its slabs. */
+/* The slabs of one process. The head is a world without grains. It holds what the slabs share
+   (time, time step, skin, errors), and stands for the whole scene in functions that need totals. It
+   also owns the feeds: every process draws all new grains, so all processes draw the same. The head
+   is the first field, so that a pointer to it is a pointer to its slabs. */
 struct dem_slabs {
     dem_world head;
     dem_slabs_desc desc;
+    /* axis 0 to 2; slabs in all processes; first slab of this process, number of its slabs; 1: the
+       axis is periodic; 1: the transport has failed */
     int axis, count, first, local, ring, broken;
-    double period, cut;            /* m: along the axis; thinnest slab there may be */
-    double *borders;               /* count + 1 */
-    double *values;                /* for reductions: value_room */
+    double period, cut;            /* m: period along the axis; smallest thickness of a slab */
+    double *borders;               /* m, count + 1; -1e300 and 1e300 at the ends of an open axis */
+    double *values;                /* work array for reductions, value_room */
     size_t value_room;
     demi_slab *slabs;              /* local */
-    demi_domain total;             /* the head's only domain */
-    demi_message mine, all;         /* for dem_slabs_collect */
-    uint32_t *known;               /* by slot: generation of the body dealt or fed, 0: none */
-    int dealt, told, slots;        /* how many slots: dealt, known to the world, there are */
-    uint64_t border_moves;
-    void (*phase)(struct dem_slabs *s, demi_slab *b);
+    demi_domain total;             /* the head's only work group: totals for demi_skin_choose */
+    demi_message mine, all;         /* for dem_slabs_collect: reports of this process, of all */
+    uint32_t *known;               /* by slot: generation of the body that the slabs got when they
+                                      were created, or from a feed; 0: none */
+    int dealt, told, slots;        /* numbers of slots: when slabs were created; when they were last
+                                      collected into the world; now */
+    uint64_t border_moves;         /* how often the borders were moved */
+    void (*phase)(struct dem_slabs *s, demi_slab *b);   /* running */
     demi_team team;
-    dem_result (*task)(dem_world *member);      /* of the phase that is running */
-    const demi_record *record;
+    dem_result (*task)(dem_world *member);      /* of the phase demi_slab_run */
+    const demi_record *record;     /* of the exchange demi_slabs_give */
 };
 
 /* --- messages --- */
 
-/* Appends bytes. 0 when memory ran out; what was there stays. */
+/* Appends bytes to a message. Returns 0 if memory ran out; the message is then unchanged. */
 static int demi_message_put(dem_world *w, demi_message *p, const void *data, size_t size) {
     if (!DEMI_GROW(w, p->bytes, p->size + size)) return 0;
     if (size) memcpy(p->bytes + p->size, data, size);
     p->size += size;
     return 1;
 }
+/* Reads bytes of a message and moves *from behind them. */
 static void demi_unpack(const char **from, void *to, size_t size) {
-    if (!size) return;                          /* of a message that is not there, too */
+    if (!size) return;                          /* also if there is no message */
     memcpy(to, *from, size);
     *from += size;
 }
 
-/* --- a grain in a message: all it keeps, the rows of demi_body_arrays one after the other, its
+/* --- a grain in a message: all its state, the rows of demi_body_arrays one after the other, its
        slot first --- */
 
-/* Body i, its places moved by `shift` along axis. 0 when memory ran out. */
+/* Appends body i to a message. `shift`, m, is added to its positions along `axis`. host: the world
+   whose memory is used. Returns 0 if memory ran out. */
 static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w, int i, int axis,
                           dem_real shift) {
     int k;
@@ -33602,7 +33696,7 @@ static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w
     }
     return 1;
 }
-/* Body i becomes the one that arrived. */
+/* Overwrites body i with the next grain of a message. */
 static void demi_grain_unpack(dem_world *w, int i, const char **from) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -33611,12 +33705,14 @@ static void demi_grain_unpack(dem_world *w, int i, const char **from) {
             demi_unpack(from, demi_datum(w, a, i), demi_item(w, a));
     }
 }
+/* Returns the slot of the grain that begins here. */
 static uint32_t demi_grain_slot(const char *from) {
     uint32_t slot;
     memcpy(&slot, from, sizeof slot);
     return slot;
 }
-/* Room has been seen to. Answers its index. */
+/* Appends the next grain of a message to the bodies and returns its index. The caller has reserved
+   memory. */
 static int demi_grain_append(dem_world *w, const char **from) {
     const int i = w->bodies.count++;
     demi_grain_unpack(w, i, from);
@@ -33625,7 +33721,8 @@ static int demi_grain_append(dem_world *w, const char **from) {
     w->lll_valid = 0;
     return i;
 }
-/* Takes a grain out of a slab without its having left the scene. */
+/* Removes a body from a slab that stays in the scene: another slab owns it. Its generation and the
+   totals of the scene do not change, and its slot does not become free. */
 static void demi_grain_forget(dem_world *w, int i) {
     const int slot = (int)w->bodies.slot[i], pending = w->bodies.slot_pending;
     const double removed = w->booked.removed;
@@ -33637,12 +33734,16 @@ static void demi_grain_forget(dem_world *w, int i) {
     w->bodies.ghost[slot] = 0;
 }
 
-/* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
-   them, their contacts that are kept (all there are, for mark DEMI_ALL).
-   shift: added along axis. Memory must be filed: after demi_list_drop or demi_carry_collect. */
+/* The begin of a message of grains: numbers of grains, of filed histories of two spheres, and of
+   persistent contacts, which follow in this order; reals per history. */
 typedef struct demi_message_head {
     int32_t grains, pairs, contacts, stride;
 } demi_message_head;
+/* Appends to `out` all bodies with this mark (marks: by slot) and, if `memory`, the histories and
+   persistent contacts that name one of them (DEMI_ALL: all own bodies, and all histories and
+   contacts that exist). `shift`, m, is added to positions along `axis`. Histories must be filed, by
+   demi_list_drop or demi_carry_collect. host: the world whose memory is used. Returns 0 if memory
+   ran out. */
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_message *out) {
     const size_t start = out->size;
@@ -33680,8 +33781,9 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     return ok;
 }
 
-/* Room for what is to arrive by these heads, beside what is filed already; `add` for
-   demi_pairs_unpack. Contacts that are there move to the first domain. 0 when memory ran out. */
+/* Reserves memory for the histories and contacts of `come`, besides those filed already, and for
+   `add` of demi_pairs_unpack. Moves all persistent contacts to the first work group. Returns 0 if
+   memory ran out. */
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0;
@@ -33708,7 +33810,8 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
     for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
     return 1;
 }
-/* Files pairs that arrived behind those already in their rows. */
+/* Adds `pairs` histories of a message to the filed ones, each at the end of its row. add: work
+   array, the number of new entries of each row. */
 static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int pairs) {
     const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
     int32_t *start = w->filed.start, row, shift = pairs;
@@ -33719,7 +33822,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
         memcpy(&row, from + (size_t)k*item, sizeof row);
         add[row]++;
     }
-    for (row = w->filed.rows - 1; row >= 0; row--) {          /* make gaps, from the far end on */
+    for (row = w->filed.rows - 1; row >= 0; row--) {          /* make gaps, from the last row on */
         const int32_t begin = start[row], n = start[row + 1] - begin;
         start[row + 1] += shift;
         shift -= add[row];
@@ -33738,7 +33841,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
     }
     w->filed.count += pairs;
 }
-/* What a message has besides grains, which end at `from`: files all of it. */
+/* Files all histories and persistent contacts of a message. from: the end of its grains. */
 static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_head *h,
                             const char *from) {
     demi_domain *first = &w->domains[0];
@@ -33752,41 +33855,47 @@ static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_hea
 
 /* ---------------------------------------------------------------------------------------------
    >>slabs-step
-   What slabs exchange and agree on in a step: the team of >>team. Borders, migration and ghosts of
-   a new list; states of ghosts up, forces on ghosts down; maxima and sums over processes.
+   Communication of slabs in a step: the functions of their team (demi_team). Reductions over
+   processes and exchanges between neighbours; for a rebuild the borders, which balance the load,
+   the migration of grains and the choice of ghosts; in every step the states of ghosts, sent up,
+   and the forces on ghosts, sent down. Owns borders, outboxes and inboxes, and the lists of ghosts.
    --------------------------------------------------------------------------------------------- */
 
-/* One slab's share of a phase, timed. */
+/* Runs the present phase for slab k of this process and adds the time that it takes. */
 static void demi_slab_task(dem_world *w, int k) {
     dem_slabs *s = (dem_slabs *)(void *)w;      /* the head comes first */
     const double begun = demi_clock();
     s->phase(s, &s->slabs[k]);
     s->slabs[k].seconds += demi_clock() - begun;
 }
+/* Runs a phase for all slabs of this process, in parallel. */
 static void demi_slabs_phase(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
     s->phase = phase;
     demi_parallel(&s->head, s->head.desc.threads, s->local, demi_slab_task);
 }
 
-/* Is there a slab above (side 1) or below (side 0)? */
+/* True if there is a slab above (side 1) or below (side 0). */
 static int demi_slab_has(const dem_slabs *s, const demi_slab *b, int side) {
     return s->ring || (side ? b->index + 1 < s->count : b->index > 0);
 }
-/* What the neighbour on one side sent here. */
+/* Returns the message that the neighbour on one side has sent here: its outbox if it is in this
+   process, otherwise the inbox. */
 static const demi_message *demi_slab_inbox(const dem_slabs *s, const demi_slab *b, int side) {
     int k = b->index - s->first + (side ? 1 : -1);
     if (s->local == s->count) k = (k + s->count)%s->count;
     return k >= 0 && k < s->local ? &s->slabs[k].out[!side] : &b->in[side];
 }
 
-/* From here on processes may differ: nothing but collecting from elsewhere makes sense. */
+/* Fails because the transport has failed. Processes may be out of step from here on, so later calls
+   fail as well (demi_slabs_usable). */
 static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, int answer) {
     s->broken = 1;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "dem_slabs_step: %s of the transport returned "
                      "%d, must be 0; the slabs cannot continue: repair the connection and create "
                      "them again from the last collected world or checkpoint", what, answer);
 }
-/* Maxima over processes, or sums, which are of whole numbers. */
+/* Replaces `count` values by their maxima over processes or, if `sum`, by their sums, which must be
+   sums of whole numbers. */
 static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
     int answer;
     if (s->local == s->count) return DEM_OK;
@@ -33794,8 +33903,9 @@ static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int
     return answer ? demi_slabs_transport_failed(s, "reduce_fn", answer) : DEM_OK;
 }
 
-/* Looks at the results of the last phases. When one is bad, all processes return it; the sentence
-   is that of the lowest slab concerned. flags (count): replaced by their maxima over processes. */
+/* `agree` of demi_team. Returns the results of the phases since the last call: DEM_OK, or in all
+   processes the same failure, that of the lowest slab concerned; only its process has the full
+   message. Replaces `count` flags (at most 7) by their maxima over processes. */
 static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     double v[8] = {0, 0, 0, 0, 0, 0, 0, 0};
@@ -33820,10 +33930,11 @@ static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
 }
-/* Runs a task on all slabs but those of which something bad is to be agreed on. */
+/* Runs the present task on a slab, unless it has failed since the last agreement. */
 static void demi_slab_run(dem_slabs *s, demi_slab *b) {
     if (b->result == DEM_OK) b->result = s->task(b->world);
 }
+/* `all` of demi_team. */
 static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *member)) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     s->task = task;
@@ -33831,8 +33942,9 @@ static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *mem
     return DEM_OK;
 }
 
-/* Outboxes that lead to other processes, up, down or both ways. Sizes are told first unless both
-   ends know them. */
+/* Exchanges the outboxes that lead to other processes, in the directions `ways` (DEMI_UP,
+   DEMI_DOWN or both). sized: 1 if the sizes of the inboxes are set, because the receivers know what
+   will arrive; 0: the sizes are exchanged first and the inboxes get room. */
 static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
     demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
     const dem_transport *t = &s->desc.transport;
@@ -33870,7 +33982,8 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
 
 /* --- borders --- */
 
-/* Borders that share the weight in `bins` (n of them over lo..hi) out evenly. */
+/* Sets the inner borders so that each slab has the same part of the weight in `bins`, n equal
+   intervals from lo to hi, m. */
 static void demi_slabs_lay(dem_slabs *s, const double *bins, int n, double lo, double hi) {
     double total = 0, sum = 0;
     int i, j = 1;
@@ -33882,14 +33995,15 @@ static void demi_slabs_lay(dem_slabs *s, const double *bins, int n, double lo, d
     }
     for (; j < s->count; j++) s->borders[j] = hi;
 }
-/* No slab thinner than the cut. Outermost slabs of an open axis have no end. */
+/* Moves borders until no slab is thinner than s->cut. The outermost slabs of an open axis have no
+   outer border. */
 static void demi_slabs_space(dem_slabs *s) {
     double *b = s->borders;
     int j;
     for (j = s->ring ? 1 : 2; j < s->count; j++) b[j] = DEMI_MAX(b[j], b[j - 1] + s->cut);
     for (j = s->count - 1; s->ring && j > 0; j--) b[j] = DEMI_MIN(b[j], b[j + 1] - s->cut);
 }
-/* Adds a slab's own grains to bins. */
+/* Adds `weight` for each own grain of a slab to n bins from lo to hi, m. */
 static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight, double *bins,
                            int n, double lo, double hi) {
     int i;
@@ -33898,7 +34012,8 @@ static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight
         if (!demi_is_ghost(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
     }
 }
-/* The highest place of its own grains, and minus the lowest: one reduction finds both. */
+/* Updates the highest position of own grains along the axis, m, in ends[0], and minus the lowest in
+   ends[1]: one reduction of maxima finds both. */
 static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *ends) {
     int i;
     for (i = 0; i < w->bodies.count; i++) {
@@ -33908,8 +34023,9 @@ static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *en
         ends[1] = DEMI_MAX(ends[1], -x);
     }
 }
-/* Moves the borders when counted work is shared too unevenly: each grain weighs what a grain of its
-   slab costs on average, in whole numbers, so that sums are the same in any order. */
+/* Load balancing: moves the borders if the counted work of the busiest slab exceeds the mean too
+   much (desc.balance). The weight of a grain is the mean work of a grain of its slab, in sixteenths
+   and rounded, because sums of whole numbers are the same in any order. */
 static dem_result demi_slabs_balance(dem_slabs *s) {
     const int n = DEMI_SLAB_BINS*s->count;
     const int every = s->desc.balance_interval > 0 ? s->desc.balance_interval : 8;
@@ -33943,10 +34059,11 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
     return DEM_OK;
 }
 
-/* The skin of a rebuild, by the model that serves a single world, from totals over all slabs; and
-   with it the thinnest slab there may be. */
+/* Chooses the skin of a rebuild from totals over all slabs, by the cost model of a single world
+   (demi_skin_choose), and sets the smallest thickness of a slab, s->cut. Fails if a period is too
+   short for so many slabs. */
 static dem_result demi_slabs_skin(dem_slabs *s) {
-    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; near_span */
+    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; span */
     dem_world *h = &s->head;
     dem_result result;
     int k, i, d;
@@ -33981,8 +34098,8 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
         const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0] - h->margin.reach;
         if (room > 0) h->margin.skin = h->margin.skin_auto = DEMI_MIN(h->margin.skin, room);
     }
-    h->margin.skin = (double)(dem_real)h->margin.skin;        /* as the slabs get it */
-    s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding costs no ghost */
+    h->margin.skin = (double)(dem_real)h->margin.skin;        /* rounded as in the slabs */
+    s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding loses no ghost */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
                          "%g m thick, must be at least %g m (two grains and the skin%s); use at "
@@ -33994,7 +34111,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
 
 /* --- a rebuild, phase by phase --- */
 
-/* Memory is filed, ghosts are dropped. */
+/* Files the contact histories of a slab and removes its ghosts. */
 static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int i;
@@ -34003,8 +34120,9 @@ static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     for (i = w->bodies.count - 1; i >= 0; i--) if (demi_is_ghost(w, i)) demi_grain_forget(w, i);
     b->ghost_count = b->lent_count = 0;
 }
-/* Where a grain belongs: -1 below, 0 here, 1 above; *shift: what its position changes by on the
-   way. A grain that a whole period would put back on the same border stays. */
+/* Returns the side to which a grain at x (m, along the axis) belongs: -1 below, 0 here, 1 above.
+   *shift receives what is added to its position on the way there, m: a period or 0. A grain below
+   the first border stays if x + period is rounded to the last border or beyond. */
 static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, dem_real *shift) {
     const dem_real period = (dem_real)s->period;
     *shift = 0;
@@ -34018,11 +34136,13 @@ static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, de
     }
     return 0;
 }
+/* Returns that shift, m, for all grains sent up (side 1) or down (side 0). */
 static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side) {
     if (side && b->index == s->count - 1) return -(dem_real)s->period;
     return !side && b->index == 0 ? (dem_real)s->period : 0;
 }
-/* Those that crossed a border go into the outboxes; they stay here until there is room for them. */
+/* Packs the grains that have crossed a border into the outboxes. They also stay here until their
+   receivers have reserved memory. */
 static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     dem_real shift;
@@ -34042,7 +34162,8 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     for (i = 0; b->leavers && i < w->bodies.count; i++) w->bodies.ghost[w->bodies.slot[i]] = 0;
     if (!ok) b->result = demi_no_memory(w, "dem_slabs_step");
 }
-/* What a neighbour sent, in numbers, and where its grains begin; zeros where there is none. */
+/* Returns the head of the message from one side, and sets *grains to the begin of its grains; zeros
+   if there is no slab on that side. */
 static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
                                        const char **grains) {
     demi_message_head head = {0, 0, 0, 0};
@@ -34052,7 +34173,7 @@ static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, 
     }
     return head;
 }
-/* Room for all that arrives from both sides, before anything leaves. */
+/* Reserves memory for all that arrives from both sides, before anything leaves. */
 static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     const char *from = 0;
     const demi_message_head l = demi_slab_head(s, b, 0, &from);
@@ -34064,7 +34185,7 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
         !demi_filed_reserve(w, &b->add, &come))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
-/* Leavers go, arrivals come in: nothing can fail any more. */
+/* Removes the grains that leave, and appends those that arrive. Nothing can fail any more. */
 static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     dem_real shift;
@@ -34079,7 +34200,8 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
         demi_filed_unpack(w, b->add, &h, from);
     }
 }
-/* Grains near enough to the upper border to touch something beyond it. */
+/* Chooses the grains that become ghosts in the upper neighbour, all that are near enough to the
+   upper border to be candidates with a grain beyond it, and packs them. */
 static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int i, n = 0;
@@ -34102,14 +34224,15 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
     b->lent_count = n;
 }
-/* --- what owners tell of the bodies that are ghosts elsewhere: as much of their state as the laws
-   in
-       force look at --- */
+/* --- the record (demi_record) that owners lend to ghosts: the state of a body that the laws in
+   force
+       use. Its position comes first --- */
 static size_t demi_lent_size(const dem_world *w) {
     const size_t state = w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
     return (state + (w->bodies.booked ? 3 : 0) + (size_t)w->bodies.real_count)*sizeof(dem_real);
 }
-/* The arrays that are told of, one after the other, and how many reals of each body. */
+/* Lists the arrays of the record, in order: the distance between two bodies, and how many reals of
+   each body are sent. Returns the number of arrays. */
 static int demi_lent_arrays(const dem_world *w, dem_real *array[8], int stride[8], int count[8]) {
     const demi_bodies *b = &w->bodies;
     int n = 0;
@@ -34147,7 +34270,8 @@ static void demi_lent_take(dem_world *w, int i, const char *from) {
 }
 static const demi_record demi_lent = {demi_lent_size, demi_lent_put, demi_lent_take};
 
-/* Up: owners put the state of what is lent, ghosts take it and have their mass again. */
+/* Up: owners put the states of lent grains into the outbox, shifted by a period where the ring
+   closes. Ghosts take them, and get back the mass that demi_slab_rest has removed. */
 static void demi_slab_put_up(dem_slabs *s, demi_slab *b) {
     const size_t size = demi_lent.size(b->world);
     const dem_real shift = demi_slab_shift(s, b, 1);
@@ -34173,6 +34297,7 @@ static void demi_slab_take_up(dem_slabs *s, demi_slab *b) {
         b->world->bodies.inv_inertia[b->ghost[k]] = b->ghost_inv[2*k + 1];
     }
 }
+/* `lend` of demi_team. */
 static dem_result demi_slabs_lend(dem_world *h) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     dem_result result;
@@ -34182,7 +34307,8 @@ static dem_result demi_slabs_lend(dem_world *h) {
     if (result == DEM_OK) demi_slabs_phase(s, demi_slab_take_up);
     return result;
 }
-/* Down: ghosts put what is known of them here, owners take it in the order in which they lent. */
+/* Down: the record s->record of all ghosts is put into the outbox. Owners take it in the order in
+   which they lent. demi_slabs_give: `give` of demi_team. */
 static void demi_slab_put_down(dem_slabs *s, demi_slab *b) {
     const size_t size = s->record->size(b->world);
     int k;
@@ -34208,7 +34334,8 @@ static dem_result demi_slabs_give(dem_world *h, const demi_record *what) {
     if (result == DEM_OK) demi_slabs_phase(s, demi_slab_take_down);
     return result;
 }
-/* Ghosts stand still, weightless: their owner moves them. */
+/* `rest` of demi_team: during a move ghosts are at rest and have no inverse mass, because their
+   owner moves them. */
 static void demi_slab_rest(dem_world *w) {
     const dem_slabs *s = (const dem_slabs *)(void *)w->team->head;
     const demi_slab *b = &s->slabs[w->member];
@@ -34229,7 +34356,7 @@ static void demi_slab_rest(dem_world *w) {
 
 /* --- a new list --- */
 
-/* Ghosts come in; then the list is made as in any world, and steps get their room. */
+/* Appends the ghosts and rebuilds the lists as in any world, with the skin that all slabs share. */
 static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const char *from = 0;
@@ -34257,8 +34384,9 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     for (d = 0; d < w->domain_count; d++)
         b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
 }
-/* The outboxes rest until everybody has taken from them; only then they get the room that steps and
-   the judgement of steps need, so that no exchange runs out of memory. */
+/* Reserves, after all slabs have read their messages, the room that outboxes and inboxes need in
+   steps, so that no exchange in a step runs out of memory: up for the states of ghosts, down for
+   forces or for the data from which the time step is checked. */
 static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t up = demi_lent.size(w);
@@ -34271,7 +34399,8 @@ static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
 
-/* Migration: round by round, since a grain moves on by one slab at a time. */
+/* Sends grains to the slabs to which they belong. In each round a grain moves on by one slab; the
+   last round finds none that leaves. */
 static dem_result demi_slabs_migrate(dem_slabs *s) {
     dem_result result;
     for (;;) {
@@ -34289,8 +34418,8 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         demi_slabs_phase(s, demi_slab_migrate);
     }
 }
-/* DEM_ERROR_MEMORY leaves every grain in one slab and its memory beside it: the next call begins
-   again. */
+/* `rebuild` of demi_team. After DEM_ERROR_MEMORY every grain is still in exactly one slab, with its
+   contact history; the next call starts again. */
 static dem_result demi_slabs_rebuild(dem_world *h) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     const double skin_before = h->margin.skin_auto;
@@ -34328,7 +34457,8 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     return DEM_OK;
 }
 
-/* --- what the choice of a time step depends on, of all processes --- */
+/* `grades` of demi_team: replaces the data on which the choice of a time step depends (demi_grades)
+   by those of all processes. */
 static dem_result demi_slabs_grades(dem_world *h, demi_grades *g) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     const int m = h->material_count;
@@ -34356,20 +34486,21 @@ static dem_result demi_slabs_grades(dem_world *h, demi_grades *g) {
 
 /* ---------------------------------------------------------------------------------------------
    >>slabs-run
-   Feeds into slabs, and one step after the other. The head has the feeds and draws, in every
-   process the same; each slab says who is near; the one whose part of the scene a new grain is in
-   takes it. Its slot is one nobody has had, and all lists are made anew before the step; forces
-   stay as they are, for it touches nobody.
+   Feeds of slabs, and dem_slabs_step. The head owns the feeds and draws new grains, the same in
+   every process. Each slab tests its bodies for overlaps with a new grain. The slab between whose
+   borders the grain is then inserts it. The grain gets a slot that was never used. All lists are
+   rebuilt before the step. Forces stay valid, because a new grain touches nothing.
    --------------------------------------------------------------------------------------------- */
 
-/* Slot numbers are those of the whole scene: every slab gets room for one more. 0: no memory. */
+/* Reserves memory for one more body and for one more slot: slot numbers are those of the whole
+   scene, so every slab has all slots. Returns 0 if memory ran out. */
 static int demi_slab_widen(demi_slab *b, int slot) {
     dem_world *w = b->world;
     return demi_bodies_reserve(w, (size_t)w->bodies.count + 1) &&
            DEMI_GROW(w, w->bodies.ghost, (size_t)slot + 2);
 }
-/* Who is near a feed's region, each slab for itself; distances are those of the whole scene, which
-   may be periodic where a slab is not. */
+/* `look` of demi_feeder: each slab collects its bodies near a feed's region. Distances are those of
+   the whole scene, which may be periodic along the axis where a slab is not. */
 static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
     dem_slabs *s = (dem_slabs *)who;
     int k;
@@ -34381,8 +34512,8 @@ static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radi
     }
     return demi_slabs_agree(&s->head, 0, 0);
 }
-/* Room for a grain at x of radius r, and for its slot; `owner`: the slab that takes it, if it is in
-   this process. */
+/* Reserves memory in all slabs for a grain of radius r (m) at x, and for its slot. owner: the slab
+   that will insert it; null if another process holds that slab. */
 static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 x, dem_real r) {
     int k;
     for (k = 0; k < s->local; k++)
@@ -34396,8 +34527,9 @@ static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 
         owner->result = demi_no_memory(owner->world, "dem_slabs_step");
     return demi_slabs_agree(&s->head, 0, 0);
 }
-/* All places that may be tried are asked about at once: is anybody in the way? Then the first that
-   is free counts, as in a world that tries one after the other. */
+/* `put` of demi_feeder. Draws all positions that may be tried and tests them in all processes with
+   a single reduction. Takes the first free one, as a single world does, which tries one after the
+   other; the random numbers of the others are not used up. */
 static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     dem_slabs *s = (dem_slabs *)who;
     dem_world *h = &s->head;
@@ -34435,7 +34567,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     for (k = 0; k < s->local; k++) {
         demi_bodies *bodies = &s->slabs[k].world->bodies;
         const int rest = bodies->slot_free;
-        bodies->slot_free = -1;                 /* a number nobody has had: the next */
+        bodies->slot_free = -1;                 /* take the next slot that was never used */
         bodies->slot_index[s->slots] = -1;
         bodies->slot_generation[s->slots] = 1;
         bodies->ghost[s->slots] = 0;
@@ -34453,7 +34585,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     demi_feed_count(f);
     return 1;
 }
-/* All that is due. */
+/* Inserts all grains that are due before a step. */
 static dem_result demi_slabs_feed(dem_world *h) {
     demi_feeder feeder;
     feeder.look = demi_slabs_look;
@@ -34462,7 +34594,7 @@ static dem_result demi_slabs_feed(dem_world *h) {
     return demi_feeds_run(h, &feeder);
 }
 
-/* Not after the transport has failed. */
+/* Fails if the transport has failed before. */
 static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
     if (!s->broken) return DEM_OK;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed earlier, so slabs may "
@@ -34481,19 +34613,21 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
 
 /* ---------------------------------------------------------------------------------------------
    >>deal
-   Dealing a scene to slabs and collecting it again: their worlds, what each process finds out
-   about the others' when they are made, and the state of all of them written into one world. A
-   slab's world has the scene's materials, shapes, walls, fields and outlets, and slots for all
-   bodies there are; geometry is held once in a process. Collecting first asks whether the world
-   can take everything, then gets all its room, then writes: refused, it has changed nothing.
+   Creation of slabs from a world, and collection of their state into a world. The world of a slab
+   has the materials, shapes, walls, fields and outlets of the scene, and slots for all bodies that
+   exist; the slabs of one process share the geometry of the first. Creation checks that all
+   processes have built the same scene. Collection first checks whether the world can take
+   everything, then allocates, then writes. If the check fails, the world has not changed; if memory
+   runs out, it may have lost its contact histories. Writes to slabs, and in dem_slabs_collect to
+   the world.
    --------------------------------------------------------------------------------------------- */
 
-/* --- an allocator of the user's own, as slabs on several threads see it --- */
+/* --- a user-defined allocator, as slabs on several threads call it: one call at a time --- */
 static void *demi_slabs_alloc(size_t size, void *user) {
     const dem_allocator *a = (const dem_allocator *)user;
     void *p;
 #if DEMI_OPENMP
-    #pragma omp critical(demi_slabs)            /* the user's may be called by one at a time */
+    #pragma omp critical(demi_slabs)
 #endif
     p = a->alloc_fn(size, a->user);
     return p;
@@ -34506,7 +34640,8 @@ static void demi_slabs_free(void *memory, size_t size, void *user) {
     a->free_fn(memory, size, a->user);
 }
 
-/* Copies the walls; slabs after the first share the geometry of the first. */
+/* Copies the walls of a scene. The first slab of a process gets its own geometry. Later slabs share
+   it, and their walls have no motion. Returns 0 if memory ran out. */
 static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world *first) {
     const size_t n = (size_t)from->wall_count;
     int i;
@@ -34523,7 +34658,8 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
     to->facets_valid = first || from->facets_valid;
     return to->facets_valid || demi_facets_weigh(to);
 }
-/* Copies the shapes; slabs after the first share those of the first. 0 when memory ran out. */
+/* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
+   ran out. */
 static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_world *first) {
     int i;
     if (first) {
@@ -34538,8 +34674,9 @@ static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_worl
     }
     return 1;
 }
-/* Sums over time begin in slab 0 with the world's, elsewhere at 0; collecting begins at 0, too.
-   booked: uses of the fields of demi_booked that are cleared. */
+/* Sets the sums over time to 0. Slab 0 starts with those of the world, the other slabs start at 0;
+   collecting also starts at 0. booked: the uses (DEMI_SUM, ...) of the fields of demi_booked that
+   are cleared. */
 static void demi_slab_sums_clear(dem_world *w, int booked) {
     int i;
     demi_rows_clear(demi_booked_rows, &w->booked, booked);
@@ -34549,7 +34686,8 @@ static void demi_slab_sums_clear(dem_world *w, int booked) {
     for (i = 0; i < w->outlet_count; i++)
         demi_rows_clear(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, DEMI_SUM);
 }
-/* Every slab has all outlets: they stand where they stand, and take what is in that slab. */
+/* Copies the outlets. Every slab has all of them, and applies them to its own grains. Returns 0 if
+   memory ran out. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
     if (from->outlet_count)
@@ -34557,14 +34695,15 @@ static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     to->outlet_count = from->outlet_count;
     return !from->bodies.zoned || demi_zones_begin(to);
 }
-/* The head has the feeds; slabs look at them. 0 when memory ran out. */
+/* Copies the feeds to the head; slabs refer to them there. Returns 0 if memory ran out. */
 static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
     if (!DEMI_GROW(h, h->feeds, (size_t)w->feed_count)) return 0;
     if (w->feed_count) memcpy(h->feeds, w->feeds, (size_t)w->feed_count*sizeof *h->feeds);
     h->feed_count = w->feed_count;
     return 1;
 }
-/* Each slab sums what its own grains add; what there is already, one slab inherits. */
+/* Copies the fields. Each slab sums the contributions of its own grains. The slab with `inherit`
+   starts with the sums of the world, the others start at 0. Returns 0 if memory ran out. */
 static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     int i;
     for (i = 0; i < from->field_count; i++) {
@@ -34576,7 +34715,9 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     }
     return 1;
 }
-/* A slab's world: everything of the scene but the grains. */
+/* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
+   first slab of this process, null for that slab itself. Returns null, or an incomplete world
+   (demi_slab_ready), if memory ran out. */
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
                                   const dem_world *first, dem_allocator *allocator) {
     dem_world_desc desc = from->asked;
@@ -34607,7 +34748,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
         !demi_slab_outlets_copy(w, from)) return w;
-    s->head.shapes = w->shapes;                 /* for what feeds draw */
+    s->head.shapes = w->shapes;                 /* for the grains of feeds */
     s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
@@ -34619,14 +34760,15 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     return w;
 }
-/* Has it got all it was to get? */
+/* True if demi_slab_world has completed this world. */
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
     return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
            w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
            w->wall_count == from->wall_count && w->field_count == from->field_count &&
            w->outlet_count == from->outlet_count;
 }
-/* The grains of one slab, from the world. */
+/* Copies the grains between the borders of one slab from the world, with their contact histories.
+   marks: work array, one per slot. Returns 0 if memory ran out. */
 static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uint8_t *marks) {
     dem_world *w = b->world;
     const char *at;
@@ -34647,7 +34789,7 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     return 1;
 }
 
-/* What is wrong with a desc, as a sentence in the world; DEM_OK when nothing is. */
+/* Returns DEM_OK if slabs can be created from this world and desc; otherwise fails in the world. */
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
@@ -34679,8 +34821,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
                          "ran out of memory; finish the step with dem_world_step first", call);
     return DEM_OK;
 }
-/* Do all processes hold the same scene in the same order, with a list or without, have they got
-   their memory, and all slabs between them? Digests travel as whole numbers of 32 bits. */
+/* Fails in all processes unless all hold the same scene, with bodies in the same order, all or none
+   with a list, none ran out of memory, and together they hold every slab once. A digest is sent as
+   two whole numbers of 32 bits, which doubles hold exactly; a value is the same everywhere if the
+   maxima of it and of its negative add up to 0. */
 static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
     uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash_get(w) << 1);
     double v[9], slabs = s->local;
@@ -34707,7 +34851,8 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
                      ? "built different scenes" : "do not match", (int)slabs, s->count);
 }
 
-/* The head's share of a world. 0 when memory ran out. */
+/* Fills the head from a world, allocates the arrays of `s` and sets the functions of the team.
+   Returns 0 if memory ran out. */
 static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
     const size_t n = (size_t)s->count;
@@ -34743,7 +34888,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return demi_slabs_feeds_copy(h, w);
 }
-/* First borders: the same number of grains in every slab. */
+/* Sets the first borders: about the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
     const int n = DEMI_SLAB_BINS*s->count;
     double ends[2] = {-1e300, -1e300}, lo[3], hi[3];
@@ -34768,6 +34913,7 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     demi_free_chain(&s->head, DEMI_RUN);
     demi_raw_free(&allocator, s, sizeof *s);
 }
+/* dem_slabs_create without the check for null. Returns null after an error. */
 static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     const size_t slots = (size_t)w->bodies.slot_count + 1;
     dem_slabs *s;
@@ -34775,7 +34921,7 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     int k, ok;
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
-    /* the world keeps its list: it is only read */
+    /* files the contact histories; the world keeps its list */
     if (w->stage.list_valid && !demi_carry_collect(w)) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
@@ -34825,15 +34971,15 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 
 /* --- collect --- */
 
-/* What a slab has besides grains and memory; then come the walls' loads, fields, outlets, a
-   message. */
+/* The begin of a slab's report. The loads of walls, the sums of fields and the states of outlets
+   follow, and then a message with the grains and contact histories (demi_pack). */
 typedef struct demi_slab_sums {
-    int32_t index, walls;
-    uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
+    int32_t index, walls;          /* of the slab; number of walls */
+    uint64_t size, left;           /* bytes of the report; grains that outflow and outlets took */
     demi_booked booked;
 } demi_slab_sums;
 
-/* All that one slab holds, as one message. */
+/* Appends the report of one slab to s->mine. Returns 0 if memory ran out. */
 static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world, *h = &s->head;
     demi_message *out = &s->mine;
@@ -34862,7 +35008,8 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     memcpy(out->bytes + start, &sums, sizeof sums);
     return 1;
 }
-/* Reports of all processes, passed round the ring: each hands on what it got from below. */
+/* Collects the reports of all slabs in s->all, in every process. In each round a process passes up
+   the ring what it received from below in the round before. */
 static dem_result demi_slabs_gather(dem_slabs *s) {
     demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
     double processes = 1;
@@ -34888,7 +35035,7 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     }
     return result;
 }
-/* The report of one slab; null when it is missing. */
+/* Finds the report of one slab: fills *sums and returns what follows it; null if it is missing. */
 static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums *sums) {
     const char *from = s->all.bytes, *end = from + s->all.size;
     for (; from < end; from += sums->size) {
@@ -34897,8 +35044,8 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
     }
     return 0;
 }
-/* Adds a slab's sums to the world's, which were cleared before. Answers where its message
-   begins. */
+/* Adds the sums of a report to those of the world, which were set to 0 before. Returns the begin of
+   the report's message of grains. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i;
     demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
@@ -34925,7 +35072,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     }
     return from;
 }
-/* From a slab's sums to its grains. */
+/* Returns the begin of that message without adding anything. */
 static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
                                    const char *from) {
     int i;
@@ -34933,7 +35080,8 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
     for (i = 0; i < w->field_count; i++) from += demi_field_reals(&w->fields[i])*sizeof(double);
     return from + (size_t)w->outlet_count*sizeof(dem_outlet_state);
 }
-/* Time, step, and what else is the same in all slabs. */
+/* Copies to the world what is the same in all slabs (time, time step, poses of walls, feeds), and
+   sets its sums to 0. */
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
@@ -34947,7 +35095,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         w->walls[i].mid = from->walls[i].mid;
     }
     for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc desc = w->feeds[i].desc;           /* pointers are the world's own */
+        const dem_feed_desc desc = w->feeds[i].desc;           /* its pointers are the world's */
         w->feeds[i] = h->feeds[i];
         w->feeds[i].desc = desc;
     }
@@ -34958,7 +35106,8 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         f->next = from->fields[i].next;
     }
 }
-/* Grains, memory and contacts of one slab; those that were fed since are new in the world. */
+/* Writes the grains and contact histories of one slab to the world. Grains that feeds have inserted
+   are new in the world. seen: by slot, 1 for grains in any slab. */
 static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
     demi_message_head head;
     int i;
@@ -34975,14 +35124,14 @@ static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const ch
     w->lll_valid = 0;
     demi_filed_unpack(w, add, &head, from);
 }
-/* Slots of grains that were fed since the world was told the last time, nobody's as yet. */
+/* Adds the slots of grains inserted since the last collection to the world, without bodies yet. */
 static void demi_slabs_slots(const dem_slabs *s, dem_world *w) {
     for (; w->bodies.slot_count < s->slots; w->bodies.slot_count++) {
         w->bodies.slot_generation[w->bodies.slot_count] = 1;
         w->bodies.slot_index[w->bodies.slot_count] = -1;
     }
 }
-/* Those from `first` on whose grains have gone again are free. */
+/* Frees the slots from `first` on whose grains have left the scene again. */
 static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) {
     int slot;
     for (slot = w->bodies.slot_count - 1; slot >= first; slot--) {
@@ -34992,7 +35141,9 @@ static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) 
         w->bodies.slot_free = slot;
     }
 }
-/* Room for all that was gathered, and whether the world can hold it. */
+/* Checks that the world can take the reports: it must be the scene of the slabs, without walls or
+   grains added or removed since. Then drops its list and its contact histories, and allocates room
+   for the reports. */
 static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
@@ -35012,7 +35163,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                          "from which they were created, unchanged, or one built like it", call,
                          w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
                          s->dealt, h->wall_count, h->material_count, h->feed_count);
-    for (i = 0; i < w->wall_count; i++) {       /* a place may have got another wall */
+    for (i = 0; i < w->wall_count; i++) {       /* another wall may have this index now */
         const demi_wall *here = &w->walls[i], *there = &s->slabs[0].world->walls[i];
         const int none = here->kind == DEMI_WALL_NONE, gone = there->kind == DEMI_WALL_NONE;
         if (none == gone && (none || here->id == there->id)) continue;
@@ -35087,17 +35238,17 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         }
         demi_slabs_slots_free(w, seen, slots);
         s->told = s->slots;
-        /* in no slab: left through an outflow boundary or an outlet */
+        /* not in any slab: it left through an outflow boundary or an outlet */
         for (i = w->bodies.count - 1; i >= 0; i--)
             if (!seen[w->bodies.slot[i]]) {
                 const double removed = w->booked.removed;
                 demi_body_take_out(w, i);
                 w->booked.removed = removed;
             }
-        /* whatever happened here since */
+        /* counts of the slabs replace those of the world */
         w->bodies.balance.inserted = s->head.bodies.balance.inserted;
         w->bodies.balance.removed = s->head.bodies.balance.removed;
-        demi_effects(w);                        /* the world may never have taken a step itself */
+        demi_effects(w);                        /* the world itself may never have been stepped */
         demi_kernel_choose(w);
     }
     w->look.calling = was[1];

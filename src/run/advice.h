@@ -638,7 +638,9 @@ static dem_result demi_springs_settle(dem_world *h) {
     if (result == DEM_OK) result = demi_grades_of(h, &g);
     if (result != DEM_OK) return result;
     if (!(g.bodies > 0) && !h->feed_count) {    /* nothing to limit it: walls still move */
-        if (!(h->clock.dt > 0)) h->clock.dt = h->desc.dt > 0 ? h->desc.dt : DEM_R(1e-3);
+        if (h->desc.dt > 0 || !(h->clock.dt > 0))
+            h->clock.dt = h->desc.dt > 0 ? h->desc.dt : DEM_R(1e-3);
+        demi_dt_share(h);
         return DEM_OK;
     }
     demi_advise_by(h, &g, &a);
@@ -780,9 +782,9 @@ static void demi_held_report(const dem_world *w, FILE *out) {
 /* Schedules the next examination of the present contacts: at increasing intervals while the scene
    does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,
    because user-defined numbers become unstable sooner. */
-static void demi_press_looked(demi_timing *clock, const dem_world *w) {
-    clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
-                                               w->desc.law_rate ? 8 : 1000);
+static void demi_press_looked(dem_world *h) {
+    const uint64_t since = h->clock.steps - h->clock.press_since;
+    h->clock.press_due = h->clock.steps + DEMI_MIN(8*since + 8, h->desc.law_rate ? 8 : 1000);
 }
 /* Fails because the given step is not stable, in the member that has the body with the smallest
    limit; the others return DEM_OK. */
@@ -838,7 +840,7 @@ static dem_result demi_dt_check(dem_world *h) {
         !demi_response_is(h, DEMI_LASTING)) return result;
     result = demi_press_limit(h, dt);
     if (result != DEM_OK) return result;
-    demi_press_looked(&h->clock, h);
+    demi_press_looked(h);
     limit = h->pressed.least;
     if (!(limit < dt)) return DEM_OK;
     if (!chosen) return demi_all_agree(h, demi_member_press_refuse);

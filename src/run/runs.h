@@ -20,6 +20,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
                                  void *user) {
     if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
     const double start = w->clock.time, begun = demi_clock();
+    const uint64_t first = w->clock.steps;
     double last = begun, end;
     int chunk = 1;
     if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
@@ -51,7 +52,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
             if (result != DEM_OK) return result;
         }
         /* short steps: read the clock less often */
-        if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
+        if (now - begun < 0.05*(double)(w->clock.steps - first) && chunk < 1000) chunk++;
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;

@@ -9,7 +9,7 @@
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* positions tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* neighbours that a new grain may have */
-/* Steps after which outlets act at the latest (see demi_step_once); limit of counting outlets. */
+/* Steps after which outlets act at the latest (see demi_step_answer); limit of counting outlets. */
 enum { DEMI_OUTLET_REST = 64, DEMI_ZONES = 16 };
 
 static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i; }

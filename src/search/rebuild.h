@@ -110,7 +110,7 @@ static void demi_skin_choose(dem_world *w) {
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
         w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
     }
-    for (k = 0; k < 3; k++) {  /* a period: at least twice two grains and the skin */
+    for (k = 0; k < 3; k++) {  /* a period: at least twice the largest diameter and the skin */
         const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
             2*(double)w->effects.radius_max - w->margin.reach;
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
@@ -338,8 +338,8 @@ static int demi_periods_refuse(dem_world *w) {
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (two grains and the skin%s, twice); make it "
-                      "longer or the grains smaller", (double)p.period[k], k, need,
+                      "axis %d, must be at least %g m (twice the sum of the largest "
+                      "diameter and the skin%s); make it longer or the grains smaller", (double)p.period[k], k, need,
                       w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }

@@ -145,7 +145,7 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
 
 /* Returns the offset in image_shift of b's image nearest to a. It is valid until the next list,
    because positions are wrapped into the periodic box only at a rebuild, and a period is at least
-   twice as long as two grains and the skin (demi_periods_refuse). */
+   twice as long as the largest diameter and the skin (demi_periods_refuse). */
 static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, int a, int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
     int code = 0, e, weight = 4;

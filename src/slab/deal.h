@@ -4,9 +4,8 @@
    has the materials, shapes, walls, fields and outlets of the scene, and slots for all bodies that
    exist; the slabs of one process share the geometry of the first. Creation checks that all
    processes have built the same scene. Collection first checks whether the world can take
-   everything, then allocates, then writes. If the check fails, the world has not changed; if memory
-   runs out, it may have lost its contact histories. Writes to slabs, and in dem_slabs_collect to
-   the world.
+   everything, then allocates, then writes: a call that fails leaves the world as it was. Writes to
+   slabs, and in dem_slabs_collect to the world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- a user-defined allocator, as slabs on several threads call it: one call at a time --- */
@@ -256,8 +255,8 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
-    s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
-    s->values = (double *)demi_hold(h, DEMI_RUN, s->value_room, sizeof(double));
+    s->values = (double *)demi_hold(h, DEMI_RUN, n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8,
+                                    sizeof(double));
     s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
     s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
     s->team.members = (dem_world **)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(dem_world *));
@@ -529,8 +528,8 @@ static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) 
     }
 }
 /* Checks that the world can take the reports: it must be the scene of the slabs, without walls or
-   grains added or removed since. Then drops its list and its contact histories, and allocates room
-   for the reports. */
+   grains added or removed since. Then drops its list, allocates room for the reports, and clears
+   the contact histories. */
 static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
@@ -588,8 +587,6 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         }
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
-    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;
-    w->filed.count = 0;
     i = w->bodies.slot_count;
     if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)DEMI_MAX(s->slots - i, 0)))
@@ -599,6 +596,9 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         w->bodies.slot_count = i;
         return demi_no_memory(h, call);
     }
+    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;  /* those of the slabs take over */
+    w->filed.count = 0;
+    memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);
     return DEM_OK;
 }

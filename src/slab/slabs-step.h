@@ -247,8 +247,8 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding loses no ghost */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
-                         "%g m thick, must be at least %g m (two grains and the skin%s); use at "
-                         "most %d slabs or a smaller skin", s->count, s->period,
+                         "%g m thick, must be at least %g m (the largest diameter and the "
+                         "skin%s); use at most %d slabs or a smaller skin", s->count, s->period,
                          s->period/s->count, s->cut, h->margin.reach > 0
                          ? " and the law's range" : "", (int)(s->period/s->cut));
     return DEM_OK;
@@ -265,23 +265,15 @@ static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     for (i = w->bodies.count - 1; i >= 0; i--) if (demi_is_ghost(w, i)) demi_grain_forget(w, i);
     b->ghost_count = b->lent_count = 0;
 }
-/* Returns the side to which a grain at x (m, along the axis) belongs: -1 below, 0 here, 1 above.
-   *shift receives what is added to its position on the way there, m: a period or 0. A grain below
-   the first border stays if x + period is rounded to the last border or beyond. */
-static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, dem_real *shift) {
-    const dem_real period = (dem_real)s->period;
-    *shift = 0;
-    if ((double)x < s->borders[b->index]) {
-        if (b->index == 0) *shift = period;
-        return b->index == 0 && (double)(x + period) >= s->borders[s->count] ? 0 : -1;
-    }
-    if ((double)x >= s->borders[b->index + 1]) {
-        if (b->index == s->count - 1) *shift = -period;
-        return 1;
-    }
-    return 0;
+/* Returns the side to which a grain at x (m, along the axis) belongs: -1 below, 0 here, 1 above. A
+   grain below the first border stays if x + period is rounded to the last border or beyond. */
+static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x) {
+    if ((double)x < s->borders[b->index])
+        return b->index || (double)(x + (dem_real)s->period) < s->borders[s->count] ? -1 : 0;
+    return (double)x >= s->borders[b->index + 1];
 }
-/* Returns that shift, m, for all grains sent up (side 1) or down (side 0). */
+/* Returns what is added to positions that are sent up (side 1) or down (side 0), m: a period
+   or 0. */
 static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side) {
     if (side && b->index == s->count - 1) return -(dem_real)s->period;
     return !side && b->index == 0 ? (dem_real)s->period : 0;
@@ -290,10 +282,9 @@ static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side
    receivers have reserved memory. */
 static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    dem_real shift;
     int i, side, ok = 1, going[2] = {0, 0};
     for (i = 0; i < w->bodies.count; i++) {
-        side = demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift);
+        side = demi_slab_side(s, b, w->bodies.pos[4*i + s->axis]);
         if (!side) continue;
         w->bodies.ghost[w->bodies.slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
         going[side > 0]++;
@@ -333,10 +324,9 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
 /* Removes the grains that leave, and appends those that arrive. Nothing can fail any more. */
 static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    dem_real shift;
     int i, side;
     for (i = w->bodies.count - 1; i >= 0; i--)
-        if (demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift)) demi_grain_forget(w, i);
+        if (demi_slab_side(s, b, w->bodies.pos[4*i + s->axis])) demi_grain_forget(w, i);
     b->migrated += (uint64_t)b->leavers;
     for (side = 0; side < 2; side++) {
         const char *from = 0;

@@ -68,8 +68,8 @@ struct dem_slabs {
     int axis, count, first, local, ring, broken;
     double period, cut;            /* m: period along the axis; smallest thickness of a slab */
     double *borders;               /* m, count + 1; -1e300 and 1e300 at the ends of an open axis */
-    double *values;                /* work array for reductions, value_room */
-    size_t value_room;
+    double *values;                /* work array for reductions: DEMI_SLAB_BINS per slab, and 2 per
+                                      material */
     demi_slab *slabs;              /* local */
     demi_domain total;             /* the head's only work group: totals for demi_skin_choose */
     demi_message mine, all;         /* for dem_slabs_collect: reports of this process, of all */

@@ -657,7 +657,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a periodic box shorter than twice two grains and the skin is rejected") {
+    TEST("a periodic box shorter than twice the largest diameter and the skin is rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material glass;

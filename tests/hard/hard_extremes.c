@@ -1350,7 +1350,7 @@ int main(int argc, char **argv) {
             for (beads = 1; beads <= 2 - i; beads++) {
                 const carousel c = carousel_run(radii[i], beads, -1);
                 CHECK_EQ(c.result, DEM_ERROR_ARGUMENT);
-                CHECK_STR(c.why, "must be at least 0.004 m (two grains and the skin, twice)");
+                CHECK_STR(c.why, "must be at least 0.004 m (twice the sum of the largest diameter and the skin)");
                 CHECK_STR(c.why, i ? "0.0019 m long on periodic axis 0" : "0.003999 m long");
             }
     }

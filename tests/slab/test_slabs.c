@@ -1016,6 +1016,40 @@ int main(int argc, char **argv) {
         dem_slabs_destroy(slabs);
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
+    TEST("without grains time passes and walls move in slabs as in one world, and a time step that is set holds") {
+        int k, count;
+        for (count = 1; count < 4; count += 2)
+            for (k = 0; k < 4; k++) {           /* dt chosen or given; from the start or set later */
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world[2];
+                dem_slabs *slabs;
+                int i;
+                desc.dt = k & 1 ? DEM_R(2e-5) : 0;
+                for (i = 0; i < 2; i++) {
+                    dem_material glass;
+                    dem_motion move = DEM_MOTION;
+                    dem_wall floor;
+                    world[i] = dem_world_create(&desc);
+                    glass = scene_material(world[i], 1e6, 0.9, 0.3, 0);
+                    floor = dem_wall_plane_add(world[i], glass, at(0, 0, 0), at(0, 0, 1));
+                    move.kind = DEM_MOTION_TRANSLATING;
+                    move.velocity = at(0, 0, 0.1);
+                    CHECK_EQ(dem_wall_motion_set(world[i], floor, &move), DEM_OK);
+                    if (k < 2) continue;
+                    CHECK_EQ(scene_step(world[i], 3), DEM_OK);
+                    CHECK_EQ(dem_world_dt_set(world[i], DEM_R(3e-5)), DEM_OK);
+                }
+                slabs = deal(world[1], 0, count);
+                CHECK_EQ(go(slabs, 10), DEM_OK);
+                CHECK_EQ(scene_step(world[0], 10), DEM_OK);
+                CHECK_REL(dem_world_desc_get(world[0]).dt, k > 1 ? 3e-5 : k ? 2e-5 : 1e-3, 1e-6);
+                CHECK_EQ(collect(slabs, world[1]), DEM_OK);
+                CHECK_EQ(dem_world_hash_get(world[1]), dem_world_hash_get(world[0]));
+                CHECK(dem_world_time_get(world[1]) > 1e-4);
+                dem_slabs_destroy(slabs);
+                for (i = 0; i < 2; i++) dem_world_destroy(world[i]);
+            }
+    }
     TEST("a time step and a gravity set in mid-run hold in slabs and in the collected world") {
         int count;
         for (count = 1; count < 4; count += 2) {
@@ -1176,8 +1210,11 @@ int main(int argc, char **argv) {
                 }
                 CHECK_EQ(result, DEM_OK);
                 CHECK(whole(slabs, 90));
-                for (tries = 0; tries < 3; tries++)
+                for (tries = 0; tries < 3; tries++) {
+                    const uint64_t was = dem_world_hash_get(world);     /* contact histories included */
                     if ((result = dem_slabs_collect(slabs, world)) == DEM_OK) break;
+                    CHECK_EQ(dem_world_hash_get(world), was);
+                }
                 CHECK_EQ(result, DEM_OK);
                 if (k == 0) calls = c.calls - before;
                 c.refuse = 0;
