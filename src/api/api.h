@@ -38,6 +38,13 @@ typedef DEM_REAL dem_real;
 #define DEM_INLINE static inline
 #endif
 
+/* The value of a desc whose members are all zero. */
+#ifdef __cplusplus
+#define DEM_ZERO {}
+#else
+#define DEM_ZERO {0}
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

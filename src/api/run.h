@@ -244,9 +244,7 @@ typedef struct dem_trials_desc {
     dem_progress_fn progress;
     void *user;                    /* passed to `progress`; or null */
 } dem_trials_desc;
-static const dem_trials_desc DEM_TRIALS_DESC_ZERO = {0, 0, 0, 0, 0,
-    {{0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0},
-     {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}}, 0, 0};
+static const dem_trials_desc DEM_TRIALS_DESC_ZERO = DEM_ZERO;
 #define DEM_TRIALS_DESC DEM_TRIALS_DESC_ZERO
 /* The result of one trial. */
 typedef struct dem_trial {
@@ -343,8 +341,7 @@ typedef struct dem_field_desc {
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
 } dem_field_desc;
-static const dem_field_desc DEM_FIELD_DESC_ZERO = {{{0, 0, 0}, {0, 0, 0}}, {0, 0, 0}, 0, 0, 0, {0},
-                                                   0, 0, 0, 0};
+static const dem_field_desc DEM_FIELD_DESC_ZERO = DEM_ZERO;
 #define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO
 /* Adds a field, and returns its id. Steps sample it from then on. */
 DEM_API dem_field dem_field_add(dem_world *world, const dem_field_desc *desc);
@@ -599,7 +596,7 @@ typedef struct dem_replay_desc {
        run: dem_replay_close returns the error. 0: only dem_replay_frame_write writes frames. */
     double interval;
 } dem_replay_desc;
-static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0, 0};
+static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
 #define DEM_REPLAY_DESC DEM_REPLAY_DESC_ZERO
 /* Opens a replay of the world. desc: or null, for DEM_REPLAY_DESC. Close the replay before its
    world is destroyed. */
@@ -666,7 +663,7 @@ typedef struct dem_output_desc {
     int (*function)(dem_world *world, int64_t number, void *user);
     void *user;              /* passed to `values` and `function`; or null */
 } dem_output_desc;
-static const dem_output_desc DEM_OUTPUT_DESC_ZERO = {DEM_OUTPUT_CALL, 0, 0, 0, 0, {0}, 0, 0, 0, 0};
+static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
 /* Adds an output that a run writes automatically, at the steps nearest to start, start + interval
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
@@ -721,7 +718,7 @@ typedef struct dem_slabs_desc {
     dem_real balance;
     int balance_interval;      /* rebuilds between two checks of the balance; 0: 8 */
 } dem_slabs_desc;
-static const dem_slabs_desc DEM_SLABS_DESC_ZERO = {0, 0, 0, 0, {0, 0, 0}, 0, 0};
+static const dem_slabs_desc DEM_SLABS_DESC_ZERO = DEM_ZERO;
 #define DEM_SLABS_DESC DEM_SLABS_DESC_ZERO
 
 /* The slabs that one process holds. */

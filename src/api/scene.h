@@ -120,13 +120,7 @@ typedef struct dem_world_desc {
     int threads;                   /* 1 to 64; 0 means as many as OpenMP offers, at most 64 */
     dem_allocator allocator;       /* default malloc and free */
 } dem_world_desc;
-static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
-    {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
-    DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_ALLOWED,
-    DEM_LOAD_REPULSIVE, DEM_SLIDER_PARALLEL, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_INTEGRATOR_VELOCITY_VERLET, 0, 0, 0,
-    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_GAUSS_SEIDEL, 0, 0, 0, 0, DEM_SEARCH_AUTO, 0,
-    DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_CLUSTER_CONTACTS_MERGED, 0, 0, 0, {0, 0, 0}};
+static const dem_world_desc DEM_WORLD_DESC_ZERO = DEM_ZERO;
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
 /* Creates an empty world. Returns null if a value of desc is out of range or memory runs out;
@@ -176,7 +170,7 @@ typedef struct dem_material_desc {
     /* N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion */
     dem_real stiffness_adhesion;
 } dem_material_desc;
-static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_material_desc DEM_MATERIAL_DESC_ZERO = DEM_ZERO;
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
 
 /* Adds a material. A world holds at most 64. */
@@ -274,7 +268,7 @@ typedef struct dem_region {
     dem_inside_fn inside;          /* restricts the region further; null means no restriction */
     void *user;                    /* passed to inside */
 } dem_region;
-static const dem_region DEM_REGION_ZERO = {{{0, 0, 0}, {0, 0, 0}}, 0, 0, 0};
+static const dem_region DEM_REGION_ZERO = DEM_ZERO;
 #define DEM_REGION DEM_REGION_ZERO
 /* Returns the region that is a whole box. */
 DEM_INLINE dem_region dem_region_make(dem_box box) {
@@ -331,7 +325,7 @@ typedef struct dem_sizes {
     double passing[DEM_SIEVES];
     dem_real deviation;            /* m, normal, > 0: standard deviation */
 } dem_sizes;
-static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0};
+static const dem_sizes DEM_SIZES_ZERO = DEM_ZERO;
 #define DEM_SIZES DEM_SIZES_ZERO
 /* Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error. */
 DEM_API double dem_sizes_finer_get(dem_world *world, const dem_sizes *sizes, dem_real radius);
@@ -456,8 +450,7 @@ typedef struct dem_cluster_desc {
        ones are elements of the tensor: xy is -(integral of x y). */
     dem_real inertia[6];
 } dem_cluster_desc;
-static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = {0, 0, 0, 0, DEM_CLUSTER_UNION, 0, 0,
-    {0, 0, 0}, {0, 0, 0, 0, 0, 0}};
+static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = DEM_ZERO;
 #define DEM_CLUSTER_DESC DEM_CLUSTER_DESC_ZERO
 /* Adds a cluster and computes its principal axes. Not in planar worlds. */
 DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
@@ -595,8 +588,7 @@ typedef struct dem_motion {
     const dem_motion_row *table;
     int table_count, table_repeats;
 } dem_motion;
-static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0,
-                                           0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_motion DEM_MOTION_ZERO = DEM_ZERO;
 #define DEM_MOTION DEM_MOTION_ZERO
 
 /* How the segments of a profile share the force of a grain that touches several. */
@@ -691,8 +683,7 @@ typedef struct dem_sieve_desc {
     int model;
     dem_real clearance;            /* reduced holes: 0 open, 1 closed; zeta of [ALK07] */
 } dem_sieve_desc;
-static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
-                                                   0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = DEM_ZERO;
 #define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
 /* Adds a sieve. */
 DEM_API dem_wall dem_wall_sieve_add(dem_world *world, dem_material material,
@@ -768,8 +759,7 @@ typedef struct dem_joint_desc {
        means no limit. */
     dem_real torque;
 } dem_joint_desc;
-static const dem_joint_desc DEM_JOINT_DESC_ZERO = {DEM_JOINT_NONE, DEM_MOTOR_NONE, {0, 0}, {0, 0},
-                                                   {0}, 0, {0, 0, 0}, {0, 0, 0}, 0, 0};
+static const dem_joint_desc DEM_JOINT_DESC_ZERO = DEM_ZERO;
 #define DEM_JOINT_DESC DEM_JOINT_DESC_ZERO
 /* The state of a joint. */
 typedef struct dem_joint_state {
@@ -830,9 +820,7 @@ typedef struct dem_feed_desc {
     dem_shape shapes[DEM_CLASSES];
     const dem_sizes *sizes[DEM_CLASSES];
 } dem_feed_desc;
-static const dem_feed_desc DEM_FEED_DESC_ZERO = {{0}, 0, {0}, {0}, 0, 0, 0, 0, 0,
-                                                 {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0,
-                                                 {{0}}, {{0}}, {0}};
+static const dem_feed_desc DEM_FEED_DESC_ZERO = DEM_ZERO;
 #define DEM_FEED_DESC DEM_FEED_DESC_ZERO
 /* The state of a feed. */
 typedef struct dem_feed_state {
@@ -864,8 +852,7 @@ typedef struct dem_outlet_desc {
     dem_material material;         /* only grains of this material; id 0 means all */
     int keep;                      /* 1: grains stay and are only counted; at most 16 such */
 } dem_outlet_desc;
-static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = {{0}, {{0, 0, 0}, {0, 0, 0}}, 0, 0, 0, 0, {0},
-                                                     {0}, 0};
+static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
 /* The counts of an outlet: grains that were removed or, with `keep`, that entered. */
 typedef struct dem_outlet_state {
