@@ -734,8 +734,10 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
    are joined have no contact with each other unless `collide` is 1. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
-    DEM_JOINT_POINT,               /* a ball joint: keeps `point` of both together */
-    DEM_JOINT_REVOLUTE             /* a hinge or axle: keeps `axis` of both together too */
+    /* a ball joint: keeps `point` of both together */
+    DEM_JOINT_POINT,
+    /* a hinge or axle: keeps `axis` of both together too */
+    DEM_JOINT_REVOLUTE
 } dem_joint_kind;
 /* The motor of a revolute joint. */
 typedef enum dem_motor {

@@ -395,9 +395,9 @@ static int demi_joints_check(const demi_reader *r) {
     for (i = 0; i < r->t->joint_count; i++) {
         const demi_joint *j = &r->t->joints[i];
         const dem_joint_state *o = &j->state;
-        if ((int)j->desc.kind <= 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
-            (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE || !r->t->bodies.orienting ||
-            (j->desc.motor != DEM_MOTOR_NONE && j->desc.kind != DEM_JOINT_REVOLUTE) ||
+        if (!demi_joint_rows(j->desc.kind) || !r->t->bodies.orienting ||
+            (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE ||
+            (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
             j->desc.wall.id < 0 || (j->desc.wall.id &&
              demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
             j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||

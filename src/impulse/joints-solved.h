@@ -134,7 +134,7 @@ static int demi_joints_room(dem_world *w) {
             if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
             if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
             r->ends[e] = s->knot_of[body[e]];
-            r->rows = d->kind == DEM_JOINT_POINT ? 3 : 5 + (d->motor == DEM_MOTOR_SPEED);
+            r->rows = demi_joint_rows(d->kind) + (d->motor == DEM_MOTOR_SPEED);
         }
         if (!r->rows) continue;
         r->knot = demi_knot_add(s, -1, i);
@@ -410,7 +410,7 @@ static void demi_rod_lay(dem_world *w, int i) {
     r->arm[1] = b ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
     j->state.gap = demi_length(off);
     j->state.tilt = demi_length(demi_cross(y.axis, x.axis));
-    if (j->desc.kind == DEM_JOINT_REVOLUTE) {
+    if (demi_joint_rows(j->desc.kind) > 3) {
         r->along[0] = demi_across(x.axis);
         r->along[1] = demi_cross(x.axis, r->along[0]);
         r->along[2] = x.axis;
@@ -547,7 +547,8 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         demi_put(lacks, demi_scale(off, -part));
         for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
     }
-    if (!shifts) lacks[5] = w->joints[i].desc.speed - u[5];
+    if (!shifts)
+        lacks[5] = (w->joints[i].desc.motor ? w->joints[i].desc.speed : 0) - u[5];
     for (k = 0; k < 6; k++) {
         if (!demi_rod_row(w, r, k)) lacks[k] = 0;
         else if (!shifts) lacks[k] -= r->give[k]*r->given[k];

@@ -25,6 +25,20 @@
    tests/impulse/test_joints.c.
    --------------------------------------------------------------------------------------------- */
 
+/* Kinds of joints, in the order of dem_joint_kind. >>add-joint: a constant there and a row here.
+   rows: number of rows in the system, without that of a motor. 3 hold the point, 5 the axis too, 6
+   all rotation. Kinds of 5 rows have an axis and motors. */
+typedef struct demi_joint_kind { const char *name; int rows; } demi_joint_kind;
+static const demi_joint_kind demi_joint_kinds[] = {
+    {"DEM_JOINT_NONE", 0},
+    {"DEM_JOINT_POINT", 3},
+    {"DEM_JOINT_REVOLUTE", 5},
+};
+enum { DEMI_JOINT_KINDS = sizeof demi_joint_kinds/sizeof *demi_joint_kinds };
+/* Rows of a kind; 0: there is no such kind. */
+static int demi_joint_rows(dem_joint_kind kind) {
+    return (int)kind > 0 && (int)kind < DEMI_JOINT_KINDS ? demi_joint_kinds[kind].rows : 0;
+}
 /* Returns the index of the body with this id, or -1 if it does not exist (any more). */
 static int demi_joint_body(const dem_world *w, dem_body b) {
     if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
@@ -66,7 +80,7 @@ static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, 
                            dem_real speed, dem_real torque) {
     if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && DEMI_ABS(speed) <= DEMI_MOTOR_MOST &&
         DEMI_ABS(torque) <= DEMI_MOTOR_MOST && !(motor == DEM_MOTOR_SPEED && torque < 0) &&
-        (motor == DEM_MOTOR_NONE || kind == DEM_JOINT_REVOLUTE)) return 1;
+        (motor == DEM_MOTOR_NONE || demi_joint_rows(kind) == 5)) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; speed and "
               "torque must lie within +-1e12, and the limit on torque of DEM_MOTOR_SPEED must be "
               ">= 0 (0: no limit); likely the units are not SI, or the joint is not revolute: "
@@ -84,24 +98,27 @@ static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, 
    otherwise. */
 static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
     const dem_real size = demi_length(d->axis);
-    int a, b = -1;
+    const int rows = demi_joint_rows(d->kind), hinged = rows == 5;
+    char kinds[200] = "";
+    int a, b = -1, k, n = 0;
     if (!demi_response_is(w, DEMI_JOINTED)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
                   "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
         return 0;
     }
-    if ((d->kind != DEM_JOINT_POINT && d->kind != DEM_JOINT_REVOLUTE) || !demi_place(d->point) ||
-        (d->kind == DEM_JOINT_REVOLUTE && (!demi_finite3(d->axis) || !(size > 0) ||
-                                           !demi_finite(size)))) {
+    if (!rows || !demi_place(d->point) ||
+        (hinged && (!demi_finite3(d->axis) || !(size > 0) || !demi_finite(size)))) {
+        for (k = 1; k < DEMI_JOINT_KINDS; k++)
+            n += snprintf(kinds + n, sizeof kinds - (size_t)n, "%s%s", k == 1 ? "" :
+                          k + 1 < DEMI_JOINT_KINDS ? ", " : " or ", demi_joint_kinds[k].name);
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: kind is %d, point (%g, %g, %g) m, axis (%g, %g, %g); "
-                  "kind must be DEM_JOINT_POINT or DEM_JOINT_REVOLUTE, the point within 1e15 m of "
-                  "the origin, the axis of a revolute joint finite and not 0", call, (int)d->kind,
-                  (double)d->point.x, (double)d->point.y, (double)d->point.z, (double)d->axis.x,
-                  (double)d->axis.y, (double)d->axis.z);
+                  "kind must be %s, the point within 1e15 m of the origin, the axis of a revolute "
+                  "joint finite and not 0", call, (int)d->kind, (double)d->point.x,
+                  (double)d->point.y, (double)d->point.z, (double)d->axis.x, (double)d->axis.y,
+                  (double)d->axis.z, kinds);
         return 0;
     }
-    if (w->desc.planar && d->kind == DEM_JOINT_REVOLUTE &&
-        !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
+    if (w->desc.planar && hinged && !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z, because "
                   "discs rotate about no other axis", call, (double)d->axis.x, (double)d->axis.y,
                   (double)d->axis.z);
@@ -137,7 +154,7 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     }
     memset(&j, 0, sizeof j);
     j.desc = *d;
-    j.desc.axis = d->kind == DEM_JOINT_REVOLUTE ? demi_unit(d->axis) : demi_v(0, 0, 0);
+    j.desc.axis = demi_joint_rows(d->kind) == 5 ? demi_unit(d->axis) : demi_v(0, 0, 0);
     if (d->b.slot) j.desc.wall.id = 0;          /* b is a body, so the wall is ignored */
     else j.desc.b.generation = 0;
     j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
