@@ -362,6 +362,9 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 
 /* ---- contacts and user-defined laws ---- */
 
+DEM_INLINE dem_vec3 demi_product(dem_vec3 a, dem_vec3 b) {
+    return demi_v(a.x*b.x, a.y*b.y, a.z*b.z);
+}
 enum { DEM_BODY_REALS = 8 };      /* largest number of user-defined reals per body: body_reals */
 enum { DEM_LAW_MEMORY = 16 };     /* largest contact history of a user-defined law: law_memory */
 

@@ -573,9 +573,9 @@ static double demi_polyhedron_curve(const demi_part *p, double h) {
     (void)h;
     return demi_polyhedron_equal(p);
 }
-/* Returns the semi-axes of the ellipsoid with the same moments of inertia, m. */
-static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
-    return demi_scale(demi_shape_alike(p->shape), p->scale);
+/* The ellipsoid with the same moments of inertia. */
+static dem_vec3 demi_polyhedron_drawn(const demi_part *p, dem_vec3 u) {
+    return demi_product(demi_scale(demi_shape_alike(p->shape), p->scale), u);
 }
 /* Extent of a part from its centre along n (unit), m. */
 static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {

@@ -116,7 +116,7 @@ typedef struct demi_shape_row {
     dem_real (*thin)(const demi_part *p);               /* m, smallest radius */
     double (*equal)(const demi_part *p);                /* m, radius of the sphere of its volume */
     double (*curve)(const demi_part *p, double h);      /* m, radius of curvature at height h */
-    dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes drawn in output files */
+    dem_vec3 (*drawn)(const demi_part *p, dem_vec3 u);  /* m, point of the drawn surface along u */
     dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
     const char *touch;             /* functions for contacts with other kinds, see demi_listed */
 } demi_shape_row;
@@ -125,7 +125,7 @@ typedef struct demi_shape_row {
     static dem_real demi_##NAME##_thin(const demi_part *p); \
     static double demi_##NAME##_equal(const demi_part *p); \
     static double demi_##NAME##_curve(const demi_part *p, double h); \
-    static dem_vec3 demi_##NAME##_drawn(const demi_part *p); \
+    static dem_vec3 demi_##NAME##_drawn(const demi_part *p, dem_vec3 u); \
     static dem_real GAP(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
 DEMI_SHAPES(DEMI_SHAPE_DECLARE)
 #define DEMI_SHAPE_ROW(KIND, NAME, WORD, GAP, TOUCH) \
@@ -804,11 +804,9 @@ static dem_real demi_ball_support(const demi_shape *s, dem_vec3 n) { (void)n; re
 static dem_real demi_ball_thin(const demi_part *p) { return p->radius; }
 static double demi_ball_equal(const demi_part *p) { return (double)p->radius; }
 static double demi_ball_curve(const demi_part *p, double h) { (void)h; return (double)p->radius; }
-static dem_vec3 demi_ball_drawn(const demi_part *p) {
-    return demi_v(p->radius, p->radius, p->radius);
-}
+static dem_vec3 demi_ball_drawn(const demi_part *p, dem_vec3 u) { return demi_scale(u, p->radius); }
 static dem_real demi_ellipsoid_support(const demi_shape *s, dem_vec3 n) {
-    return demi_length(demi_v(n.x*s->axes.x, n.y*s->axes.y, n.z*s->axes.z));
+    return demi_length(demi_product(n, s->axes));
 }
 static dem_real demi_ellipsoid_thin(const demi_part *p) {
     return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
@@ -820,7 +818,9 @@ static double demi_ellipsoid_equal(const demi_part *p) {
 static double demi_ellipsoid_curve(const demi_part *p, double h) {
     return (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
 }
-static dem_vec3 demi_ellipsoid_drawn(const demi_part *p) { return p->axes; }
+static dem_vec3 demi_ellipsoid_drawn(const demi_part *p, dem_vec3 u) {
+    return demi_product(p->axes, u);
+}
 static dem_real demi_part_thin(const demi_part *p) { return demi_shape_rows[p->kind].thin(p); }
 static double demi_part_equal(const demi_part *p) { return demi_shape_rows[p->kind].equal(p); }
 /* Returns the radius for the stiffness of a contact, m. A stiffness that changes while the two roll

@@ -266,7 +266,9 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
             row += 4*(size_t)g->count;
             for (e = 0; e < 4; e++) row[e] = w->bodies.orient[4*i + e];
             row += 4*(size_t)g->count;
-            demi_put(row, demi_shape_rows[p.kind].drawn(&p));
+            row[0] = demi_shape_rows[p.kind].drawn(&p, demi_v(1, 0, 0)).x;     /* semi-axes */
+            row[1] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 1, 0)).y;
+            row[2] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 0, 1)).z;
             g->own_ids[n] = (int32_t)w->bodies.slot[i];
             g->own_ids[n + g->count] = w->bodies.material[i];
             for (e = 0; e < g->real_count; e++)
@@ -586,20 +588,22 @@ static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t 
     s->links += count;
     s->polygons++;
 }
-/* Adds a sphere or an ellipsoid. Its first and last points are the poles. */
+/* Returns the direction of point i of a round part. The first and the last are the poles. */
+static dem_vec3 demi_round_direction(int i) {
+    const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES, side = (i - 1)%DEMI_ROUND_SIDES;
+    const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
+    const double round = 2*DEMI_PI*side/(int)DEMI_ROUND_SIDES, out = demi_sin(polar);
+    return demi_v((dem_real)(out*demi_cos(round)), (dem_real)(out*demi_sin(round)),
+                  (dem_real)demi_cos(polar));
+}
+/* Adds a part without faces: the points that its kind gives for these directions. */
 static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
                                const demi_part *p) {
-    const dem_vec3 a = demi_shape_rows[p->kind].drawn(p);
     const int64_t first = s->points;
     const int last = DEMI_ROUND_POINTS - 1;
     int i, k;
     for (i = 0; i < DEMI_ROUND_POINTS; i++) {
-        const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES;
-        const int side = (i - 1)%DEMI_ROUND_SIDES;
-        const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
-        const double round = 2*DEMI_PI*side/(int)DEMI_ROUND_SIDES, out = demi_sin(polar);
-        dem_vec3 x = demi_v(a.x*(dem_real)(out*demi_cos(round)),
-                            a.y*(dem_real)(out*demi_sin(round)), a.z*(dem_real)demi_cos(polar));
+        dem_vec3 x = demi_shape_rows[p->kind].drawn(p, demi_round_direction(i));
         if (p->kind != DEMI_BALL) x = dem_quat_rotate(p->q, x);
         demi_surface_point(s, w, body, centre, demi_add(p->centre, x));
     }

@@ -153,10 +153,15 @@ static void demi_film_head(dem_replay *r) {
 static void demi_film_shape(dem_replay *r, int id) {
     const demi_shape *s = &r->world->shapes[id - 1];
     const dem_real axes[3] = {s->axes.x, s->axes.y, s->axes.z};
-    dem_real planes[3*DEM_POLYHEDRON_FACES];
+    dem_real planes[3*(DEM_POLYHEDRON_FACES + DEMI_ROUND_POINTS)];
     char text[32];
-    int k;
+    int k, faces = s->faces;
     for (k = 0; k < 3*s->faces; k++) planes[k] = (dem_real)s->hull[k/3*4 + k%3];
+    if (!s->count && !s->pieces && !faces && s->kind != DEMI_ELLIPSOID)
+        for (; faces < DEMI_ROUND_POINTS; faces++) {       /* planes that touch it all around */
+            const dem_vec3 n = demi_round_direction(faces);
+            demi_put(planes + 3*faces, demi_scale(n, 1/demi_shape_rows[s->kind].support(s, n)));
+        }
     fprintf(r->out.file, "<script type=\"dem/shape\">{\"id\":%d,\"radius\":%s", id,
             demi_format_real(text, (double)s->radius, 9));
     if (s->count) demi_film_reals(r->out.file, "parts", s->parts, s->count, 4, 4);
@@ -173,7 +178,7 @@ static void demi_film_shape(dem_replay *r, int id) {
         }
         fputs("]", r->out.file);
     }
-    else if (s->faces) demi_film_reals(r->out.file, "planes", planes, s->faces, 3, 3);
+    else if (faces) demi_film_reals(r->out.file, "planes", planes, faces, 3, 3);
     else demi_film_reals(r->out.file, "axes", axes, 1, 3, 3);
     fputs("}</script>\n", r->out.file);
 }
