@@ -19,6 +19,8 @@ enum { DEMI_ANY = 1, DEMI_FROM = 2, DEMI_OVER = 4, DEMI_LIMITS = 7, DEMI_UNDER =
 enum { DEMI_TO_SLAB = 32, DEMI_TO_HEAD = 64, DEMI_HEADS = 128, DEMI_FIRSTS = 256,
        DEMI_SUM = 512, DEMI_LARGEST = 1024, DEMI_EITHER = 2048,
        DEMI_DEALT = DEMI_TO_SLAB | DEMI_TO_HEAD | DEMI_HEADS };
+/* dem_world_report prints this field of a dem_world_desc if it is not 0. */
+enum { DEMI_PRINTED = 1 << 20 };
 /* Returned by `zero`: the limits decide whether the field may be 0; it may be 0; it must be 0. */
 enum { DEMI_0_NOT, DEMI_0_TOO, DEMI_0_ALONE };
 /* One field. type: 'i' int, 'e' enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double,
@@ -219,7 +221,8 @@ static const demi_field_row demi_outlet_state_rows[] = {
 
 /* --- the desc of a world. It is checked before there is a world that could hold a message, so each
        limit has its message here. Laws, integrator, search, cone, solver and what depends on other
-       fields: see dem_world_create_error_get. --- */
+       fields: see dem_world_create_error_get. >>add-option: a field, a row, the code that reads
+       the field. --- */
 #define DEMI_ROW_OF(field, type) DEMI_ROW(dem_world_desc, field, type)
 #define DEMI_ROW_SAID(field, type, how, most, text) {#field, 0, DEMI_WHERE(dem_world_desc, field), \
     type, 0, how, most, "", 0, 0, 0, "dem_world_create: " text}
@@ -255,10 +258,12 @@ static const demi_field_row demi_world_desc_rows[] = {
                   "symplectic_euler position_verlet leapfrog"), DEMI_ROW_OF(dt, 'r'),
     DEMI_ROW_SAID(impact_speed, 'r', DEMI_FROM, DEMI_FARTHEST, "impact_speed must be 0 to 1e15 "
                   "m/s"), DEMI_ROW_ENUM(dem_world_desc, cone, 0, 0, "coulomb convex"),
-    DEMI_ROW_ENUM(dem_world_desc, solver, 0, 0, "gauss_seidel jacobi apgd spectral"),
-    DEMI_ROW_SAID(sweeps, 'i', DEMI_FROM, INT_MAX, "sweeps must be >= 0; 0 means 200"),
-    DEMI_ROW_SAID(tolerance, 'r', DEMI_FROM, DBL_MAX, "tolerance (m/s) must be finite and >= 0; 0 "
-                  "lets the library choose"), DEMI_ROW_OF(cold_start, 'i'),
+    DEMI_ROW_ENUM(dem_world_desc, solver, DEMI_PRINTED, 0, "gauss_seidel jacobi apgd spectral"),
+    DEMI_ROW_SAID(sweeps, 'i', DEMI_FROM | DEMI_PRINTED, INT_MAX,
+                  "sweeps must be >= 0; 0 means 200"),
+    DEMI_ROW_SAID(tolerance, 'r', DEMI_FROM | DEMI_PRINTED, DBL_MAX, "tolerance (m/s) must be "
+                  "finite and >= 0; 0 lets the library choose"),
+    DEMI_LIMITED(dem_world_desc, cold_start, 'i', DEMI_PRINTED, INT_MAX, ""),
     DEMI_ROW_ENUM(dem_world_desc, search, 0, 0, "auto all_pairs grid linked_list hierarchical "
                   "bins"), DEMI_ROW_SAID(skin, 'r', DEMI_ANY, DBL_MAX, "skin is not finite; 0 lets "
                   "the library choose, below 0 means no skin"),

@@ -227,6 +227,19 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
             demi_law_memory_text(laws->rolling, text));
 }
+/* Prints the options of the desc that were set and that no other line prints. */
+static void demi_options_report(const dem_world *w, FILE *out) {
+    const demi_field_row *r;
+    char value[DEMI_ROW_MOST], text[48];
+    int count = 0;
+    for (r = demi_world_desc_rows; r->name; r++) {
+        if (!(r->how & DEMI_PRINTED) || !(fabs(demi_row_read(r, &w->asked, 0)) > 0)) continue;
+        demi_row_value(r, &w->asked, value);
+        demi_row_print(r, value, 0, 6, text, sizeof text);
+        fprintf(out, "%s%s %s", count++ ? ", " : "options    ", r->name, text);
+    }
+    if (count) fputc('\n', out);
+}
 /* Prints a line about bodies that are not spheres, or about orientations of spheres, if there are
    any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
@@ -339,6 +352,7 @@ static void demi_report(const dem_world *world, FILE *out) {
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
+    demi_options_report(w, out);
     demi_shapes_report(w, out);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
