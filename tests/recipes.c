@@ -6,6 +6,8 @@
 #include "test.h"
 #include "scene.h"
 
+/* s: dissipation_time, a coefficient that the viscoelastic law alone has */
+static dem_real mixture_time = DEM_R(1e-5);
 /* Spheres of two sizes, ellipsoids and a cluster that fall on a mesh and on each other. */
 static dem_world *mixture(dem_world_desc desc, int threads) {
     static const dem_real places[6] = {DEM_R(-0.004), 0, 0, DEM_R(0.004), 0, 0};
@@ -22,7 +24,7 @@ static dem_world *mixture(dem_world_desc desc, int threads) {
     world = dem_world_create(&desc);
     m = scene_material(world, 1e6, 0.8, 0.4, 0.05);
     dem_pair_get(world, m, m, &pair);
-    pair.normal_damping = 1;
+    pair.dissipation_time = mixture_time;
     dem_pair_set(world, m, m, &pair);
     cluster.count = 2;
     cluster.positions = places;
@@ -70,6 +72,73 @@ static void serves(dem_world_desc desc, const char *name) {
     dem_world_destroy(b);
     dem_world_destroy(c);
 }
+static const char *text_of(const char *path) {
+    static char text[400000];
+    FILE *file = fopen(path, "rb");
+    text[0] = 0;
+    CHECK(file != 0);
+    if (file) text[fread(text, 1, sizeof text - 1, file)] = 0;
+    if (file) fclose(file);
+    remove(path);
+    return text;
+}
+/* The same scene, or with other = 1 one whose addition has another value, passes every list that a scene passes: digest,
+   checkpoint, refusal of the checkpoint of the other scene, report, slabs. Words: of the refusal, of the report. */
+static void in_every_list(dem_world *(*scene)(int other), const char *refusal, const char *report, int slabs) {
+    const char *path = "build/recipes/list.ckpt";
+    dem_world *a = scene(0), *b = scene(0), *c = scene(1), *d = scene(0);
+    dem_slabs_desc deal = DEM_SLABS_DESC;
+    int k;
+    CHECK(demi_scene_digest(a) == demi_scene_digest(b));
+    CHECK(demi_scene_digest(a) != demi_scene_digest(c));
+    CHECK_EQ(scene_step(a, 300), DEM_OK);
+    CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+    CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+    CHECK_EQ(dem_checkpoint_read(c, path), DEM_ERROR_FORMAT);
+    CHECK_STR(dem_world_error_get(c), refusal);
+    CHECK_EQ(scene_step(a, 100), DEM_OK);
+    CHECK_EQ(scene_step(b, 100), DEM_OK);
+    CHECK(dem_world_hash_get(a) == dem_world_hash_get(b));
+    scene_report_has(a, report);
+    for (k = 1; k <= 2 && slabs; k++) {        /* one slab: the bits of a world; two: round-off */
+        dem_slabs *s;
+        deal.count = k;
+        if (k == 2) {
+            dem_world_destroy(d);
+            d = scene(0);
+        }
+        s = dem_slabs_create(d, &deal);
+        CHECK(s != 0);
+        if (!s) { puts(dem_world_error_get(d)); break; }
+        CHECK_EQ(dem_slabs_step(s, 400), DEM_OK);
+        CHECK_EQ(dem_slabs_collect(s, d), DEM_OK);
+        dem_slabs_destroy(s);
+        if (k == 1) {                         /* contact memory in a list, on both sides */
+            dem_candidates_rebuild(a);
+            dem_candidates_rebuild(d);
+            CHECK(dem_world_hash_get(a) == dem_world_hash_get(d));
+        }
+        else {
+            const double gone = demi_length(demi_sub(scene_state(a, dem_body_id_get(a, 0)).position,
+                scene_state(d, dem_body_id_get(a, 0)).position));
+            CHECK_NEAR(gone, 0, 1e-7);
+        }
+    }
+    remove(path);
+    dem_world_destroy(a);
+    dem_world_destroy(b);
+    dem_world_destroy(c);
+    dem_world_destroy(d);
+}
+/* What a replay of one frame has. */
+static void replay_has(dem_world *world, const char *words) {
+    const char *path = "build/recipes/frame.html";
+    dem_replay *replay = dem_replay_open(world, path, 0);
+    CHECK(replay != 0);
+    CHECK_EQ(dem_replay_frame_write(replay), DEM_OK);
+    CHECK_EQ(dem_replay_close(replay), DEM_OK);
+    CHECK(strstr(text_of(path), words) != 0);
+}
 /* Restitution of a ball that meets a plane at a speed. */
 static double bounce(dem_world_desc desc, double speed) {
     dem_world *world;
@@ -82,7 +151,7 @@ static double bounce(dem_world_desc desc, double speed) {
     world = dem_world_create(&desc);
     m = scene_material(world, 1e7, 0.9, 0, 0);
     dem_pair_get(world, m, m, &pair);
-    pair.normal_damping = 10;
+    pair.dissipation_time = DEM_R(1e-5);
     dem_pair_set(world, m, m, &pair);
     dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01));
@@ -93,6 +162,95 @@ static double bounce(dem_world_desc desc, double speed) {
     return e;
 }
 
+/* Fifty pairs of spheres of fifty radii and two materials that approach: each force is that of the closed form. */
+static void closed_forms(void) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material_desc stuff = scene_stuff(1e7, 0.9, 0, 0);
+    dem_material m[2];
+    dem_contact_info found[60];
+    dem_pair pair;
+    int i, n;
+    desc.normal_law = DEM_NORMAL_VISCOELASTIC;
+    desc.dt = DEM_R(1e-9);
+    world = dem_world_create(&desc);
+    for (i = 0; i < 2; i++) {
+        stuff.dissipation_time = DEM_R(1e-5)*(i ? 4 : 1);
+        m[i] = dem_material_add(world, &stuff);
+    }
+    dem_pair_get(world, m[0], m[1], &pair);
+    CHECK_REL(pair.dissipation_time, 2e-5, 1e-6);           /* the geometric mean */
+    for (i = 0; i < 100; i++) {
+        const double r = 0.01 + 1e-5*(i/2);
+        const dem_body ball = dem_sphere_add(world, m[i%4 == 3], (dem_real)r, at(i%2 ? 1.99*r : 0, 0.05*(i/2), 0));
+        scene_move(world, ball, at(i%2 ? -1 : 1, 0, 0), at(0, 0, 0));
+    }
+    CHECK_EQ(scene_step(world, 1), DEM_OK);
+    CHECK(demi_many_species(world));
+    n = dem_contacts_get(world, found, 60);
+    CHECK_EQ(n, 50);
+    for (i = 0; i < n; i++) {
+        const double d = found[i].overlap, r = scene_state(world, found[i].a).radius;
+        const dem_body_state b = scene_state(world, found[i].b);
+        dem_coefficients k;
+        dem_coefficients_get(world, m[0], b.material, (dem_real)r, (dem_real)r, &k);
+        CHECK_REL(k.ca, 1.5*k.kn*(b.material.id == 2 ? 2e-5 : 1e-5), 1e-6);
+        CHECK_REL(-found[i].force.x, k.kn*d*sqrt(d) + k.ca*sqrt(d)*2, 1e-4);
+    }
+    stuff.dissipation_time = -1;
+    CHECK_EQ(dem_material_add(world, &stuff).id, 0);
+    CHECK_STR(dem_world_error_get(world), "dissipation_time is -1 s, must be >= 0 s");
+    dem_world_destroy(world);
+}
+static dem_world *viscoelastic(int other) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    desc.normal_law = DEM_NORMAL_VISCOELASTIC;
+    mixture_time = other ? DEM_R(2e-5) : DEM_R(1e-5);
+    world = mixture(desc, 1);
+    mixture_time = DEM_R(1e-5);
+    return world;
+}
+/* A ball and a cluster that fall into a shell. */
+static dem_world *shell(int other) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material m;
+    desc.gravity.z = DEM_R(-9.81);
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e6, 0.5, 0.5, 0);
+    dem_wall_shell_add(world, m, at(0.1, 0, 1), other ? DEM_R(0.06) : DEM_R(0.05));
+    dem_sphere_add(world, m, DEM_R(0.01), at(0.08, 0, 0.97));
+    dem_sphere_add(world, m, DEM_R(0.01), at(0.12, 0.01, 0.97));
+    return world;
+}
+/* Files draw the shell as a sphere of triangles. */
+static void shell_drawn(void) {
+    dem_world *world = shell(0);
+    const char *path = "build/recipes/shell.vtp";
+    char points[64];
+    int64_t count = 0, triangles = 0;
+    dem_real z[2] = {0, 0}, *place;
+    int32_t *corners, *id;
+    int i;
+    demi_wall_draw(world, 0, z, &count, &triangles, 0, 0, 0);
+    CHECK(count > 200 && triangles > 400);
+    place = (dem_real *)calloc((size_t)count, 3*sizeof *place);
+    corners = (int32_t *)calloc((size_t)triangles, 3*sizeof *corners);
+    id = (int32_t *)calloc((size_t)triangles, sizeof *id);
+    snprintf(points, sizeof points, "NumberOfPoints=\"%d\"", (int)count);
+    count = triangles = 0;
+    demi_wall_draw(world, 0, z, &count, &triangles, place, corners, id);
+    for (i = 0; i < count; i++)
+        CHECK_REL(demi_length(demi_sub(demi_at(place + 3*i), at(0.1, 0, 1))), 0.05, 1e-6);
+    CHECK_EQ(dem_walls_vtp_write(world, path, 0, 0), DEM_OK);
+    CHECK_STR(text_of(path), points);
+    replay_has(world, "\"kind\":\"mesh\",\"radius\":0.05");
+    free(place);
+    free(corners);
+    free(id);
+    dem_world_destroy(world);
+}
 static double energy_of_motion(const dem_world *world) {
     const dem_totals sum = dem_totals_get(world);
     return sum.kinetic + sum.rotational;
@@ -197,6 +355,49 @@ static void rods_rest(void) {
     CHECK(hash[0] == hash[1] && hash[0] == hash[2]);
     remove(path);
 }
+static dem_world *rods(int other) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material m;
+    dem_shape rod;
+    int i;
+    desc.gravity.z = DEM_R(-9.81);
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e6, 0.3, 0.5, 0);
+    rod = dem_shape_capsule_add(world, other ? DEM_R(0.007) : DEM_R(0.006), DEM_R(0.004));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 8; i++)
+        dem_body_add(world, m, rod, at(0.007*(i%4), 0.001*i, 0.006 + 0.009*(i/4)), dem_quat_make(1, DEM_R(0.9), 0, 0));
+    return world;
+}
+/* Surfaces have all points on the capsule; replays have planes that touch it. */
+static void rods_drawn(void) {
+    dem_world *world = rods(0);
+    demi_surfaces s;
+    dem_real *reals = 0;
+    int32_t *told = 0;
+    int i;
+    memset(&s, 0, sizeof s);
+    demi_surfaces_draw(world, &s);
+    CHECK(demi_surfaces_room(world, &s, &reals, &told));
+    demi_surfaces_draw(world, &s);
+    CHECK_EQ(s.points, 8*DEMI_ROUND_POINTS);
+    for (i = 0; i < s.points; i++) {
+        const int body = s.body[i];
+        const dem_vec3 from = demi_sub(demi_at(s.place + 3*i), demi_at(world->bodies.pos + 4*body));
+        const dem_vec3 axis = dem_quat_rotate(demi_quat_at(world->bodies.orient + 4*body), demi_v(0, 0, 1));
+        const dem_real along = DEMI_MAX(DEM_R(-0.006), DEMI_MIN(DEM_R(0.006), demi_dot(from, axis)));
+        CHECK_REL(demi_length(demi_sub(from, demi_scale(axis, along))), 0.004, 1e-6);
+    }
+    demi_free(world, s.place);
+    demi_free(world, s.body);
+    demi_free(world, s.link);
+    demi_free(world, s.end);
+    demi_free(world, reals);
+    demi_free(world, told);
+    replay_has(world, ",100,40.09979,0,96.80946,");  /* the pole: 1/(0.006 + 0.004) per m */
+    dem_world_destroy(world);
+}
 static void rods_refused(void) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world = dem_world_create(&desc);
@@ -214,6 +415,97 @@ static void rods_refused(void) {
     dem_world_destroy(world);
 }
 
+/* Two spheres that a weld holds; sphere a alone spins at first. */
+static dem_world *weld(int planar) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_joint_desc joint = DEM_JOINT_DESC;
+    dem_world *world;
+    dem_material m;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = DEM_R(1e-3);
+    desc.orientations = 1;
+    desc.planar = planar;
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e6, 0.5, 0.5, 0);
+    joint.a = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+    joint.b = dem_sphere_add(world, m, DEM_R(0.01), at(0.03, 0, 0));
+    joint.point = at(0.015, 0, 0);
+    joint.kind = DEM_JOINT_FIXED;
+    joint.speed = 7;                           /* of a motor, which it has not */
+    CHECK_EQ(dem_joint_add(world, &joint).id, 1);
+    scene_move(world, joint.a, at(0, 0, 0), planar ? at(0, 0, 60) : at(20, 30, 60));
+    return world;
+}
+static void weld_holds(int planar) {
+    const char *path = "build/recipes/weld.ckpt";
+    dem_world *a = weld(planar), *b = weld(planar);
+    const dem_body one = dem_body_id_get(a, 0), other = dem_body_id_get(a, 1);
+    dem_joint_state state;
+    dem_joint joint;
+    double energy;
+    joint.id = 1;
+    CHECK_EQ(scene_step(a, 2), DEM_OK);
+    energy = energy_of_motion(a);
+    CHECK(energy > 1e-6);
+    CHECK_EQ(scene_step(a, 500), DEM_OK);
+    CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+    CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+    CHECK_EQ(scene_step(a, 500), DEM_OK);
+    CHECK_EQ(scene_step(b, 500), DEM_OK);
+    CHECK(dem_world_hash_get(a) == dem_world_hash_get(b));
+    {
+        const dem_body_state x = scene_state(a, one), y = scene_state(a, other);
+        const dem_quat p = x.orientation, q = y.orientation;
+        const double cosine = (double)(p.w*q.w + p.x*q.x + p.y*q.y + p.z*q.z);
+        CHECK_REL(demi_length(demi_sub(y.position, x.position)), 0.03, 1e-5);
+        CHECK_NEAR(demi_length(demi_sub(y.spin, x.spin)), 0, 1e-3);         /* of 8 rad/s */
+        CHECK_NEAR(2*acos(DEMI_MIN(1, fabs(cosine))), 0, 0.01);         /* after some revolutions */
+    }
+    CHECK_REL(energy_of_motion(a), energy, 1e-3);
+    CHECK_EQ(dem_joint_get(a, joint, &state), DEM_OK);
+    CHECK_NEAR(state.gap, 0, 1e-8);
+    CHECK_EQ(dem_joint_motor_set(a, joint, DEM_MOTOR_SPEED, 1, 0), DEM_ERROR_ARGUMENT);
+    scene_report_has(a, "joint 1    force");
+    remove(path);
+    dem_world_destroy(a);
+    dem_world_destroy(b);
+}
+/* A heap by impulses, swept to and fro. */
+static dem_world *swept(int other) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material m;
+    int i;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = DEM_R(1e-3);
+    desc.gravity.z = DEM_R(-9.81);
+    desc.sweeps_alternate = !other;
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e6, 0.3, 0.5, 0);
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 4; i++)
+        dem_wall_plane_add(world, m, at(i == 0 ? -0.006 : i == 1 ? 0.04 : 0, i == 2 ? -0.006 : i == 3 ? 0.04 : 0, 0),
+                           at(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, 0));
+    for (i = 0; i < 64; i++)
+        dem_sphere_add(world, m, DEM_R(0.005), at(0.0101*(i%4) + 0.001*(i/16), 0.0101*(i/4%4), 0.005 + 0.0101*(i/16)));
+    return world;
+}
+/* A bed of softened grains. */
+static dem_world *softened(int other) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material m;
+    int i;
+    desc.gravity.z = DEM_R(-9.81);
+    desc.softening = other ? 0 : 32;
+    world = dem_world_create(&desc);
+    m = scene_material(world, 32e6, 0.9, 0.5, 0);
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 18; i++)
+        dem_sphere_add(world, m, DEM_R(0.005), at(0.0101*(i%3) + 0.002*(i/9), 0.0101*(i/3%3), 0.006 + 0.011*(i/9)));
+    return world;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("recipe for a normal law: Kuwabara and Kono's dashpot, 1 - e ~ v^(1/5)") {
@@ -222,6 +514,9 @@ int main(int argc, char **argv) {
         CHECK(1 - bounce(desc, 0.1) > 0.002);
         CHECK_REL((1 - bounce(desc, 3.2))/(1 - bounce(desc, 0.1)), 2, 0.05);
         serves(desc, "normal: viscoelastic");
+        in_every_list(viscoelastic, "written with dissipation_time 1e-05 (dem_pair_set) of materials 1 and 1, this "
+                      "world has 2e-05", "dissipation_time [s]", 1);
+        closed_forms();
         desc.normal_law = (dem_normal_law)((int)DEM_NORMAL_VISCOELASTIC + 1);
         CHECK(dem_world_create(&desc) == 0);    /* the limit moved, and by one */
     }
@@ -303,6 +598,8 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
         remove(path);
+        in_every_list(shell, "written with radius 0.05 of wall 1, this world has 0.06", "wall 1     ", 1);
+        shell_drawn();
     }
     TEST("recipe for a shape: capsules bounce without energy error, weigh and rotate as a row of balls, and rest "
          "among spheres") {
@@ -310,6 +607,54 @@ int main(int argc, char **argv) {
         rods_weigh();
         rods_rest();
         rods_refused();
+        rods_drawn();
+        in_every_list(rods, "written with axes.z 0.006 of shape 1, this world has 0.007", "8 bodies are not spheres", 1);
+    }
+    TEST("recipe for a joint: a weld holds two spheres as one rigid body, in space and in the plane") {
+        dem_world *world = weld(0);
+        dem_joint_desc joint = DEM_JOINT_DESC;
+        joint.kind = (dem_joint_kind)((int)DEM_JOINT_FIXED + 1);
+        joint.a = dem_body_id_get(world, 0);
+        CHECK_EQ(dem_joint_add(world, &joint).id, 0);
+        CHECK_STR(dem_world_error_get(world), "kind must be DEM_JOINT_POINT, DEM_JOINT_REVOLUTE or DEM_JOINT_FIXED");
+        dem_world_destroy(world);
+        weld_holds(0);
+        weld_holds(1);
+    }
+    TEST("recipe for an option of the impulses: the order of sweeps alternates, and a heap rests as before") {
+        dem_world *world[2];
+        int k;
+        for (k = 0; k < 2; k++) {
+            world[k] = swept(k);
+            CHECK_EQ(scene_step(world[k], 400), DEM_OK);
+            CHECK(energy_of_motion(world[k]) < 2e-5);      /* it fell by some 2e-2 J */
+        }
+        CHECK(dem_world_hash_get(world[0]) != dem_world_hash_get(world[1]));
+        dem_world_destroy(world[0]);
+        dem_world_destroy(world[1]);
+        in_every_list(swept, "written with sweeps_alternate 1, this world has 0", "options    sweeps_alternate 1", 0);
+    }
+    TEST("recipe for a field of the desc: moduli softened 32 times lengthen a contact four times, restitution stays") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world[2];
+        dem_coefficients k[2];
+        dem_material m;
+        int i;
+        desc.softening = -1;
+        CHECK(dem_world_create(&desc) == 0);
+        CHECK_STR(dem_world_create_error_get(&desc), "softening must be 0 to 1e9");
+        m.id = 1;
+        for (i = 0; i < 2; i++) {
+            world[i] = softened(i);
+            CHECK_EQ(dem_coefficients_get(world[i], m, m, DEM_R(0.01), DEM_R(0.01), &k[i]), DEM_OK);
+            CHECK_EQ(scene_step(world[i], 1), DEM_OK);
+        }
+        CHECK_REL(k[0].kn, k[1].kn/32, 1e-6);
+        CHECK_REL(k[0].contact_time, 4*k[1].contact_time, 1e-6);            /* 32^(2/5) */
+        CHECK_REL(world[0]->clock.dt, 4*world[1]->clock.dt, 1e-5);
+        dem_world_destroy(world[0]);
+        dem_world_destroy(world[1]);
+        in_every_list(softened, "written with softening 32, this world has 0", "options    softening 32", 1);
     }
     TEST("recipe for a number of each body: it follows its body through sorts, removals, a "
          "checkpoint and slabs") {
