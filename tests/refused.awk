@@ -11,6 +11,11 @@
         rest = substr(rest, at + 2); within = !within
     }
 }
+# the fields that DEM_LAW_COEFFICIENTS declares
+line ~ /^#define DEM_LAW_COEFFICIENTS/ { listing = 1 }
+listing && line ~ /^    X\(/ { property = line; sub(/^    X\(/, "", property); sub(/,.*/, "", property); properties = properties "dem_real " property "; " }
+line !~ /\\ *$/ { listing = 0 }
+line ~ /DEM_LAW_COEFFICIENTS\(DEM_PROPERTY_FIELD\)/ { line = properties }
 # fields of structs, in order
 line ~ /^typedef struct dem_[a-z_]+ \{/ { type = line; sub(/^typedef struct /, "", type); sub(/ \{.*/, "", type); sub(/^.*\{/, "", line); text = "" }
 type != "" {

@@ -39,6 +39,15 @@ typedef struct walk_fields {
     int count, wrong;            /* wrong: declarations that were not understood */
     walk_field field[WALK_FIELDS];
 } walk_fields;
+/* Fields that a struct declares by a macro, written out. */
+#define WALK_STRING(...) #__VA_ARGS__
+#define WALK_FIELDS_OF(...) WALK_STRING(__VA_ARGS__)
+static inline void walk_expand(char *text, const char *macro, const char *fields) {
+    while ((text = strstr(text, macro)) != 0) {
+        memmove(text + strlen(fields), text + strlen(macro), strlen(text + strlen(macro)) + 1);
+        memcpy(text, fields, strlen(fields));
+    }
+}
 /* Reads files, one behind the other, without comments. */
 static inline char *walk_text(void) {
     static const char *const names[] = {"dem.h", "tests/walk.h"};
@@ -61,6 +70,8 @@ static inline char *walk_text(void) {
         }
         fclose(f);
     }
+    walk_expand(text, "DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)",
+                WALK_FIELDS_OF(DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)));
     return text;
 }
 static inline size_t walk_size(char type) {

@@ -145,6 +145,15 @@ typedef enum dem_normal_law {
        attracts by at most kad delta. It needs no dashpot. */
     DEM_NORMAL_HYSTERETIC
 } dem_normal_law;
+#define DEM_LAW_COEFFICIENTS(X) \
+    X(stiffness_adhesion, kad, "N/m") \
+    /* the last */
+/* The list above has the coefficients that only one normal law uses: X(property, coefficient, unit
+   of the property). The property is a field of dem_material_desc and dem_pair, >= 0, and mixed by
+   the geometric mean. The coefficient is a field of dem_contact and dem_coefficients. It is 0 under
+   laws that do not use it. */
+#define DEM_PROPERTY_FIELD(PROPERTY, COEFFICIENT, UNIT) dem_real PROPERTY;
+#define DEM_COEFFICIENT_FIELD(PROPERTY, COEFFICIENT, UNIT) dem_real COEFFICIENT;
 
 /* The law of friction. Every law except DEM_TANGENT_NONE limits the force by Coulomb's law. */
 typedef enum dem_tangent_law {
@@ -353,6 +362,9 @@ DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, 
 DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z -
     b.z); }
 DEM_INLINE dem_vec3 demi_scale(dem_vec3 a, dem_real s) { return demi_v(a.x*s, a.y*s, a.z*s); }
+DEM_INLINE dem_vec3 demi_product(dem_vec3 a, dem_vec3 b) {
+    return demi_v(a.x*b.x, a.y*b.y, a.z*b.z);
+}
 DEM_INLINE dem_real demi_dot(dem_vec3 a, dem_vec3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
 DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
     return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
@@ -362,9 +374,6 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 
 /* ---- contacts and user-defined laws ---- */
 
-DEM_INLINE dem_vec3 demi_product(dem_vec3 a, dem_vec3 b) {
-    return demi_v(a.x*b.x, a.y*b.y, a.z*b.z);
-}
 enum { DEM_BODY_REALS = 8 };      /* largest number of user-defined reals per body: body_reals */
 enum { DEM_LAW_MEMORY = 16 };     /* largest contact history of a user-defined law: law_memory */
 
@@ -408,7 +417,7 @@ typedef struct dem_contact {
     dem_real dt;             /* s, the time step. 0: leave the contact history unchanged */
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
-    dem_real kun, kad;       /* N/m, hysteretic law: unloading and adhesion; otherwise 0 */
+    dem_real kun;            /* N/m, unloading of the hysteretic law; otherwise 0 */
     dem_real friction, friction_static, rolling_friction;   /* of the pair of materials */
     dem_real sliding;        /* force->sliding of the last step; 0 when the contact begins */
     int32_t material_a, material_b; /* ids of materials */
@@ -416,6 +425,8 @@ typedef struct dem_contact {
     int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider of the world desc */
     dem_contact_who who;     /* zeros unless desc.law_who is 1 */
     void *user;              /* desc.law_user */
+    /* kad: coefficients of single laws */
+    DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)
 } dem_contact;
 
 /* The energies of one contact, J. Losses and work are those of the step. */

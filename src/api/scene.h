@@ -167,8 +167,9 @@ typedef struct dem_material_desc {
     dem_real stiffness_ratio;      /* kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu) */
     /* N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness. */
     dem_real stiffness_unloading;
-    /* N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion */
-    dem_real stiffness_adhesion;
+    /* stiffness_adhesion: N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0
+       means no adhesion */
+    DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
 } dem_material_desc;
 static const dem_material_desc DEM_MATERIAL_DESC_ZERO = DEM_ZERO;
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
@@ -206,12 +207,10 @@ typedef struct dem_pair {
     dem_real stiffness;
     dem_real stiffness_ratio;      /* kt/kn, linear and hysteretic law */
     dem_real tangent_damping;      /* factor on the tangential dashpot, >= 0; mixed: 1 */
-    /* N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
-    dem_real stiffness_adhesion;
     /* N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
        restitution (linear) or none (hysteretic) */
     dem_real normal_damping;
-    /* The last three are for impulses only: 0 when mixed, and must be 0 with springs. */
+    /* The next three are for impulses only: 0 when mixed, and must be 0 with springs. */
     dem_real spinning_friction;    /* mu_spin, >= 0: moment about the normal up to mu_spin R* Fn */
     /* N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of
        the smaller radius. */
@@ -219,6 +218,8 @@ typedef struct dem_pair {
     /* m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable
        for any value; oscillations that the step does not resolve are damped. */
     dem_real compliance;
+    /* stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
+    DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
 } dem_pair;
 /* Writes the contact properties of two materials to pair. */
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
@@ -231,9 +232,10 @@ DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b
 typedef struct dem_coefficients {
     dem_real r_eff, m_eff;         /* m, kg: effective radius and mass */
     dem_real kn, cn, kt, ct;       /* see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v */
-    dem_real kun, kad;             /* N/m, hysteretic law; otherwise 0 */
+    dem_real kun;                  /* N/m, hysteretic law; otherwise 0 */
     dem_real damping_ratio;        /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
     dem_real contact_time;         /* s, at the impact speed; hysteretic law: [ALK07] eq 2.45 */
+    DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)                /* kad */
 } dem_coefficients;
 /* Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of
    material b. The impact speed is that of the desc, or 1 m/s if it is 0 there. */

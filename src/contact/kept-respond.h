@@ -200,7 +200,7 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->rows.coef[DEMI_KN][q] *= slope;
     t->rows.coef[DEMI_CN][q] *= slope;
     t->rows.coef[DEMI_K_UN][q] *= slope;
-    t->rows.coef[DEMI_K_AD][q] *= slope;
+    for (e = DEMI_K_UN + 1; e < DEMI_COEFS; e++) t->rows.coef[e][q] *= slope;
     t->rows.coef[DEMI_M_EFF][q] = k->m_eff;
     t->root[0][q] = slope*k->root[0];
     t->root[1][q] = k->root[1];

@@ -282,6 +282,8 @@ DEMI_MOTION_STAGE(alike_following, 1, 1, 1, 0)
 DEMI_MOTION_STAGE(mixed_following, 0, 1, 1, 0)
 DEMI_MOTION_STAGE(mixed_ranged, 0, 1, 1, 1)
 
+#define DEMI_COEF_FETCH(PROPERTY, COEFFICIENT, UNIT) \
+    c->COEFFICIENT = t->coef[DEMI_COEF_##COEFFICIENT][q];
 /* Fills a dem_contact from row q; compilers leave out what the law does not use. */
 DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                   dem_contact *c) {
@@ -298,7 +300,8 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
     c->dt = s->dt;
     c->kn = t->coef[DEMI_KN][q]; c->cn = t->coef[DEMI_CN][q];
     c->kt = t->coef[DEMI_KT][q]; c->ct = t->coef[DEMI_CT][q];
-    c->kun = t->coef[DEMI_K_UN][q]; c->kad = t->coef[DEMI_K_AD][q];
+    c->kun = t->coef[DEMI_K_UN][q];
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_FETCH)
     c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
     c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
     c->sliding = t->memory[s->at_sliding][q];

@@ -29,9 +29,10 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 1, DEMI_SOME = 16, DE
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
 /* Coefficients of one contact, as the built-in laws need them. */
+#define DEMI_COEF_CONSTANT(PROPERTY, COEFFICIENT, UNIT) DEMI_COEF_##COEFFICIENT,
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
-      DEMI_K_UN, DEMI_K_AD,                     /* hysteretic law: unloading, adhesion */
-      DEMI_COEFS };
+      DEMI_K_UN,                                /* hysteretic law: unloading */
+      DEM_LAW_COEFFICIENTS(DEMI_COEF_CONSTANT) DEMI_COEFS };
 
 /* Every allocation of a world is linked into one of two lists ("chains", see demi_hold): data of
    the scene that survive a restart (materials, shapes, geometry of walls), and work arrays of a

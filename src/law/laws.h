@@ -28,7 +28,11 @@ typedef struct demi_scales {
     double E, G, R, M, beta, speed;
     const dem_pair *pair;
 } demi_scales;
-typedef struct demi_coefs { double kn, cn, kt, ct, kun, kad, cn_root, ct_root; } demi_coefs;
+#define DEMI_COEF_DOUBLE(PROPERTY, COEFFICIENT, UNIT) double COEFFICIENT;
+typedef struct demi_coefs {
+    double kn, cn, kt, ct, kun, cn_root, ct_root;
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_DOUBLE)
+} demi_coefs;
 /* F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E* sqrt(R*)
    m*),  kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)
    [TSU92, MIL] */

@@ -25,6 +25,7 @@ static int demi_zero_unloading(const dem_world *w, const void *item, const demi_
     DEMI_LIMITED_IF(DEMI_OF, field, 'r', how, most, unit, words, other, kinds, zero)
 #define DEMI_STATIC DEMI_ROW_IF(friction_static, DEMI_FROM, DEMI_MOST_RATIO, "", \
     "where the default is 0 (the same as the sliding friction)", 1, 0, 0)
+#define DEMI_PROPERTY_ROW(PROPERTY, COEFFICIENT, UNIT) DEMI_SI(PROPERTY, DEMI_FROM, UNIT),
 #define DEMI_OF dem_material_desc
 static const demi_field_row demi_material_rows[] = {
     DEMI_SI(density, DEMI_OVER, "kg/m3"),
@@ -34,7 +35,7 @@ static const demi_field_row demi_material_rows[] = {
     DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio),
     DEMI_ROW_IF(stiffness_unloading, DEMI_FROM, DEMI_MOST, "N/m", "which must then be set", 2, 0,
-                demi_zero_unloading), DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_ROW_END};
+                demi_zero_unloading), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
 #undef DEMI_OF
 #define DEMI_OF dem_pair
 #define DEMI_IMPULSES_ALONE(field, unit) DEMI_ROW_IF(field, DEMI_FROM, DEMI_MOST, unit, \
@@ -45,9 +46,9 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_ROW_IF(restitution, DEMI_OVER, 1, "", 0, 0, 0, demi_zero_law),
     DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
-    DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
+    DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
     DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
-    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
+    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
     if (demi_rows_check(w, call, demi_material_rows, d, "", "set it in the desc before the call"))
@@ -62,6 +63,8 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     return DEM_OK;
 }
 
+#define DEMI_PROPERTY_MIX(PROPERTY, COEFFICIENT, UNIT) \
+    p.PROPERTY = (dem_real)sqrt((double)a->PROPERTY*(double)b->PROPERTY);
 /* Returns the properties of a pair of materials: moduli from compliances in series, as in Hertz's
    theory, springs in series for stiffnesses, geometric means for the rest. */
 static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
@@ -81,8 +84,7 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     p.friction_static = sticks ? (dem_real)sqrt(sa*sb) : 0;   /* 0: as sliding friction */
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
-    p.stiffness_adhesion =
-        (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
+    DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_MIX)
     /* twice the springs in series, so that equal materials give their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
         p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
@@ -239,6 +241,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     return DEM_OK;
 }
 
+#define DEMI_COEF_PUT(PROPERTY, COEFFICIENT, UNIT) \
+    out[DEMI_COEF_##COEFFICIENT] = (dem_real)k.COEFFICIENT;
 /* Computes the coefficients of a contact of materials a and b: those of the normal law (>>laws) and
    those that all laws share. cn and ct lack the part that is proportional to sqrt(m*); root[0] (cn)
    and root[1] (ct) receive its factors, per sqrt(kg). r_eff: m, the standard R*; stiff: kg, the
@@ -250,8 +254,9 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, stiff, 0, 1, p};
-    demi_coefs k = {0, 0, 0, 0, 0, 0, 0, 0};
+    demi_coefs k;
     double half = 1;
+    memset(&k, 0, sizeof k);
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
     if (mill) {  /* moduli of material b, of the wall or the grain */
@@ -270,13 +275,32 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     k.ct_root *= (double)p->tangent_damping;
     out[DEMI_KN] = (dem_real)k.kn; out[DEMI_CN] = (dem_real)k.cn;
     out[DEMI_KT] = (dem_real)k.kt; out[DEMI_CT] = (dem_real)k.ct;
-    out[DEMI_K_UN] = (dem_real)k.kun; out[DEMI_K_AD] = (dem_real)k.kad;
+    out[DEMI_K_UN] = (dem_real)k.kun;
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_PUT)
     out[DEMI_MU] = p->friction;
     out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
     root[0] = (dem_real)(half*k.cn_root);
     root[1] = (dem_real)(half*k.ct_root);
+}
+#define DEMI_COEF_USED(PROPERTY, COEFFICIENT, UNIT) used |= (k.COEFFICIENT > 0) << \
+    DEMI_COEF_##COEFFICIENT;
+/* Returns the bits of the coefficients, from DEMI_K_UN on, that the normal law in force uses: those
+   that are not 0 if everything that they may depend on is 1. */
+static int demi_law_own(const dem_world *w) {
+    dem_pair p;
+    const demi_scales s = {1, 1, 1, 1, 1, 1, &p};
+    const dem_real one = 1;
+    demi_coefs k;
+    size_t i;
+    int used;
+    for (i = 0; i < sizeof p; i += sizeof one) memcpy((char *)&p + i, &one, sizeof one);
+    memset(&k, 0, sizeof k);
+    demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
+    used = (k.kun > 0) << DEMI_K_UN;
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_USED)
+    return used;
 }
 /* The same with complete cn and ct. m_eff: kg, the standard m*. */
 static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
@@ -332,6 +356,7 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
     return bad;
 }
 
+#define DEMI_COEF_GET(PROPERTY, COEFFICIENT, UNIT) out->COEFFICIENT = coef[DEMI_COEF_##COEFFICIENT];
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out) {
@@ -353,7 +378,8 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
-    out->kun = coef[DEMI_K_UN]; out->kad = coef[DEMI_K_AD];
+    out->kun = coef[DEMI_K_UN];
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_GET)
     out->damping_ratio = (dem_real)w->pairs[i*DEMI_MATERIALS + j].damping;
     out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
                                                     ? (double)w->desc.impact_speed : 1);
@@ -363,12 +389,29 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     return DEM_OK;
 }
 
+/* A column for a coefficient of a single law that some pair has. */
+#define DEMI_PROPERTY_HEAD(PROPERTY, COEFFICIENT, UNIT) \
+    if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
+        fprintf(out, "  " #PROPERTY " [" UNIT "]");
+#define DEMI_PROPERTY_PRINT(PROPERTY, COEFFICIENT, UNIT) \
+    if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
+        fprintf(out, "  %-*.4g", (int)sizeof #PROPERTY " [" UNIT "]" - 1, (double)p->PROPERTY);
+static int demi_pairs_have(const dem_world *w, size_t offset) {
+    const int n = w->material_count;
+    dem_real x = 0;
+    int k;
+    for (k = 0; k < n*n && !(x > 0); k++)
+        memcpy(&x, (const char *)&w->pairs[k/n*DEMI_MATERIALS + k%n].given + offset, sizeof x);
+    return x > 0;
+}
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
     const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn%s\n", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
+            "kt/kn%s", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
+    DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_HEAD)
+    fprintf(out, "\n");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
@@ -382,6 +425,7 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
             if (!laws)
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
+            DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_PRINT)
             fprintf(out, "\n");
         }
 }

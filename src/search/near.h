@@ -77,7 +77,8 @@ static void demi_species_coefs(const dem_world *w, const demi_species *a, const 
    there are several materials, on materials. */
 static void demi_species_vary(dem_world *w) {
     const int rows = w->effects.species_count*w->effects.species_count;
-    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL | 1 << DEMI_K_AD;
+    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL;
+    const int own = (1 << DEMI_COEFS) - (1 << DEMI_K_UN);
     int e, k, materials = 0;
     w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
     if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF | 1 << DEMI_M_EFF);
@@ -85,8 +86,7 @@ static void demi_species_vary(dem_world *w) {
         for (k = 0; k < w->bodies.count; k++)
             materials |= w->bodies.material[k]^w->bodies.material[0];
         if (!materials) w->species_vary &= ~fixed;
-        if (!demi_normal_is(w, DEMI_BRANCHED))
-            w->species_vary &= ~(1 << DEMI_K_UN | 1 << DEMI_K_AD);
+        w->species_vary &= ~(own^demi_law_own(w));
         return;
     }
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
