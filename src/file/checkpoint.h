@@ -279,17 +279,14 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        dem_motion *m = &wall->motion;          /* pointers stay those of the reading world */
+        const demi_field_row *r = demi_motion_rows; /* pointers stay those of the reading world */
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->ahead, sizeof wall->ahead);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
-        DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
-        DEMI_VISIT(s, m->axis);     DEMI_VISIT(s, m->speed);      DEMI_VISIT(s, m->amplitude);
-        DEMI_VISIT(s, m->frequency); DEMI_VISIT(s, m->phase);     DEMI_VISIT(s, m->start);
-        DEMI_VISIT(s, m->ramp);
+        for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }
 /* Visits the sums of fields and the states of feeds and outlets. */

@@ -358,7 +358,7 @@ static int demi_contacts_check(const demi_reader *r) {
 /* Checks walls: poses must be possible, and motions must be finite and of the kind that the scene
    has. */
 static int demi_walls_check(const demi_reader *r) {
-    int i;
+    int i, k;
     for (i = 0; i < r->t->wall_count; i++) {
         const demi_wall *wall = &r->t->walls[i], *own = &r->w->walls[i];
         const dem_motion *m = &wall->motion;
@@ -366,7 +366,7 @@ static int demi_walls_check(const demi_reader *r) {
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
             return demi_lie(r, "pose of wall", i);
-        if (m->kind != own->motion.kind || !demi_motion_sane(m))
+        if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k))
             return demi_lie(r, "motion of wall", i);
     }
     return 1;
@@ -391,18 +391,16 @@ static int demi_measured_check(const demi_reader *r) {
 /* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
    id of a body that no longer exists names nothing. */
 static int demi_joints_check(const demi_reader *r) {
-    int i;
+    int i, k;
     for (i = 0; i < r->t->joint_count; i++) {
         const demi_joint *j = &r->t->joints[i];
         const dem_joint_state *o = &j->state;
-        if (!demi_joint_rows(j->desc.kind) || !r->t->bodies.orienting ||
-            (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE ||
+        if (demi_rows_bad(r->w, demi_joint_fields, &j->desc, &k) || !r->t->bodies.orienting ||
             (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
             j->desc.wall.id < 0 || (j->desc.wall.id &&
              demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
             j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
-            !(DEMI_ABS(j->desc.speed) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->bank) ||
-            !(DEMI_ABS(j->desc.torque) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->held) ||
+            !demi_finite_double(j->bank) || !demi_finite_double(j->held) ||
             !demi_finite(j->left) || !demi_finite(j->apart) ||
             !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
             !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||

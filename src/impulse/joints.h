@@ -73,18 +73,27 @@ static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
               demi_joints_in_force(w));
     return -1;
 }
-/* True if the values of a motor are allowed; 0 with an error message otherwise. The limit, in rad/s
-   and N m, is far beyond any machine and keeps the squares of the resulting values finite. */
-#define DEMI_MOTOR_MOST DEM_R(1e12)
-static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, dem_motor motor,
-                           dem_real speed, dem_real torque) {
-    if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && DEMI_ABS(speed) <= DEMI_MOTOR_MOST &&
-        DEMI_ABS(torque) <= DEMI_MOTOR_MOST && !(motor == DEM_MOTOR_SPEED && torque < 0) &&
-        (motor == DEM_MOTOR_NONE || demi_joint_rows(kind) == 5)) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; speed and "
-              "torque must lie within +-1e12, and the limit on torque of DEM_MOTOR_SPEED must be "
-              ">= 0 (0: no limit); likely the units are not SI, or the joint is not revolute: "
-              "only revolute joints have motors", call, (int)motor, (double)speed, (double)torque);
+/* The limits of a motor are far beyond any machine and keep the squares of the resulting values
+   finite. */
+#define DEMI_MOTOR_MOST 1e12
+#define DEMI_OF dem_joint_desc
+static const demi_field_row demi_joint_fields[] = {
+    DEMI_LIMITED(DEMI_OF, kind, 'i', DEMI_OVER, DEMI_JOINT_KINDS - 1, ""),
+    DEMI_ROW_ENUM(DEMI_OF, motor, DEMI_FROM, 0, "none speed torque"), DEMI_ROW(DEMI_OF, a, 'i'),
+    DEMI_ROW(DEMI_OF, b, 'i'), DEMI_ROW(DEMI_OF, wall, 'i'), DEMI_ROW(DEMI_OF, collide, 'i'),
+    DEMI_LIMITED(DEMI_OF, point, 'v', DEMI_ANY, DEMI_FARTHEST, "m"), DEMI_ROW(DEMI_OF, axis, 'v'),
+    DEMI_LIMITED(DEMI_OF, speed, 'r', DEMI_ANY, DEMI_MOTOR_MOST, "rad/s"),
+    DEMI_LIMITED(DEMI_OF, torque, 'r', DEMI_ANY, DEMI_MOTOR_MOST, "N m"), DEMI_ROW_END};
+#undef DEMI_OF
+/* True if the numbers of a desc and its motor are allowed; 0 with an error message otherwise. */
+static int demi_motor_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
+    if (demi_rows_check(w, call, demi_joint_fields, d, "", "start from DEM_JOINT_DESC, in SI units"))
+        return 0;
+    if (d->motor == DEM_MOTOR_NONE || (demi_joint_rows(d->kind) == 5 &&
+                                       !(d->motor == DEM_MOTOR_SPEED && d->torque < 0))) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, torque %g N m; only revolute joints have "
+              "motors, and the limit on torque of DEM_MOTOR_SPEED must be >= 0 (0: no limit)", call,
+              (int)d->motor, (double)d->torque);
     return 0;
 }
 /* Returns x in the frame of body `index`: a point, m, relative to its centre if `place` is 1, a
@@ -94,28 +103,20 @@ static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, 
     if (place) x = demi_nearest(&p, demi_sub(x, demi_at(w->bodies.pos + 4*index)));
     return dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*index), x);
 }
-/* True if a desc is allowed, except for its motor, see demi_motor_sane; 0 with an error message
-   otherwise. */
+/* True if a desc is allowed; 0 with an error message otherwise. */
 static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
     const dem_real size = demi_length(d->axis);
-    const int rows = demi_joint_rows(d->kind), hinged = rows == 5;
-    char kinds[200] = "";
-    int a, b = -1, k, n = 0;
+    const int hinged = demi_joint_rows(d->kind) == 5;
+    int a, b = -1;
     if (!demi_response_is(w, DEMI_JOINTED)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
                   "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
         return 0;
     }
-    if (!rows || !demi_place(d->point) ||
-        (hinged && (!demi_finite3(d->axis) || !(size > 0) || !demi_finite(size)))) {
-        for (k = 1; k < DEMI_JOINT_KINDS; k++)
-            n += snprintf(kinds + n, sizeof kinds - (size_t)n, "%s%s", k == 1 ? "" :
-                          k + 1 < DEMI_JOINT_KINDS ? ", " : " or ", demi_joint_kinds[k].name);
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: kind is %d, point (%g, %g, %g) m, axis (%g, %g, %g); "
-                  "kind must be %s, the point within 1e15 m of the origin, the axis of a revolute "
-                  "joint finite and not 0", call, (int)d->kind, (double)d->point.x,
-                  (double)d->point.y, (double)d->point.z, (double)d->axis.x, (double)d->axis.y,
-                  (double)d->axis.z, kinds);
+    if (!demi_motor_sane(w, call, d)) return 0;
+    if (hinged && (!(size > 0) || !demi_finite(size))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not 0 for a "
+                  "revolute joint", call, (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
         return 0;
     }
     if (w->desc.planar && hinged && !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
@@ -146,8 +147,7 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     demi_joint j;
     dem_joint id;
     if (demi_null(w, call, d, "desc")) return demi_no_joint;
-    if (!demi_joint_sane(w, call, d) ||
-        !demi_motor_sane(w, call, d->kind, d->motor, d->speed, d->torque)) return demi_no_joint;
+    if (!demi_joint_sane(w, call, d)) return demi_no_joint;
     if (!demi_orient_begin(w) || !DEMI_GROW(w, w->joints, (size_t)w->joint_count + 1)) {
         demi_no_memory(w, call);
         return demi_no_joint;
@@ -177,17 +177,19 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     return id;
 }
 DEM_API dem_result dem_joint_motor_set(dem_world *w, dem_joint joint, dem_motor motor,
-                                       dem_real speed,
-                                   dem_real torque) {
+                                       dem_real speed, dem_real torque) {
     const char *call = "dem_joint_motor_set";
+    dem_joint_desc d;
     int i;
     if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_joint_find(w, call, joint);
-    if (i < 0 || !demi_motor_sane(w, call, w->joints[i].desc.kind, motor, speed, torque))
-        return DEM_ERROR_ARGUMENT;
-    w->joints[i].desc.motor = motor;
-    w->joints[i].desc.speed = speed;
-    w->joints[i].desc.torque = torque;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    d = w->joints[i].desc;
+    d.motor = motor;
+    d.speed = speed;
+    d.torque = torque;
+    if (!demi_motor_sane(w, call, &d)) return DEM_ERROR_ARGUMENT;
+    w->joints[i].desc = d;
     demi_scene_changed(w);
     return DEM_OK;
 }

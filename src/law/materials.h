@@ -49,6 +49,7 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
     DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
     DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
+#undef DEMI_OF
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
     if (demi_rows_check(w, call, demi_material_rows, d, "", "set it in the desc before the call"))

@@ -448,6 +448,16 @@ static void demi_film_free(dem_replay *r) {
     demi_free(w, r->bytes);
     demi_free(w, r);
 }
+#define DEMI_OF dem_replay_desc
+static const demi_field_row demi_replay_rows[] = {
+    DEMI_ROW_FREE(DEMI_OF, title), DEMI_ROW_FREE(DEMI_OF, number),
+    DEMI_ROW_FREE(DEMI_OF, number_fn), DEMI_ROW_FREE(DEMI_OF, user),
+    DEMI_ROW_IF(resolution, DEMI_FROM, DBL_MAX, "m",
+                "where 0 means 1/32 of the smallest radius", 0, 0, 0),
+    DEMI_LIMITED_IF(DEMI_OF, interval, 'd', DEMI_FROM, DBL_MAX, "s",
+                    "where 0 means frames only from dem_replay_frame_write", 0, 0, 0),
+    DEMI_ROW_END};
+#undef DEMI_OF
 DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_replay_desc *desc) {
     static const dem_replay_desc zero = {0, 0, 0, 0, 0, 0};
     const dem_replay_desc d = desc ? *desc : zero;
@@ -456,16 +466,8 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     size_t k;
     int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
     if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
-    if (!(d.resolution >= 0) || !demi_finite(d.resolution)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be "
-                  ">= 0, where 0 means 1/32 of the smallest radius", (double)d.resolution);
-        return 0;
-    }
-    if (!(d.interval >= 0) || !demi_finite_double(d.interval)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: interval is %g s, must be >= 0, where "
-                  "0 means frames only from dem_replay_frame_write", d.interval);
-        return 0;
-    }
+    if (demi_rows_check(w, "dem_replay_open", demi_replay_rows, &d, "",
+                        "start from DEM_REPLAY_DESC and set only what differs")) return 0;
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
         const char *name = demi_name(w->desc.body_reals, i, &n);
         if (strlen(d.number) == (size_t)n && !strncmp(name, d.number, (size_t)n)) break;

@@ -251,6 +251,15 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
     }
     return DEM_OK;
 }
+#define DEMI_TRIED(field, type, how, most, unit) \
+    DEMI_LIMITED(dem_trials_desc, field, type, how, most, unit)
+static const demi_field_row demi_trials_rows[] = {
+    DEMI_TRIED(duration, 'd', DEMI_OVER, DBL_MAX, "s"),
+    DEMI_TRIED(budget, 'd', DEMI_FROM, DBL_MAX, "s"),
+    DEMI_TRIED(tolerance, 'd', DEMI_FROM, DBL_MAX, ""), DEMI_TRIED(seeds, 'i', DEMI_FROM, 16, ""),
+    DEMI_TRIED(observable_count, 'i', DEMI_FROM, DEM_OBSERVABLES, ""),
+    DEMI_ROW_FREE(dem_trials_desc, observables), DEMI_ROW_FREE(dem_trials_desc, progress),
+    DEMI_ROW_FREE(dem_trials_desc, user), DEMI_ROW_END};
 /* Returns 1 with an error message if the desc is invalid or the scene cannot be compared. */
 static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
@@ -261,15 +270,10 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
                   "other dt, sweeps and tolerance instead");
         return 1;
     }
-    if (!(d->duration > 0) || !demi_finite_double(d->duration) || !(d->budget >= 0) ||
-        !demi_finite_double(d->budget) || !(d->tolerance >= 0) ||
-        !demi_finite_double(d->tolerance) || d->seeds < 0 || d->seeds == 1 ||
-        d->seeds > 16 || d->observable_count < 0 || d->observable_count > DEM_OBSERVABLES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, budget %g s, "
-                  "tolerance %g, seeds %d, observables %d; duration must be > 0, budget and "
-                  "tolerance >= 0, seeds 2 to 16 (0 means 3), observables 0 to %d; start from "
-                  "DEM_TRIALS_DESC and set duration", d->duration, d->budget, d->tolerance,
-                  d->seeds, d->observable_count, (int)DEM_OBSERVABLES);
+    if (demi_rows_check(w, "dem_trials_run", demi_trials_rows, d, "",
+                        "start from DEM_TRIALS_DESC and set duration")) return 1;
+    if (d->seeds == 1) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: seeds is 1, must be 2 to 16 (0 means 3)");
         return 1;
     }
     for (e = 0; e < d->observable_count; e++)

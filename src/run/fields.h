@@ -236,37 +236,29 @@ static void demi_fields_sample(dem_world *w) {
     }
 }
 
-/* Fields of dem_field_desc, as checkpoints store and compare them; dem_field_add checks limits. */
-static const demi_field_row demi_field_rows[] = {
-    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
-    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
-    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
-    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
-    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r'), DEMI_ROW_END};
+#define DEMI_FIELD_MOST 268435456.0
+#define DEMI_FIELD(field, type, how, unit, other) \
+    DEMI_LIMITED_IF(dem_field_desc, field, type, how, DBL_MAX, unit, 0, other, 0, 0)
+static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, 'v'),
+    DEMI_LIMITED(dem_field_desc, cells, 'i', DEMI_OVER, DEMI_FIELD_MOST, ""),
+    DEMI_FIELD(start, 'd', DEMI_FROM, "s", 0), DEMI_FIELD(end, 'd', DEMI_ANY, "s", 0),
+    DEMI_FIELD(interval, 'd', DEMI_FROM, "s", 0), DEMI_ROW(dem_field_desc, material, 'i'),
+    DEMI_FIELD(radius_min, 'r', DEMI_FROM, "m", 0), DEMI_FIELD(radius_max, 'r', DEMI_FROM, "m", 1),
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
     demi_field field;
     int k;
     id.id = 0;
-    if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
-        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->interval >= 0) ||
-        !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
-        !demi_finite_double(d->end)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval is %g "
-                  "s; there must be >= 1 cells on each axis and at most 2^28 in all, and times "
-                  "must be finite and >= 0", d->cells[0], d->cells[1], d->cells[2], d->interval);
+    if (demi_rows_check(w, "dem_field_add", demi_field_rows, d, "",
+                        "start from DEM_FIELD_DESC and set only what differs")) return id;
+    if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, must be at most "
+                  "2^28 in all; choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
-    if (!(d->width >= 0) || !demi_finite(d->width) || !(d->radius_min >= 0) ||
-        !demi_finite(d->radius_max) || !(d->radius_max >= 0) ||
-        (d->radius_max > 0 && d->radius_max < d->radius_min)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: width is %g m, radii are %g to %g m; all "
-                  "must be finite and >= 0, radius_min below radius_max, and radius_max 0 for no "
-                  "limit", (double)d->width, (double)d->radius_min, (double)d->radius_max);
-        return id;
-    }
     if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
         return id;
     memset(&field, 0, sizeof field);

@@ -193,13 +193,20 @@ static int demi_pose_sane(const dem_pose *p) {
         ok = ok && demi_finite(p->rotation[i]) && DEMI_ABS(p->rotation[i]) <= 2;
     return ok;
 }
-/* True if the numbers of a motion are finite and in range. */
-static int demi_motion_sane(const dem_motion *m) {
-    return demi_place(m->velocity) && demi_place(m->point) && demi_place(m->axis) &&
-        demi_bounded((double)m->speed) && demi_bounded((double)m->amplitude) &&
-        demi_bounded((double)m->frequency) && demi_bounded((double)m->phase) &&
-        demi_bounded(m->start) && demi_bounded(m->ramp) && m->ramp >= 0;
-}
+/* Numbers of a motion, in the order in which a checkpoint has them, then what is not a number. */
+#define DEMI_MOVED(field, type, how, unit) \
+    DEMI_LIMITED(dem_motion, field, type, how, DEMI_FARTHEST, unit)
+static const demi_field_row demi_motion_rows[] = {
+    DEMI_ROW_ENUM(dem_motion, kind, DEMI_FROM, 0,
+                  "fixed translating rotating oscillating user table"),
+    DEMI_MOVED(velocity, 'v', DEMI_ANY, "m/s"), DEMI_MOVED(point, 'v', DEMI_ANY, "m"),
+    DEMI_MOVED(axis, 'v', DEMI_ANY, ""), DEMI_MOVED(speed, 'r', DEMI_ANY, "rad/s"),
+    DEMI_MOVED(amplitude, 'r', DEMI_ANY, "m"), DEMI_MOVED(frequency, 'r', DEMI_ANY, "Hz"),
+    DEMI_MOVED(phase, 'r', DEMI_ANY, "rad"), DEMI_MOVED(start, 'd', DEMI_ANY, "s"),
+    DEMI_MOVED(ramp, 'd', DEMI_FROM, "s"), DEMI_ROW_FREE(dem_motion, function),
+    DEMI_ROW_FREE(dem_motion, user), DEMI_ROW_FREE(dem_motion, table),
+    DEMI_ROW(dem_motion, table_count, 'i'), DEMI_ROW(dem_motion, table_repeats, 'i'),
+    DEMI_ROW_END};
 
 /* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
    -1 if there is no bound. */

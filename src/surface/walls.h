@@ -613,6 +613,10 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 
 /* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
+    char of[24];
+    snprintf(of, sizeof of, " of wall %d", (int)id.id);
+    if (demi_rows_check(w, "dem_wall_motion_set", demi_motion_rows, motion, of,
+                        "start from DEM_MOTION")) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
                          "zero; give a direction",
@@ -627,11 +631,6 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          "DEM_MOTION_USER "
                          "and no function; "
                          "set motion.function", (int)id.id);
-    if (!demi_motion_sane(motion) || (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: a number in the motion of "
-                         "wall %d is not finite or beyond %g (m, m/s, rad/s, s), its ramp of %g s "
-                         "is below 0, or its kind %d is unknown; start from DEM_MOTION", (int)id.id,
-                         DEMI_FARTHEST, motion->ramp, (int)motion->kind);
     return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
 }
 /* Sets *next to wall `wall` (of this id, which need not exist yet) with a new motion. If that

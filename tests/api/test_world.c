@@ -478,6 +478,7 @@ int main(int argc, char **argv) {
         refused(world, dem_wall_motion_set(world, floor, &m), DEM_ERROR_ARGUMENT, hash,
                 "dem_wall_motion_set: ", "9", "");
         for (i = 0; i < 7; i++) {
+            static const char *const names[] = {"velocity", "point", "speed", "amplitude", "frequency", "phase", "start"};
             const double bad = i == 6 ? infinite : nan_number;
             m = DEM_MOTION;
             m.kind = DEM_MOTION_OSCILLATING;
@@ -492,7 +493,7 @@ int main(int argc, char **argv) {
             if (i == 5) m.phase = (dem_real)bad;
             if (i == 6) m.start = bad;
             refused(world, dem_wall_motion_set(world, floor, &m), DEM_ERROR_ARGUMENT, hash,
-                    "dem_wall_motion_set: ", "wall 1", "finite");
+                    "dem_wall_motion_set: ", names[i], " of wall 1 is ");
             if (test_now.wrong) { printf("        with bad number %d\n", i); break; }
         }
         CHECK_EQ(dem_wall_remove(world, floor), DEM_OK);
@@ -699,6 +700,9 @@ int main(int argc, char **argv) {
         refused(world, dem_field_reset(world, id), DEM_ERROR_ARGUMENT, hash, "dem_field_reset: ",
                 "field 1", "there are 0");
         for (i = 0; i < 6; i++) {
+            static const char *const wrong[][2] = {{"cells is 0", "> 0"}, {"cells are 4096 x 4096 x 4096", "2^28"},
+                {"the box goes", "lo below hi"}, {"interval is -1 s", ">= 0 s"}, {"start is ", ">= 0 s"},
+                {"the box goes", "lo below hi"}};
             memset(&f, 0, sizeof f);
             f.box = box_of(0, 0, 0, 1, 1, 1);
             f.cells[0] = f.cells[1] = f.cells[2] = i == 1 ? 4096 : 2;
@@ -707,8 +711,7 @@ int main(int argc, char **argv) {
             if (i == 3) f.interval = -1;
             if (i == 4) f.start = nan_number;
             if (i == 5) f.box.lo.z = (dem_real)nan_number;
-            refused_id(world, dem_field_add(world, &f).id, hash, "dem_field_add: ",
-                       i == 2 || i == 5 ? "the box goes" : "cells", i == 2 || i == 5 ? "lo below hi" : ">= ");
+            refused_id(world, dem_field_add(world, &f).id, hash, "dem_field_add: ", wrong[i][0], wrong[i][1]);
         }
         CHECK_EQ(dem_world_step(world, 0), DEM_OK);
         CHECK_EQ(dem_world_run(world, 0, 0, 0), DEM_OK);

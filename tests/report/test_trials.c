@@ -292,7 +292,7 @@ int main(int argc, char **argv) {
         CHECK(strstr(dem_world_error_get(world), "duration is 0 s") != 0);
         bad = good; bad.seeds = 1;
         CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error_get(world), "seeds 1") != 0);
+        CHECK(strstr(dem_world_error_get(world), "seeds is 1, must be 2 to 16") != 0);
         bad = good; bad.observable_count = DEM_OBSERVABLES + 1;
         CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
         bad = good; bad.observable_count = 1;

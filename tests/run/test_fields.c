@@ -191,7 +191,7 @@ int main(int argc, char **argv) {
         d.radius_min = 2;
         d.radius_max = 1;
         CHECK_EQ(dem_field_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error_get(world), "radii are 2 to 1 m");
+        CHECK_STR(dem_world_error_get(world), "radius_max is 1 m, must be 0 or >= radius_min (2 m)");
         d.radius_min = d.radius_max = 0;
         d.material.id = 3;
         CHECK_EQ(dem_field_add(world, &d).id, 0);

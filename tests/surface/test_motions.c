@@ -106,7 +106,7 @@ int main(int argc, char **argv) {
             }
             m.ramp = -1;
             CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_ERROR_ARGUMENT);
-            CHECK_STR(dem_world_error_get(world), "ramp of -1 s is below 0");
+            CHECK_STR(dem_world_error_get(world), "ramp of wall 1 is -1 s, must be >= 0 s");
             dem_world_destroy(world);
         }
     }
