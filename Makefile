@@ -36,7 +36,7 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 hash := \#
 
 # ---- options that the compiler knows; tested only if something is to be compiled ----
-ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs options,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -60,7 +60,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english pages-check recipes snippets clean
+.PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -180,6 +180,11 @@ tags: ## check that dem.h is joined from src/, that its parts agree with its con
 
 english: ## list sentences of pages, public comments, error messages and test names that need a second reading
 	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/*/*.c
+
+options: dem.h ## write docs/options.md and docs/options_run.md, every field of every desc, from dem.h
+	@mkdir -p build && $(CC) -std=c99 -DDEM_STATIC -DDEM_NO_OPENMP -I. tests/options.c -o build/options $(LDLIBS) && build/options > build/options.txt
+	@awk -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options.md
+	@awk -v part=run -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options_run.md
 
 web: ## build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77

@@ -135,7 +135,7 @@ typedef struct dem_body { uint32_t slot, generation; } dem_body;
 typedef struct dem_world dem_world;
 
 /* ---- choices: the constants of dem_world_desc ---- */
-/* The law of the normal force. delta: overlap, m; v: closing speed, m/s. */
+/* The law of the normal force. Here delta is the overlap, m, and v the closing speed, m/s. */
 typedef enum dem_normal_law {
     /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
     DEM_NORMAL_HERTZ = 0,
@@ -269,7 +269,7 @@ typedef enum dem_cone {
     /* The convex relaxation of [TAS10]: a contact that slides at speed v opens by mu v dt. */
     DEM_CONE_CONVEX
 } dem_cone;
-/* The iterative solver for impulses (>>solvers). docs/impulses.md compares their convergence. */
+/* The iterative solver for impulses (>>solvers). The page docs/impulses.md compares them. */
 typedef enum dem_solver {
     /* one contact after another: robust, and needs the fewest sweeps; the default */
     DEM_SOLVER_GAUSS_SEIDEL = 0,

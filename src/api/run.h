@@ -225,22 +225,23 @@ typedef struct dem_observable {
 } dem_observable;
 /* How dem_trials_run works. Begin with DEM_TRIALS_DESC. */
 typedef struct dem_trials_desc {
-    /* s, > 0, simulated by each run, at least 64 steps. Observables are averaged over its second
-       half. */
+    /* s, required, > 0: simulated by each run, at least 64 steps. Observables are averaged over its
+       second half. */
     double duration;
-    /* s of wall time for all trials, estimated from some steps of the scene; 0: 60. If it is too
-       short, the runs simulate less. */
+    /* s, wall time of all trials, estimated from some steps of the scene; 0 means 60 s. If it is
+       too short, the runs simulate less. */
     double budget;
-    double tolerance;              /* allowed deviation of an observable over its scale; 0: 0.02 */
-    /* runs per trial, which start from positions that differ by at most 1e-6 of a radius; 2 to 16;
-       0: 3 */
+    double tolerance;              /* allowed deviation of an observable/its scale; 0 means 0.02 */
+    /* 0 to 16, not 1: runs per trial, which start from positions that differ by at most 1e-6 of a
+       radius; 0 means 3 */
     int seeds;
-    /* 0: three observables. height, scaled by its value above the lowest grain; kinetic, scaled by
-       the present energy plus that of a fall of all grains by their radius; contacts. */
+    /* observables to compare; 0 means three. These are height, scaled by its value above the
+       lowest grain; kinetic, scaled by the present energy plus that of a fall of all grains by
+       their radius; contacts. */
     int observable_count;
     dem_observable observables[DEM_OBSERVABLES];
-    /* called with the original world after each trial; a non-zero return value ends the call with
-       DEM_ERROR_STOPPED; or null */
+    /* called with the original world after each trial; null means no call. A non-zero return value
+       ends dem_trials_run with DEM_ERROR_STOPPED. */
     dem_progress_fn progress;
     void *user;                    /* passed to `progress`; or null */
 } dem_trials_desc;
@@ -329,14 +330,14 @@ DEM_API dem_result dem_candidates_rebuild(dem_world *world);
    than grains need a long window; or it is spread about its centre by coarse graining (width).
    Begin with DEM_FIELD_DESC. */
 typedef struct dem_field_desc {
-    dem_box box;              /* m */
-    int cells[3];             /* >= 1 each, at most 2^28 in all */
-    double start, end;        /* s, window of time; end = 0: no end */
-    double interval;          /* s between samples; 0: every 100 steps */
-    dem_material material;    /* only grains of this material; id 0: all grains */
-    dem_real radius_min, radius_max;  /* m, only grains of these (bounding) radii; max 0: any */
+    dem_box box;              /* m, required: what the cells divide */
+    int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
+    double start, end;        /* s, window of time; end 0 means no end */
+    double interval;          /* s, between samples; 0 means every 100 steps */
+    dem_material material;    /* only grains of this material; id 0 means all grains */
+    dem_real radius_min, radius_max;  /* m, only of these (bounding) radii; max 0 means any */
     int stress;               /* 1: also flux, stress and contacts; visits every contact */
-    /* m, 0: no coarse graining. Otherwise each grain is spread by Lucy's function of reach
+    /* m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach
        c = 2 width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
@@ -582,18 +583,20 @@ typedef struct dem_replay dem_replay;
 enum { DEM_REPLAY_VALUES = 16 };
 /* How a replay is recorded. Begin with DEM_REPLAY_DESC. */
 typedef struct dem_replay_desc {
-    const char *title;          /* copied; or null: the name of the file */
-    /* what grains can be coloured by: a name in desc.body_reals (or null: the first), or a name for
-       the values of number_fn (or null: "number"); copied, at most 63 characters */
+    const char *title;          /* copied; null means the name of the file */
+    /* Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the
+       values of number_fn. Null means the first name, or "number". Copied, at most 63 characters.
+       */
     const char *number;
-    /* returns the number of a body, for every frame; or null */
+    /* returns the number of a body, for every frame; null means one of desc.body_reals */
     double (*number_fn)(const dem_world *world, dem_body body, void *user);
     void *user;                 /* passed to number_fn; or null */
-    /* m, >= 0, of positions; 0: 1/32 of the smallest radius in the first frame */
+    /* m, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame */
     dem_real resolution;
     /* s, >= 0: a run writes frames automatically, the first when it begins and then at the steps
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
-       run: dem_replay_close returns the error. 0: only dem_replay_frame_write writes frames. */
+       run: dem_replay_close returns the error. 0 means frames only from
+       dem_replay_frame_write. */
     double interval;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
@@ -645,16 +648,16 @@ typedef enum dem_output_kind {
 /* How an output works. Begin with DEM_OUTPUT_DESC. */
 typedef struct dem_output_desc {
     dem_output_kind kind;
-    /* Copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at `start`.
-       Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL:
-       or null. */
+    /* Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is
+       0 at `start`. Without # the file is replaced each time. The path of a CSV file has no #.
+       DEM_OUTPUT_CALL: or null. */
     const char *path;
     double interval;         /* s, required, 1e-12 to 1e15 */
-    double start, end;       /* s, times of the world: the first and the last; end = 0: no last */
-    /* CSV, one of three: the loads of this wall, as dem_wall_loads_csv_write; or the values that
-       `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or,
-       if all three are zero, steps, bodies, contacts, kinetic and rotational energy (J) and
-       overlap_max */
+    double start, end;       /* s, times of the first and the last; end 0 means no last */
+    /* CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write;
+       or the values that `values` writes, with `columns` as their names (1 to 32 words as in
+       body_reals, copied); or, if all three are zero, steps, bodies, contacts, kinetic and
+       rotational energy (J) and overlap_max */
     dem_wall wall;
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
@@ -707,16 +710,16 @@ typedef struct dem_transport {
 /* How a scene is divided. Begin with DEM_SLABS_DESC. */
 typedef struct dem_slabs_desc {
     int axis;                  /* 0, 1, 2: borders are planes x, y, z = const */
-    /* number of slabs in all processes, required, 1 to 1024; only runs with the same number have
+    /* required, 1 to 1024: number of slabs in all processes; only runs with the same number have
        the same bits */
     int count;
-    /* this process holds the slabs first to first + local - 1; local = 0: all */
+    /* this process holds the slabs first to first + local - 1; local 0 means all */
     int first, local;
     dem_transport transport;   /* required if another process holds slabs */
-    /* borders move if the work of the busiest slab exceeds this many times the mean; >= 1; 0: 1.1;
-       < 0: borders do not move */
+    /* borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means
+       1.1. Below 0 borders do not move. */
     dem_real balance;
-    int balance_interval;      /* rebuilds between two checks of the balance; 0: 8 */
+    int balance_interval;      /* rebuilds between two checks of the balance; 0 means 8 */
 } dem_slabs_desc;
 static const dem_slabs_desc DEM_SLABS_DESC_ZERO = DEM_ZERO;
 #define DEM_SLABS_DESC DEM_SLABS_DESC_ZERO

@@ -21,11 +21,11 @@ typedef struct dem_world_desc {
        periodic axis must be at least as long as four of the largest radii, two skins and two
        ranges of the law. */
     dem_box domain;
-    dem_boundary boundary[3];      /* of the axes x, y and z */
+    dem_boundary boundary[3];      /* of the faces on the axes x, y and z */
     /* 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0
-       and rotate about z only. gravity.z is ignored. */
+       and rotate about z only. The z component of gravity is ignored. */
     int planar;
-    dem_real thickness;            /* m, of discs and polygons along z; default 1 m */
+    dem_real thickness;            /* m, of discs and polygons along z; 0 means 1 m */
 
     /* -- contact laws, for DEM_RESPONSE_SPRINGS: see "choices" above -- */
     dem_normal_law normal_law;
@@ -37,64 +37,67 @@ typedef struct dem_world_desc {
     dem_convention convention;
 
     /* -- user-defined law -- */
-    dem_law_fn law;                /* replaces the normal, tangential and rolling law */
+    /* replaces the normal, tangential and rolling law; null means the laws above */
+    dem_law_fn law;
     void *law_user;                /* passed to law as c->user */
-    int law_memory;                /* reals of contact history per contact: 0 to 16 */
-    /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Default: memory0,
-       memory1, ... */
+    int law_memory;                /* reals of contact history per contact, 0 to 16 */
+    /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means
+       memory0, memory1 and so on. */
     const char *law_memory_names;
-    int law_vectors;               /* leading triples of them that are vectors: 0 to law_memory/3 */
+    int law_vectors;               /* leading triples of them that are vectors, 0 to law_memory/3 */
     /* N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the
        built-in law. */
     dem_real law_stiffness;
-    /* law_range: m, >= 0; law_range_radii: a factor, >= 0. law is also called for two bodies that
-       do not touch while their gap is below law_range + law_range_radii (Ra + Rb), with c->overlap
-       < 0. A wall counts with radius 0, an ellipsoid with its bounding sphere. Built-in laws that
-       it calls need overlap > 0. With both 0, law is called in contact only, at no extra cost. */
-    dem_real law_range, law_range_radii;
+    /* m, >= 0. law is also called for two bodies that do not touch while their gap is below
+       law_range + law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with radius 0, an
+       ellipsoid with its bounding sphere. Built-in laws that it calls need overlap > 0. 0 means no
+       range. With both 0, law is called in contact only, at no extra cost. */
+    dem_real law_range;
+    dem_real law_range_radii;      /* >= 0; see law_range; 0 means no such range */
     int law_who;                   /* 1 fills in c->who: ids, radii, masses, contact point, time */
     /* Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who
        and body_reals. It is called before the first step and at least once in eight steps. A given
-       dt above the stable limit is an error; a chosen dt is at most half of it. Null: these rates
-       do not limit dt. */
+       dt above the stable limit is an error; a chosen dt is at most half of it. Null means
+       that these rates do not limit dt. */
     dem_law_rate_fn law_rate;
 
     /* -- numbers on bodies -- */
     /* Names of numbers that every body and wall carries, such as "temperature charge": at most 8
        words of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With
-       law_who, law reads them and returns their rates (per s). Null: no numbers. */
+       law_who, law reads them and returns their rates (per s). Null means no numbers. */
     const char *body_reals;
-    /* Updates the numbers of a body after each step. Null: each grows by rate dt. Numbers of walls
-       stay as set; dem_wall_loads sums what they would gain. */
+    /* Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers
+       of walls stay as set; dem_wall_loads sums what they would gain. */
     dem_reals_fn body_reals_fn;
     void *body_reals_user;         /* passed to body_reals_fn */
 
     /* -- force fields; both may be given and add up -- */
-    dem_force_fn force;            /* force on a body */
-    dem_body_force_fn body_force;  /* force and torque on a body */
+    dem_force_fn force;            /* force on a body; null means none */
+    dem_body_force_fn body_force;  /* force and torque on a body; null means none */
     void *force_user;              /* passed to both */
 
     /* -- time stepping -- */
     dem_integrator integrator;
-    dem_real dt;                   /* s; 0 means chosen from the scene, see dem_step_advice_get */
+    /* s, the time step; 0 means chosen from the scene, see dem_step_advice_get */
+    dem_real dt;
     int allow_large_dt;            /* 1 allows dt above t_c/20, to show what happens then */
     /* m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness
-       from Young's modulus depend on it. If it is 0, the time step is for the largest speed
-       expected from grains, walls and height of fall, and the stiffness is for 1 m/s. */
+       from Young's modulus depend on it. 0 means the largest speed expected from grains, walls and
+       height of fall for the time step, and 1 m/s for the stiffness. */
     dem_real impact_speed;
 
     /* -- impulses -- */
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved; 0 means three times the distance that the fastest body moves in a step, or less
+       solved; if it is 0, three times the distance that the fastest body moves in a step, or less
        where a short period leaves no room, but always between 0.1 and 1 of the largest radius.
        The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
     dem_solver solver;
-    int sweeps;                    /* most sweeps over all contacts in a step; default 200 */
-    /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. Default: when
+    int sweeps;                    /* most sweeps over all contacts in a step; 0 means 200 */
+    /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when
        the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
        largest change is below 30 times that. */
     dem_real tolerance;
@@ -110,15 +113,16 @@ typedef struct dem_world_desc {
     dem_real skin;
 
     /* -- other shapes -- */
-    dem_rotation rotation;         /* of bodies that are not spheres */
+    dem_rotation rotation;
     dem_overlap ellipsoid_overlap;
     dem_cluster_contacts cluster_contacts;
     int orientations;              /* 1 follows the orientations of spheres too */
 
     /* -- running -- */
     int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
-    int threads;                   /* 1 to 64; 0 means as many as OpenMP offers, at most 64 */
-    dem_allocator allocator;       /* default malloc and free */
+    /* number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64 */
+    int threads;
+    dem_allocator allocator;       /* memory functions; 0 means malloc and free */
 } dem_world_desc;
 static const dem_world_desc DEM_WORLD_DESC_ZERO = DEM_ZERO;
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
@@ -152,10 +156,10 @@ typedef struct dem_material_desc {
     dem_real density;              /* kg/m3, required, > 0 */
     /* Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness */
     dem_real young;
-    dem_real poisson;              /* 0 <= nu < 0.5; 0 is a physical value */
-    /* Required, 0 < e <= 1: speed after a normal impact over speed before it. The hysteretic law
-       takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact
-       without adhesion. */
+    dem_real poisson;              /* >= 0 and < 0.5: nu; 0 is a physical value */
+    /* Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic
+       law takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a
+       contact without adhesion. */
     dem_real restitution;
     dem_real friction;             /* sliding friction mu, >= 0 */
     /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
@@ -196,9 +200,10 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
      the given one if E* is unknown because a material has no young;
    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
-    dem_real young_eff;            /* E*, Pa */
-    dem_real shear_eff;            /* G*, Pa */
-    dem_real restitution, friction;
+    dem_real young_eff;            /* Pa, E* */
+    dem_real shear_eff;            /* Pa, G* */
+    dem_real restitution;          /* > 0 and <= 1: e */
+    dem_real friction;             /* sliding friction mu, >= 0 */
     /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
        materials leave it 0. */
     dem_real friction_static;
@@ -264,7 +269,7 @@ typedef struct dem_region {
        no faces there and centres may be anywhere. */
     dem_box box;
     /* 'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis,
-       elliptic if the box is not square: centres then lie in an ellipse whose half axes are smaller
+       elliptic if the box is not square. Centres then lie in an ellipse whose half axes are smaller
        by the radius. 0 means the whole box. */
     int cylinder;
     dem_inside_fn inside;          /* restricts the region further; null means no restriction */
@@ -310,15 +315,15 @@ enum { DEM_SIEVES = 32 };          /* largest number of sieves of a sieve curve 
 /* A size distribution, by radius. */
 typedef struct dem_sizes {
     dem_sizes_kind kind;
-    int by_count;                  /* 0: F is a fraction of the mass, 1: of the number */
-    /* m, 1e-15 <= min <= max < 1e15. Defaults for 0: log-normal, the median times exp(-6 spread)
-       and exp(6 spread); normal, 6 deviations from the median, min at least 1e-3 of the median;
-       sieve curve, its ends; Weibull and exponential, max where F = 1 - 1e-9. The others are
-       required: min of Weibull and exponential, both of uniform. */
+    int by_count;                  /* 1: F is a fraction of the number; 0 means of the mass */
+    /* m, 1e-15 <= min <= max < 1e15. 0 means the default of the kind. Log-normal: the median times
+       exp(-6 spread) and exp(6 spread); normal: 6 deviations from the median, min at least 1e-3 of
+       the median; sieve curve: its ends; Weibull and exponential: max where F = 1 - 1e-9. The
+       others are required: min of Weibull and exponential, both of uniform. */
     dem_real min, max;
     dem_real median;               /* m, log-normal and normal, > 0 */
     double spread;                 /* log-normal, > 0 and < 10: standard deviation of ln r */
-    dem_real scale;                /* m, Weibull > 0; exponential: the mean, > min */
+    dem_real scale;                /* m, > 0: of Weibull; exponential: the mean, > min */
     double modulus;                /* Weibull, > 0.05 and < 1000 */
     int count;                     /* number of sieves, 2 to 32 */
     dem_real radius[DEM_SIEVES];   /* m, half the apertures, > 0, ascending */
@@ -437,12 +442,12 @@ typedef enum dem_cluster_mass {
 } dem_cluster_mass;
 /* A rigid cluster of spheres, in a frame of your choice. */
 typedef struct dem_cluster_desc {
-    int count;                     /* spheres, required, 1 to 1000 */
-    const dem_real *positions;     /* count x 3, m, required */
-    const dem_real *radii;         /* count, m, > 0; null if all have `radius` */
-    dem_real radius;               /* m */
+    int count;                     /* required, 1 to 1000: number of spheres */
+    const dem_real *positions;     /* m, required: count x 3 */
+    const dem_real *radii;         /* m, > 0: one each; null means that all have `radius` */
+    dem_real radius;               /* m, of all spheres if radii is null */
     dem_cluster_mass mass;
-    /* DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; default 512. It is an error if
+    /* DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if
        rays are more than a quarter of the smallest radius apart. */
     int rays;
     /* The rest is for DEM_CLUSTER_GIVEN. */
@@ -569,15 +574,16 @@ typedef struct dem_motion_row {
    called. */
 typedef struct dem_motion {
     dem_motion_kind kind;
-    dem_vec3 velocity;             /* m/s (translating); direction only (oscillating) */
-    /* m and direction: the axis of rotation, and the axis to which dem_wall_loads refers torques.
-       An axis of 0 means along z, except for rotating walls, which need one. */
+    dem_vec3 velocity;             /* m/s, of translating walls; of oscillating ones the
+                                      direction only */
+    /* m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques;
+       axis 0 means along z. Rotating walls need an axis. */
     dem_vec3 point, axis;
-    dem_real speed;                /* rad/s */
-    dem_real amplitude, frequency, phase;  /* m, Hz, rad */
+    dem_real speed;                /* rad/s, of rotating walls */
+    dem_real amplitude, frequency, phase;  /* m, Hz, rad: of oscillating walls */
     /* s. Until then rotating and translating walls are at rest. A time in the past means now. */
     double start;
-    dem_motion_fn function;        /* DEM_MOTION_USER */
+    dem_motion_fn function;        /* what DEM_MOTION_USER calls */
     void *user;                    /* passed to function */
     /* s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3,
        u = (time - start)/ramp, to its full value. 0 means at once. */
@@ -667,21 +673,21 @@ typedef struct dem_sieve_desc {
     dem_sieve_kind kind;           /* required */
     dem_vec3 point;                /* m, centre of a hole, at half the thickness */
     dem_vec3 normal;               /* across the sieve; 0 means along z */
-    /* Direction of the rows of holes. If it is 0 or within 0.001 rad of the normal: along x, or y
-       if x is near the normal. */
+    /* Direction of the rows of holes; 0 means along x, or y if x is near the normal. The same holds
+       for a direction within 0.001 rad of the normal. */
     dem_vec3 along;
     dem_real aperture;             /* m, required, > 0: clear width, side or diameter of a hole */
     dem_real bar;                  /* m, required, > 0: wire diameter, or width between two holes */
     dem_real length;               /* m, of slots, >= aperture; 0 means infinite */
     dem_real thickness;            /* m, of plates; 0 means a sheet with sharp rims */
-    /* m, between the axes of the two layers of wires: 0 puts them in one plane, `bar` one on the
-       other. Real wires wind between the two. */
+    /* m, between the axes of the two layers of wires; 0 means one plane. `bar` puts one layer on
+       the other; real wires wind between the two. */
     dem_real lift;
     int staggered;                 /* 1 puts round holes in a triangular pattern */
     dem_real radius;               /* m, of the disc; 0 means an infinite sieve */
-    /* Reduced holes. A sphere smaller than the hole falls if its centre is within (1 - clearance) b
-       of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or
-       aperture/2 (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end. */
+    /* Rule of reduced holes. A sphere smaller than the hole falls if its centre is within (1 -
+       clearance) b of the middle of the hole in both directions: b = aperture/2 - radius (model 0
+       or 1) or aperture/2 (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end. */
     int model;
     dem_real clearance;            /* reduced holes: 0 open, 1 closed; zeta of [ALK07] */
 } dem_sieve_desc;
@@ -748,10 +754,10 @@ typedef enum dem_motor {
     DEM_MOTOR_TORQUE               /* exerts `torque` on a, and the opposite on b */
 } dem_motor;
 typedef struct dem_joint { int32_t id; } dem_joint;                          /* id counts from 1 */
-/* A joint. point and axis refer to the present poses of the bodies. */
+/* A joint. Its point and axis refer to the present poses of the bodies. */
 typedef struct dem_joint_desc {
-    dem_joint_kind kind;           /* required */
-    dem_motor motor;               /* of a revolute joint */
+    dem_joint_kind kind;           /* required: how the two are joined */
+    dem_motor motor;
     dem_body a, b;                 /* a is required; b null means `wall`, or space */
     dem_wall wall;                 /* if b is null: moves with it; null means space, at rest */
     int collide;                   /* 1: the two bodies may touch each other */
@@ -759,7 +765,7 @@ typedef struct dem_joint_desc {
     dem_vec3 axis;                 /* of a revolute joint, not 0; planar worlds: along z */
     /* rad/s, of a against b about axis, right-handed; at most 1e12 in size */
     dem_real speed;
-    /* N m, on a about axis; at most 1e12 in size. For DEM_MOTOR_SPEED the limit, >= 0, where 0
+    /* N m, on a about axis; at most 1e12 in size. DEM_MOTOR_SPEED: the largest torque, >= 0; 0
        means no limit. */
     dem_real torque;
 } dem_joint_desc;
@@ -807,13 +813,14 @@ typedef struct dem_feed_desc {
     double amount[DEM_CLASSES];
     int limited;                   /* 1: the feed ends after `amount`, drawn without replacement */
     int by_mass;                   /* 1: amount and rate are in kg and kg/s instead of grains */
-    double rate;                   /* grains/s; 0 means all as room permits, and needs limited */
-    /* s, time of the world. A feed that is added later catches up with what was due since start.
-       end 0 means no end. */
-    double start, end;
+    /* 1/s, grains due; 0 means all as room permits, and needs limited */
+    double rate;
+    /* s, time of the world. A feed that is added later catches up with what was due since start. */
+    double start;
+    double end;                    /* s, 0 or >= start; 0 means no end */
     dem_box box;                   /* m, required: centres lie inside (dem_region: whole bodies) */
     int round;                     /* 1: only the vertical elliptic cylinder inscribed in the box */
-    dem_vec3 velocity;             /* m/s */
+    dem_vec3 velocity;             /* m/s, of new grains */
     dem_real spread;               /* m/s, largest random change of each component of velocity */
     uint64_t seed;                 /* of random positions, sizes and velocities */
     dem_inside_fn inside;          /* restricts the box further, as in dem_region */
@@ -846,12 +853,12 @@ DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_
    With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge
    through a plane is what enters the box behind it. */
 typedef struct dem_outlet_desc {
-    dem_wall frame;                /* the region moves with this wall; null means it is at rest */
+    dem_wall frame;                /* the region moves with this wall; null means at rest */
     /* m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0) */
     dem_box box;
     dem_real beyond;               /* m: only grains this far or farther from the frame's z axis */
-    dem_real wanted_min, wanted_max;  /* m, radii meant to leave here; max 0: no limit */
-    int class_count;               /* 0 to 16 size classes to count in */
+    dem_real wanted_min, wanted_max;  /* m, radii meant to leave here; max 0 means no limit */
+    int class_count;               /* size classes to count in, 0 to 16 */
     dem_real radius[DEM_CLASSES];  /* m, ascending; a grain counts in the nearest class */
     dem_material material;         /* only grains of this material; id 0 means all */
     int keep;                      /* 1: grains stay and are only counted; at most 16 such */

@@ -29,7 +29,8 @@ static void rows_cover(const char *text, const char *type, size_t size, const de
 #define PART_ROWS(type, rows, part) rows_cover(text, #type, sizeof(type), rows, offsetof(dem_world, part), 0)
 
 /* A desc with one bad value goes to its call; the message has the name of the field. */
-enum { ROWS_WORLD, ROWS_MATERIAL, ROWS_PAIR, ROWS_SIEVE, ROWS_FEED, ROWS_OUTLET, ROWS_DESCS };
+enum { ROWS_WORLD, ROWS_MATERIAL, ROWS_PAIR, ROWS_SIEVE, ROWS_FEED, ROWS_OUTLET, ROWS_MOTION, ROWS_FIELD, ROWS_JOINT,
+       ROWS_TRIALS, ROWS_REPLAY, ROWS_DESCS };
 static void row_spoil(const demi_field_row *r, void *item, int k, double x) {
     char *at = (char *)item + r->offset + (size_t)k*demi_row_item(r);
     const int32_t i = fabs(x) < INT32_MAX ? (int32_t)x : 0;
@@ -39,15 +40,20 @@ static void row_spoil(const demi_field_row *r, void *item, int k, double x) {
     else memcpy(at, &y, sizeof y);
 }
 static int row_refused(int desc, const demi_field_row *r, int k, double x) {
-    walk_scene s = walk_begin(WALK_SPRINGS);
+    walk_scene s = walk_begin(desc == ROWS_JOINT ? WALK_IMPULSES : WALK_SPRINGS);
+    static dem_trials trials;
+    dem_trials_desc plan = DEM_TRIALS_DESC;
+    dem_replay_desc replay = DEM_REPLAY_DESC;
     dem_world *world = dem_world_create(&s.world);
     dem_material m;
     demi_wall wall;
-    void *const items[ROWS_DESCS] = {&s.world, &s.material, &s.pair, &wall, &s.feed, &s.outlet};
+    void *const items[ROWS_DESCS] = {&s.world, &s.material, &s.pair, &wall, &s.feed, &s.outlet, &s.motion,
+        &s.field, &s.joint, &plan, &replay};
     const char *error;
     int good = 0;
     m = dem_material_add(world, &s.material);
     wall.sieve = s.sieve;
+    plan.duration = 1;
     row_spoil(r, items[desc], k, x);
     if (desc == ROWS_WORLD) error = dem_world_create_error_get(&s.world);
     else {
@@ -56,6 +62,12 @@ static int row_refused(int desc, const demi_field_row *r, int k, double x) {
         if (desc == ROWS_SIEVE) good = dem_wall_sieve_add(world, m, &wall.sieve).id;
         if (desc == ROWS_FEED) good = dem_feed_add(world, &s.feed).id;
         if (desc == ROWS_OUTLET) good = dem_outlet_add(world, &s.outlet).id;
+        if (desc == ROWS_MOTION)
+            good = dem_wall_motion_set(world, dem_wall_plane_add(world, m, s.plane_point, s.plane_normal), &s.motion) == DEM_OK;
+        if (desc == ROWS_FIELD) good = dem_field_add(world, &s.field).id;
+        if (desc == ROWS_JOINT) good = dem_joint_add(world, &s.joint).id;
+        if (desc == ROWS_TRIALS) good = dem_trials_run(world, &plan, &trials) == DEM_OK;
+        if (desc == ROWS_REPLAY) good = dem_replay_open(world, "build/tmp/rows.html", &replay) != 0;
         error = dem_world_error_get(world);
     }
     good = !good && (desc == ROWS_WORLD ? !strcmp(error, r->refusal) : strstr(error, r->name) && strstr(error, ", must be "));
@@ -76,6 +88,10 @@ int main(int argc, char **argv) {
         ALL_ROWS(dem_field_desc, demi_field_rows);
         ALL_ROWS(dem_feed_desc, demi_feed_rows);
         ALL_ROWS(dem_outlet_desc, demi_outlet_rows);
+        ALL_ROWS(dem_motion, demi_motion_rows);
+        ALL_ROWS(dem_joint_desc, demi_joint_rows);
+        ALL_ROWS(dem_trials_desc, demi_trials_rows);
+        ALL_ROWS(dem_replay_desc, demi_replay_rows);
         ALL_ROWS(dem_wall_loads, demi_loads_rows);
         ALL_ROWS(dem_outlet_state, demi_outlet_state_rows);
         PART_ROWS(demi_timing, demi_number_rows, clock);
@@ -92,7 +108,8 @@ int main(int argc, char **argv) {
     }
     TEST("each call refuses a value beyond the limit in the field's row, NaN and infinity, and names the field") {
         static const demi_field_row *const tables[ROWS_DESCS] = {demi_world_desc_rows, demi_material_rows, demi_pair_rows,
-            demi_wall_rows, demi_feed_rows, demi_outlet_rows};
+            demi_wall_rows, demi_feed_rows, demi_outlet_rows, demi_motion_rows, demi_field_rows, demi_joint_rows,
+            demi_trials_rows, demi_replay_rows};
         int desc, k, tried = 0;
         for (desc = 0; desc < ROWS_DESCS; desc++) {
             const demi_field_row *r;
@@ -108,7 +125,7 @@ int main(int argc, char **argv) {
                     tried++;
                 }
         }
-        CHECK(tried > 60);
+        CHECK(tried > 100);
     }
     TEST("what slabs add up: sums, the largest and bits of every field that is declared so, other fields stay") {
         dem_outlet_state sum, part, before;
