@@ -475,9 +475,10 @@
 
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
-   format (>>add-format), effect in the report (>>add-effect) or array with a value for each body
-   (>>add-array). docs/extending.md and its three sister pages walk through most of them, and
-   `make recipes` tests these pages. struct dem_world in >>layout says which part owns which data.
+   format (>>add-format), effect in the report (>>add-effect), array with a value for each body
+   (>>add-array), joint (>>add-joint) or option (>>add-option). docs/extending.md and its four
+   sister pages walk through most of them, and `make recipes` tests these pages. struct dem_world in
+   >>layout says which part owns which data.
 
    --- 15. Glossary ---
 
@@ -602,6 +603,13 @@ typedef DEM_REAL dem_real;
 #define DEM_INLINE static inline
 #endif
 
+/* The value of a desc whose members are all zero. */
+#ifdef __cplusplus
+#define DEM_ZERO {}
+#else
+#define DEM_ZERO {0}
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -692,7 +700,7 @@ typedef struct dem_body { uint32_t slot, generation; } dem_body;
 typedef struct dem_world dem_world;
 
 /* ---- choices: the constants of dem_world_desc ---- */
-/* The law of the normal force. delta: overlap, m; v: closing speed, m/s. */
+/* The law of the normal force. Here delta is the overlap, m, and v the closing speed, m/s. */
 typedef enum dem_normal_law {
     /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
     DEM_NORMAL_HERTZ = 0,
@@ -702,6 +710,15 @@ typedef enum dem_normal_law {
        attracts by at most kad delta. It needs no dashpot. */
     DEM_NORMAL_HYSTERETIC
 } dem_normal_law;
+#define DEM_LAW_COEFFICIENTS(X) \
+    X(stiffness_adhesion, kad, "N/m") \
+    /* the last */
+/* The list above has the coefficients that only one normal law uses: X(property, coefficient, unit
+   of the property). The property is a field of dem_material_desc and dem_pair, >= 0, and mixed by
+   the geometric mean. The coefficient is a field of dem_contact and dem_coefficients. It is 0 under
+   laws that do not use it. */
+#define DEM_PROPERTY_FIELD(PROPERTY, COEFFICIENT, UNIT) dem_real PROPERTY;
+#define DEM_COEFFICIENT_FIELD(PROPERTY, COEFFICIENT, UNIT) dem_real COEFFICIENT;
 
 /* The law of friction. Every law except DEM_TANGENT_NONE limits the force by Coulomb's law. */
 typedef enum dem_tangent_law {
@@ -817,7 +834,7 @@ typedef enum dem_cone {
     /* The convex relaxation of [TAS10]: a contact that slides at speed v opens by mu v dt. */
     DEM_CONE_CONVEX
 } dem_cone;
-/* The iterative solver for impulses (>>solvers). docs/impulses.md compares their convergence. */
+/* The iterative solver for impulses (>>solvers). The page docs/impulses.md compares them. */
 typedef enum dem_solver {
     /* one contact after another: robust, and needs the fewest sweeps; the default */
     DEM_SOLVER_GAUSS_SEIDEL = 0,
@@ -910,6 +927,9 @@ DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, 
 DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z -
     b.z); }
 DEM_INLINE dem_vec3 demi_scale(dem_vec3 a, dem_real s) { return demi_v(a.x*s, a.y*s, a.z*s); }
+DEM_INLINE dem_vec3 demi_product(dem_vec3 a, dem_vec3 b) {
+    return demi_v(a.x*b.x, a.y*b.y, a.z*b.z);
+}
 DEM_INLINE dem_real demi_dot(dem_vec3 a, dem_vec3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
 DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
     return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
@@ -962,7 +982,7 @@ typedef struct dem_contact {
     dem_real dt;             /* s, the time step. 0: leave the contact history unchanged */
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
-    dem_real kun, kad;       /* N/m, hysteretic law: unloading and adhesion; otherwise 0 */
+    dem_real kun;            /* N/m, unloading of the hysteretic law; otherwise 0 */
     dem_real friction, friction_static, rolling_friction;   /* of the pair of materials */
     dem_real sliding;        /* force->sliding of the last step; 0 when the contact begins */
     int32_t material_a, material_b; /* ids of materials */
@@ -970,6 +990,8 @@ typedef struct dem_contact {
     int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider of the world desc */
     dem_contact_who who;     /* zeros unless desc.law_who is 1 */
     void *user;              /* desc.law_user */
+    /* kad: coefficients of single laws */
+    DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)
 } dem_contact;
 
 /* The energies of one contact, J. Losses and work are those of the step. */
@@ -1378,11 +1400,11 @@ typedef struct dem_world_desc {
        periodic axis must be at least as long as four of the largest radii, two skins and two
        ranges of the law. */
     dem_box domain;
-    dem_boundary boundary[3];      /* of the axes x, y and z */
+    dem_boundary boundary[3];      /* of the faces on the axes x, y and z */
     /* 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0
-       and rotate about z only. gravity.z is ignored. */
+       and rotate about z only. The z component of gravity is ignored. */
     int planar;
-    dem_real thickness;            /* m, of discs and polygons along z; default 1 m */
+    dem_real thickness;            /* m, of discs and polygons along z; 0 means 1 m */
 
     /* -- contact laws, for DEM_RESPONSE_SPRINGS: see "choices" above -- */
     dem_normal_law normal_law;
@@ -1394,64 +1416,67 @@ typedef struct dem_world_desc {
     dem_convention convention;
 
     /* -- user-defined law -- */
-    dem_law_fn law;                /* replaces the normal, tangential and rolling law */
+    /* replaces the normal, tangential and rolling law; null means the laws above */
+    dem_law_fn law;
     void *law_user;                /* passed to law as c->user */
-    int law_memory;                /* reals of contact history per contact: 0 to 16 */
-    /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Default: memory0,
-       memory1, ... */
+    int law_memory;                /* reals of contact history per contact, 0 to 16 */
+    /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means
+       memory0, memory1 and so on. */
     const char *law_memory_names;
-    int law_vectors;               /* leading triples of them that are vectors: 0 to law_memory/3 */
+    int law_vectors;               /* leading triples of them that are vectors, 0 to law_memory/3 */
     /* N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the
        built-in law. */
     dem_real law_stiffness;
-    /* law_range: m, >= 0; law_range_radii: a factor, >= 0. law is also called for two bodies that
-       do not touch while their gap is below law_range + law_range_radii (Ra + Rb), with c->overlap
-       < 0. A wall counts with radius 0, an ellipsoid with its bounding sphere. Built-in laws that
-       it calls need overlap > 0. With both 0, law is called in contact only, at no extra cost. */
-    dem_real law_range, law_range_radii;
+    /* m, >= 0. law is also called for two bodies that do not touch while their gap is below
+       law_range + law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with radius 0, an
+       ellipsoid with its bounding sphere. Built-in laws that it calls need overlap > 0. 0 means no
+       range. With both 0, law is called in contact only, at no extra cost. */
+    dem_real law_range;
+    dem_real law_range_radii;      /* >= 0; see law_range; 0 means no such range */
     int law_who;                   /* 1 fills in c->who: ids, radii, masses, contact point, time */
     /* Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who
        and body_reals. It is called before the first step and at least once in eight steps. A given
-       dt above the stable limit is an error; a chosen dt is at most half of it. Null: these rates
-       do not limit dt. */
+       dt above the stable limit is an error; a chosen dt is at most half of it. Null means
+       that these rates do not limit dt. */
     dem_law_rate_fn law_rate;
 
     /* -- numbers on bodies -- */
     /* Names of numbers that every body and wall carries, such as "temperature charge": at most 8
        words of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With
-       law_who, law reads them and returns their rates (per s). Null: no numbers. */
+       law_who, law reads them and returns their rates (per s). Null means no numbers. */
     const char *body_reals;
-    /* Updates the numbers of a body after each step. Null: each grows by rate dt. Numbers of walls
-       stay as set; dem_wall_loads sums what they would gain. */
+    /* Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers
+       of walls stay as set; dem_wall_loads sums what they would gain. */
     dem_reals_fn body_reals_fn;
     void *body_reals_user;         /* passed to body_reals_fn */
 
     /* -- force fields; both may be given and add up -- */
-    dem_force_fn force;            /* force on a body */
-    dem_body_force_fn body_force;  /* force and torque on a body */
+    dem_force_fn force;            /* force on a body; null means none */
+    dem_body_force_fn body_force;  /* force and torque on a body; null means none */
     void *force_user;              /* passed to both */
 
     /* -- time stepping -- */
     dem_integrator integrator;
-    dem_real dt;                   /* s; 0 means chosen from the scene, see dem_step_advice_get */
+    /* s, the time step; 0 means chosen from the scene, see dem_step_advice_get */
+    dem_real dt;
     int allow_large_dt;            /* 1 allows dt above t_c/20, to show what happens then */
     /* m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness
-       from Young's modulus depend on it. If it is 0, the time step is for the largest speed
-       expected from grains, walls and height of fall, and the stiffness is for 1 m/s. */
+       from Young's modulus depend on it. 0 means the largest speed expected from grains, walls and
+       height of fall for the time step, and 1 m/s for the stiffness. */
     dem_real impact_speed;
 
     /* -- impulses -- */
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved; 0 means three times the distance that the fastest body moves in a step, or less
+       solved; if it is 0, three times the distance that the fastest body moves in a step, or less
        where a short period leaves no room, but always between 0.1 and 1 of the largest radius.
        The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
     dem_solver solver;
-    int sweeps;                    /* most sweeps over all contacts in a step; default 200 */
-    /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. Default: when
+    int sweeps;                    /* most sweeps over all contacts in a step; 0 means 200 */
+    /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when
        the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
        largest change is below 30 times that. */
     dem_real tolerance;
@@ -1467,23 +1492,18 @@ typedef struct dem_world_desc {
     dem_real skin;
 
     /* -- other shapes -- */
-    dem_rotation rotation;         /* of bodies that are not spheres */
+    dem_rotation rotation;
     dem_overlap ellipsoid_overlap;
     dem_cluster_contacts cluster_contacts;
     int orientations;              /* 1 follows the orientations of spheres too */
 
     /* -- running -- */
     int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
-    int threads;                   /* 1 to 64; 0 means as many as OpenMP offers, at most 64 */
-    dem_allocator allocator;       /* default malloc and free */
+    /* number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64 */
+    int threads;
+    dem_allocator allocator;       /* memory functions; 0 means malloc and free */
 } dem_world_desc;
-static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
-    {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
-    DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_ALLOWED,
-    DEM_LOAD_REPULSIVE, DEM_SLIDER_PARALLEL, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_INTEGRATOR_VELOCITY_VERLET, 0, 0, 0,
-    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_GAUSS_SEIDEL, 0, 0, 0, 0, DEM_SEARCH_AUTO, 0,
-    DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_CLUSTER_CONTACTS_MERGED, 0, 0, 0, {0, 0, 0}};
+static const dem_world_desc DEM_WORLD_DESC_ZERO = DEM_ZERO;
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
 /* Creates an empty world. Returns null if a value of desc is out of range or memory runs out;
@@ -1515,10 +1535,10 @@ typedef struct dem_material_desc {
     dem_real density;              /* kg/m3, required, > 0 */
     /* Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness */
     dem_real young;
-    dem_real poisson;              /* 0 <= nu < 0.5; 0 is a physical value */
-    /* Required, 0 < e <= 1: speed after a normal impact over speed before it. The hysteretic law
-       takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact
-       without adhesion. */
+    dem_real poisson;              /* >= 0 and < 0.5: nu; 0 is a physical value */
+    /* Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic
+       law takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a
+       contact without adhesion. */
     dem_real restitution;
     dem_real friction;             /* sliding friction mu, >= 0 */
     /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
@@ -1530,10 +1550,11 @@ typedef struct dem_material_desc {
     dem_real stiffness_ratio;      /* kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu) */
     /* N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness. */
     dem_real stiffness_unloading;
-    /* N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion */
-    dem_real stiffness_adhesion;
+    /* stiffness_adhesion: N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0
+       means no adhesion */
+    DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
 } dem_material_desc;
-static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_material_desc DEM_MATERIAL_DESC_ZERO = DEM_ZERO;
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
 
 /* Adds a material. A world holds at most 64. */
@@ -1558,9 +1579,10 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
      the given one if E* is unknown because a material has no young;
    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
-    dem_real young_eff;            /* E*, Pa */
-    dem_real shear_eff;            /* G*, Pa */
-    dem_real restitution, friction;
+    dem_real young_eff;            /* Pa, E* */
+    dem_real shear_eff;            /* Pa, G* */
+    dem_real restitution;          /* > 0 and <= 1: e */
+    dem_real friction;             /* sliding friction mu, >= 0 */
     /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
        materials leave it 0. */
     dem_real friction_static;
@@ -1569,12 +1591,10 @@ typedef struct dem_pair {
     dem_real stiffness;
     dem_real stiffness_ratio;      /* kt/kn, linear and hysteretic law */
     dem_real tangent_damping;      /* factor on the tangential dashpot, >= 0; mixed: 1 */
-    /* N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
-    dem_real stiffness_adhesion;
     /* N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
        restitution (linear) or none (hysteretic) */
     dem_real normal_damping;
-    /* The last three are for impulses only: 0 when mixed, and must be 0 with springs. */
+    /* The next three are for impulses only: 0 when mixed, and must be 0 with springs. */
     dem_real spinning_friction;    /* mu_spin, >= 0: moment about the normal up to mu_spin R* Fn */
     /* N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of
        the smaller radius. */
@@ -1582,6 +1602,8 @@ typedef struct dem_pair {
     /* m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable
        for any value; oscillations that the step does not resolve are damped. */
     dem_real compliance;
+    /* stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
+    DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
 } dem_pair;
 /* Writes the contact properties of two materials to pair. */
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
@@ -1594,9 +1616,10 @@ DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b
 typedef struct dem_coefficients {
     dem_real r_eff, m_eff;         /* m, kg: effective radius and mass */
     dem_real kn, cn, kt, ct;       /* see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v */
-    dem_real kun, kad;             /* N/m, hysteretic law; otherwise 0 */
+    dem_real kun;                  /* N/m, hysteretic law; otherwise 0 */
     dem_real damping_ratio;        /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
     dem_real contact_time;         /* s, at the impact speed; hysteretic law: [ALK07] eq 2.45 */
+    DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)                /* kad */
 } dem_coefficients;
 /* Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of
    material b. The impact speed is that of the desc, or 1 m/s if it is 0 there. */
@@ -1625,13 +1648,13 @@ typedef struct dem_region {
        no faces there and centres may be anywhere. */
     dem_box box;
     /* 'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis,
-       elliptic if the box is not square: centres then lie in an ellipse whose half axes are smaller
+       elliptic if the box is not square. Centres then lie in an ellipse whose half axes are smaller
        by the radius. 0 means the whole box. */
     int cylinder;
     dem_inside_fn inside;          /* restricts the region further; null means no restriction */
     void *user;                    /* passed to inside */
 } dem_region;
-static const dem_region DEM_REGION_ZERO = {{{0, 0, 0}, {0, 0, 0}}, 0, 0, 0};
+static const dem_region DEM_REGION_ZERO = DEM_ZERO;
 #define DEM_REGION DEM_REGION_ZERO
 /* Returns the region that is a whole box. */
 DEM_INLINE dem_region dem_region_make(dem_box box) {
@@ -1671,15 +1694,15 @@ enum { DEM_SIEVES = 32 };          /* largest number of sieves of a sieve curve 
 /* A size distribution, by radius. */
 typedef struct dem_sizes {
     dem_sizes_kind kind;
-    int by_count;                  /* 0: F is a fraction of the mass, 1: of the number */
-    /* m, 1e-15 <= min <= max < 1e15. Defaults for 0: log-normal, the median times exp(-6 spread)
-       and exp(6 spread); normal, 6 deviations from the median, min at least 1e-3 of the median;
-       sieve curve, its ends; Weibull and exponential, max where F = 1 - 1e-9. The others are
-       required: min of Weibull and exponential, both of uniform. */
+    int by_count;                  /* 1: F is a fraction of the number; 0 means of the mass */
+    /* m, 1e-15 <= min <= max < 1e15. 0 means the default of the kind. Log-normal: the median times
+       exp(-6 spread) and exp(6 spread); normal: 6 deviations from the median, min at least 1e-3 of
+       the median; sieve curve: its ends; Weibull and exponential: max where F = 1 - 1e-9. The
+       others are required: min of Weibull and exponential, both of uniform. */
     dem_real min, max;
     dem_real median;               /* m, log-normal and normal, > 0 */
     double spread;                 /* log-normal, > 0 and < 10: standard deviation of ln r */
-    dem_real scale;                /* m, Weibull > 0; exponential: the mean, > min */
+    dem_real scale;                /* m, > 0: of Weibull; exponential: the mean, > min */
     double modulus;                /* Weibull, > 0.05 and < 1000 */
     int count;                     /* number of sieves, 2 to 32 */
     dem_real radius[DEM_SIEVES];   /* m, half the apertures, > 0, ascending */
@@ -1688,7 +1711,7 @@ typedef struct dem_sizes {
     double passing[DEM_SIEVES];
     dem_real deviation;            /* m, normal, > 0: standard deviation */
 } dem_sizes;
-static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0};
+static const dem_sizes DEM_SIZES_ZERO = DEM_ZERO;
 #define DEM_SIZES DEM_SIZES_ZERO
 /* Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error. */
 DEM_API double dem_sizes_finer_get(dem_world *world, const dem_sizes *sizes, dem_real radius);
@@ -1798,12 +1821,12 @@ typedef enum dem_cluster_mass {
 } dem_cluster_mass;
 /* A rigid cluster of spheres, in a frame of your choice. */
 typedef struct dem_cluster_desc {
-    int count;                     /* spheres, required, 1 to 1000 */
-    const dem_real *positions;     /* count x 3, m, required */
-    const dem_real *radii;         /* count, m, > 0; null if all have `radius` */
-    dem_real radius;               /* m */
+    int count;                     /* required, 1 to 1000: number of spheres */
+    const dem_real *positions;     /* m, required: count x 3 */
+    const dem_real *radii;         /* m, > 0: one each; null means that all have `radius` */
+    dem_real radius;               /* m, of all spheres if radii is null */
     dem_cluster_mass mass;
-    /* DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; default 512. It is an error if
+    /* DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if
        rays are more than a quarter of the smallest radius apart. */
     int rays;
     /* The rest is for DEM_CLUSTER_GIVEN. */
@@ -1813,8 +1836,7 @@ typedef struct dem_cluster_desc {
        ones are elements of the tensor: xy is -(integral of x y). */
     dem_real inertia[6];
 } dem_cluster_desc;
-static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = {0, 0, 0, 0, DEM_CLUSTER_UNION, 0, 0,
-    {0, 0, 0}, {0, 0, 0, 0, 0, 0}};
+static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = DEM_ZERO;
 #define DEM_CLUSTER_DESC DEM_CLUSTER_DESC_ZERO
 /* Adds a cluster and computes its principal axes. Not in planar worlds. */
 DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
@@ -1931,15 +1953,16 @@ typedef struct dem_motion_row {
    called. */
 typedef struct dem_motion {
     dem_motion_kind kind;
-    dem_vec3 velocity;             /* m/s (translating); direction only (oscillating) */
-    /* m and direction: the axis of rotation, and the axis to which dem_wall_loads refers torques.
-       An axis of 0 means along z, except for rotating walls, which need one. */
+    dem_vec3 velocity;             /* m/s, of translating walls; of oscillating ones the
+                                      direction only */
+    /* m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques;
+       axis 0 means along z. Rotating walls need an axis. */
     dem_vec3 point, axis;
-    dem_real speed;                /* rad/s */
-    dem_real amplitude, frequency, phase;  /* m, Hz, rad */
+    dem_real speed;                /* rad/s, of rotating walls */
+    dem_real amplitude, frequency, phase;  /* m, Hz, rad: of oscillating walls */
     /* s. Until then rotating and translating walls are at rest. A time in the past means now. */
     double start;
-    dem_motion_fn function;        /* DEM_MOTION_USER */
+    dem_motion_fn function;        /* what DEM_MOTION_USER calls */
     void *user;                    /* passed to function */
     /* s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3,
        u = (time - start)/ramp, to its full value. 0 means at once. */
@@ -1952,8 +1975,7 @@ typedef struct dem_motion {
     const dem_motion_row *table;
     int table_count, table_repeats;
 } dem_motion;
-static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0,
-                                           0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_motion DEM_MOTION_ZERO = DEM_ZERO;
 #define DEM_MOTION DEM_MOTION_ZERO
 
 /* How the segments of a profile share the force of a grain that touches several. */
@@ -2030,26 +2052,25 @@ typedef struct dem_sieve_desc {
     dem_sieve_kind kind;           /* required */
     dem_vec3 point;                /* m, centre of a hole, at half the thickness */
     dem_vec3 normal;               /* across the sieve; 0 means along z */
-    /* Direction of the rows of holes. If it is 0 or within 0.001 rad of the normal: along x, or y
-       if x is near the normal. */
+    /* Direction of the rows of holes; 0 means along x, or y if x is near the normal. The same holds
+       for a direction within 0.001 rad of the normal. */
     dem_vec3 along;
     dem_real aperture;             /* m, required, > 0: clear width, side or diameter of a hole */
     dem_real bar;                  /* m, required, > 0: wire diameter, or width between two holes */
     dem_real length;               /* m, of slots, >= aperture; 0 means infinite */
     dem_real thickness;            /* m, of plates; 0 means a sheet with sharp rims */
-    /* m, between the axes of the two layers of wires: 0 puts them in one plane, `bar` one on the
-       other. Real wires wind between the two. */
+    /* m, between the axes of the two layers of wires; 0 means one plane. `bar` puts one layer on
+       the other; real wires wind between the two. */
     dem_real lift;
     int staggered;                 /* 1 puts round holes in a triangular pattern */
     dem_real radius;               /* m, of the disc; 0 means an infinite sieve */
-    /* Reduced holes. A sphere smaller than the hole falls if its centre is within (1 - clearance) b
-       of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or
-       aperture/2 (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end. */
+    /* Rule of reduced holes. A sphere smaller than the hole falls if its centre is within (1 -
+       clearance) b of the middle of the hole in both directions: b = aperture/2 - radius (model 0
+       or 1) or aperture/2 (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end. */
     int model;
     dem_real clearance;            /* reduced holes: 0 open, 1 closed; zeta of [ALK07] */
 } dem_sieve_desc;
-static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
-                                                   0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = DEM_ZERO;
 #define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
 /* Adds a sieve. */
 DEM_API dem_wall dem_wall_sieve_add(dem_world *world, dem_material material,
@@ -2100,8 +2121,10 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
    are joined have no contact with each other unless `collide` is 1. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
-    DEM_JOINT_POINT,               /* a ball joint: keeps `point` of both together */
-    DEM_JOINT_REVOLUTE             /* a hinge or axle: keeps `axis` of both together too */
+    /* a ball joint: keeps `point` of both together */
+    DEM_JOINT_POINT,
+    /* a hinge or axle: keeps `axis` of both together too */
+    DEM_JOINT_REVOLUTE
 } dem_joint_kind;
 /* The motor of a revolute joint. */
 typedef enum dem_motor {
@@ -2110,10 +2133,10 @@ typedef enum dem_motor {
     DEM_MOTOR_TORQUE               /* exerts `torque` on a, and the opposite on b */
 } dem_motor;
 typedef struct dem_joint { int32_t id; } dem_joint;                          /* id counts from 1 */
-/* A joint. point and axis refer to the present poses of the bodies. */
+/* A joint. Its point and axis refer to the present poses of the bodies. */
 typedef struct dem_joint_desc {
-    dem_joint_kind kind;           /* required */
-    dem_motor motor;               /* of a revolute joint */
+    dem_joint_kind kind;           /* required: how the two are joined */
+    dem_motor motor;
     dem_body a, b;                 /* a is required; b null means `wall`, or space */
     dem_wall wall;                 /* if b is null: moves with it; null means space, at rest */
     int collide;                   /* 1: the two bodies may touch each other */
@@ -2121,12 +2144,11 @@ typedef struct dem_joint_desc {
     dem_vec3 axis;                 /* of a revolute joint, not 0; planar worlds: along z */
     /* rad/s, of a against b about axis, right-handed; at most 1e12 in size */
     dem_real speed;
-    /* N m, on a about axis; at most 1e12 in size. For DEM_MOTOR_SPEED the limit, >= 0, where 0
+    /* N m, on a about axis; at most 1e12 in size. DEM_MOTOR_SPEED: the largest torque, >= 0; 0
        means no limit. */
     dem_real torque;
 } dem_joint_desc;
-static const dem_joint_desc DEM_JOINT_DESC_ZERO = {DEM_JOINT_NONE, DEM_MOTOR_NONE, {0, 0}, {0, 0},
-                                                   {0}, 0, {0, 0, 0}, {0, 0, 0}, 0, 0};
+static const dem_joint_desc DEM_JOINT_DESC_ZERO = DEM_ZERO;
 #define DEM_JOINT_DESC DEM_JOINT_DESC_ZERO
 /* The state of a joint. */
 typedef struct dem_joint_state {
@@ -2170,13 +2192,14 @@ typedef struct dem_feed_desc {
     double amount[DEM_CLASSES];
     int limited;                   /* 1: the feed ends after `amount`, drawn without replacement */
     int by_mass;                   /* 1: amount and rate are in kg and kg/s instead of grains */
-    double rate;                   /* grains/s; 0 means all as room permits, and needs limited */
-    /* s, time of the world. A feed that is added later catches up with what was due since start.
-       end 0 means no end. */
-    double start, end;
+    /* 1/s, grains due; 0 means all as room permits, and needs limited */
+    double rate;
+    /* s, time of the world. A feed that is added later catches up with what was due since start. */
+    double start;
+    double end;                    /* s, 0 or >= start; 0 means no end */
     dem_box box;                   /* m, required: centres lie inside (dem_region: whole bodies) */
     int round;                     /* 1: only the vertical elliptic cylinder inscribed in the box */
-    dem_vec3 velocity;             /* m/s */
+    dem_vec3 velocity;             /* m/s, of new grains */
     dem_real spread;               /* m/s, largest random change of each component of velocity */
     uint64_t seed;                 /* of random positions, sizes and velocities */
     dem_inside_fn inside;          /* restricts the box further, as in dem_region */
@@ -2187,9 +2210,7 @@ typedef struct dem_feed_desc {
     dem_shape shapes[DEM_CLASSES];
     const dem_sizes *sizes[DEM_CLASSES];
 } dem_feed_desc;
-static const dem_feed_desc DEM_FEED_DESC_ZERO = {{0}, 0, {0}, {0}, 0, 0, 0, 0, 0,
-                                                 {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0,
-                                                 {{0}}, {{0}}, {0}};
+static const dem_feed_desc DEM_FEED_DESC_ZERO = DEM_ZERO;
 #define DEM_FEED_DESC DEM_FEED_DESC_ZERO
 /* The state of a feed. */
 typedef struct dem_feed_state {
@@ -2211,18 +2232,17 @@ DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_
    With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge
    through a plane is what enters the box behind it. */
 typedef struct dem_outlet_desc {
-    dem_wall frame;                /* the region moves with this wall; null means it is at rest */
+    dem_wall frame;                /* the region moves with this wall; null means at rest */
     /* m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0) */
     dem_box box;
     dem_real beyond;               /* m: only grains this far or farther from the frame's z axis */
-    dem_real wanted_min, wanted_max;  /* m, radii meant to leave here; max 0: no limit */
-    int class_count;               /* 0 to 16 size classes to count in */
+    dem_real wanted_min, wanted_max;  /* m, radii meant to leave here; max 0 means no limit */
+    int class_count;               /* size classes to count in, 0 to 16 */
     dem_real radius[DEM_CLASSES];  /* m, ascending; a grain counts in the nearest class */
     dem_material material;         /* only grains of this material; id 0 means all */
     int keep;                      /* 1: grains stay and are only counted; at most 16 such */
 } dem_outlet_desc;
-static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = {{0}, {{0, 0, 0}, {0, 0, 0}}, 0, 0, 0, 0, {0},
-                                                     {0}, 0};
+static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
 /* The counts of an outlet: grains that were removed or, with `keep`, that entered. */
 typedef struct dem_outlet_state {
@@ -2472,28 +2492,27 @@ typedef struct dem_observable {
 } dem_observable;
 /* How dem_trials_run works. Begin with DEM_TRIALS_DESC. */
 typedef struct dem_trials_desc {
-    /* s, > 0, simulated by each run, at least 64 steps. Observables are averaged over its second
-       half. */
+    /* s, required, > 0: simulated by each run, at least 64 steps. Observables are averaged over its
+       second half. */
     double duration;
-    /* s of wall time for all trials, estimated from some steps of the scene; 0: 60. If it is too
-       short, the runs simulate less. */
+    /* s, wall time of all trials, estimated from some steps of the scene; 0 means 60 s. If it is
+       too short, the runs simulate less. */
     double budget;
-    double tolerance;              /* allowed deviation of an observable over its scale; 0: 0.02 */
-    /* runs per trial, which start from positions that differ by at most 1e-6 of a radius; 2 to 16;
-       0: 3 */
+    double tolerance;              /* allowed deviation of an observable/its scale; 0 means 0.02 */
+    /* 0 to 16, not 1: runs per trial, which start from positions that differ by at most 1e-6 of a
+       radius; 0 means 3 */
     int seeds;
-    /* 0: three observables. height, scaled by its value above the lowest grain; kinetic, scaled by
-       the present energy plus that of a fall of all grains by their radius; contacts. */
+    /* observables to compare; 0 means three. These are height, scaled by its value above the
+       lowest grain; kinetic, scaled by the present energy plus that of a fall of all grains by
+       their radius; contacts. */
     int observable_count;
     dem_observable observables[DEM_OBSERVABLES];
-    /* called with the original world after each trial; a non-zero return value ends the call with
-       DEM_ERROR_STOPPED; or null */
+    /* called with the original world after each trial; null means no call. A non-zero return value
+       ends dem_trials_run with DEM_ERROR_STOPPED. */
     dem_progress_fn progress;
     void *user;                    /* passed to `progress`; or null */
 } dem_trials_desc;
-static const dem_trials_desc DEM_TRIALS_DESC_ZERO = {0, 0, 0, 0, 0,
-    {{0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0},
-     {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}}, 0, 0};
+static const dem_trials_desc DEM_TRIALS_DESC_ZERO = DEM_ZERO;
 #define DEM_TRIALS_DESC DEM_TRIALS_DESC_ZERO
 /* The result of one trial. */
 typedef struct dem_trial {
@@ -2578,20 +2597,19 @@ DEM_API dem_result dem_candidates_rebuild(dem_world *world);
    than grains need a long window; or it is spread about its centre by coarse graining (width).
    Begin with DEM_FIELD_DESC. */
 typedef struct dem_field_desc {
-    dem_box box;              /* m */
-    int cells[3];             /* >= 1 each, at most 2^28 in all */
-    double start, end;        /* s, window of time; end = 0: no end */
-    double interval;          /* s between samples; 0: every 100 steps */
-    dem_material material;    /* only grains of this material; id 0: all grains */
-    dem_real radius_min, radius_max;  /* m, only grains of these (bounding) radii; max 0: any */
+    dem_box box;              /* m, required: what the cells divide */
+    int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
+    double start, end;        /* s, window of time; end 0 means no end */
+    double interval;          /* s, between samples; 0 means every 100 steps */
+    dem_material material;    /* only grains of this material; id 0 means all grains */
+    dem_real radius_min, radius_max;  /* m, only of these (bounding) radii; max 0 means any */
     int stress;               /* 1: also flux, stress and contacts; visits every contact */
-    /* m, 0: no coarse graining. Otherwise each grain is spread by Lucy's function of reach
+    /* m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach
        c = 2 width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
 } dem_field_desc;
-static const dem_field_desc DEM_FIELD_DESC_ZERO = {{{0, 0, 0}, {0, 0, 0}}, {0, 0, 0}, 0, 0, 0, {0},
-                                                   0, 0, 0, 0};
+static const dem_field_desc DEM_FIELD_DESC_ZERO = DEM_ZERO;
 #define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO
 /* Adds a field, and returns its id. Steps sample it from then on. */
 DEM_API dem_field dem_field_add(dem_world *world, const dem_field_desc *desc);
@@ -2832,21 +2850,23 @@ typedef struct dem_replay dem_replay;
 enum { DEM_REPLAY_VALUES = 16 };
 /* How a replay is recorded. Begin with DEM_REPLAY_DESC. */
 typedef struct dem_replay_desc {
-    const char *title;          /* copied; or null: the name of the file */
-    /* what grains can be coloured by: a name in desc.body_reals (or null: the first), or a name for
-       the values of number_fn (or null: "number"); copied, at most 63 characters */
+    const char *title;          /* copied; null means the name of the file */
+    /* Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the
+       values of number_fn. Null means the first name, or "number". Copied, at most 63 characters.
+       */
     const char *number;
-    /* returns the number of a body, for every frame; or null */
+    /* returns the number of a body, for every frame; null means one of desc.body_reals */
     double (*number_fn)(const dem_world *world, dem_body body, void *user);
     void *user;                 /* passed to number_fn; or null */
-    /* m, >= 0, of positions; 0: 1/32 of the smallest radius in the first frame */
+    /* m, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame */
     dem_real resolution;
     /* s, >= 0: a run writes frames automatically, the first when it begins and then at the steps
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
-       run: dem_replay_close returns the error. 0: only dem_replay_frame_write writes frames. */
+       run: dem_replay_close returns the error. 0 means frames only from
+       dem_replay_frame_write. */
     double interval;
 } dem_replay_desc;
-static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0, 0};
+static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
 #define DEM_REPLAY_DESC DEM_REPLAY_DESC_ZERO
 /* Opens a replay of the world. desc: or null, for DEM_REPLAY_DESC. Close the replay before its
    world is destroyed. */
@@ -2895,16 +2915,16 @@ typedef enum dem_output_kind {
 /* How an output works. Begin with DEM_OUTPUT_DESC. */
 typedef struct dem_output_desc {
     dem_output_kind kind;
-    /* Copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at `start`.
-       Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL:
-       or null. */
+    /* Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is
+       0 at `start`. Without # the file is replaced each time. The path of a CSV file has no #.
+       DEM_OUTPUT_CALL: or null. */
     const char *path;
     double interval;         /* s, required, 1e-12 to 1e15 */
-    double start, end;       /* s, times of the world: the first and the last; end = 0: no last */
-    /* CSV, one of three: the loads of this wall, as dem_wall_loads_csv_write; or the values that
-       `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or,
-       if all three are zero, steps, bodies, contacts, kinetic and rotational energy (J) and
-       overlap_max */
+    double start, end;       /* s, times of the first and the last; end 0 means no last */
+    /* CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write;
+       or the values that `values` writes, with `columns` as their names (1 to 32 words as in
+       body_reals, copied); or, if all three are zero, steps, bodies, contacts, kinetic and
+       rotational energy (J) and overlap_max */
     dem_wall wall;
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
@@ -2913,7 +2933,7 @@ typedef struct dem_output_desc {
     int (*function)(dem_world *world, int64_t number, void *user);
     void *user;              /* passed to `values` and `function`; or null */
 } dem_output_desc;
-static const dem_output_desc DEM_OUTPUT_DESC_ZERO = {DEM_OUTPUT_CALL, 0, 0, 0, 0, {0}, 0, 0, 0, 0};
+static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
 /* Adds an output that a run writes automatically, at the steps nearest to start, start + interval
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
@@ -2957,18 +2977,18 @@ typedef struct dem_transport {
 /* How a scene is divided. Begin with DEM_SLABS_DESC. */
 typedef struct dem_slabs_desc {
     int axis;                  /* 0, 1, 2: borders are planes x, y, z = const */
-    /* number of slabs in all processes, required, 1 to 1024; only runs with the same number have
+    /* required, 1 to 1024: number of slabs in all processes; only runs with the same number have
        the same bits */
     int count;
-    /* this process holds the slabs first to first + local - 1; local = 0: all */
+    /* this process holds the slabs first to first + local - 1; local 0 means all */
     int first, local;
     dem_transport transport;   /* required if another process holds slabs */
-    /* borders move if the work of the busiest slab exceeds this many times the mean; >= 1; 0: 1.1;
-       < 0: borders do not move */
+    /* borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means
+       1.1. Below 0 borders do not move. */
     dem_real balance;
-    int balance_interval;      /* rebuilds between two checks of the balance; 0: 8 */
+    int balance_interval;      /* rebuilds between two checks of the balance; 0 means 8 */
 } dem_slabs_desc;
-static const dem_slabs_desc DEM_SLABS_DESC_ZERO = {0, 0, 0, 0, {0, 0, 0}, 0, 0};
+static const dem_slabs_desc DEM_SLABS_DESC_ZERO = DEM_ZERO;
 #define DEM_SLABS_DESC DEM_SLABS_DESC_ZERO
 
 /* The slabs that one process holds. */
@@ -3496,9 +3516,10 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 1, DEMI_SOME = 16, DE
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
 /* Coefficients of one contact, as the built-in laws need them. */
+#define DEMI_COEF_CONSTANT(PROPERTY, COEFFICIENT, UNIT) DEMI_COEF_##COEFFICIENT,
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
-      DEMI_K_UN, DEMI_K_AD,                     /* hysteretic law: unloading, adhesion */
-      DEMI_COEFS };
+      DEMI_K_UN,                                /* hysteretic law: unloading */
+      DEM_LAW_COEFFICIENTS(DEMI_COEF_CONSTANT) DEMI_COEFS };
 
 /* Every allocation of a world is linked into one of two lists ("chains", see demi_hold): data of
    the scene that survive a restart (materials, shapes, geometry of walls), and work arrays of a
@@ -4739,6 +4760,8 @@ enum { DEMI_ANY = 1, DEMI_FROM = 2, DEMI_OVER = 4, DEMI_LIMITS = 7, DEMI_UNDER =
 enum { DEMI_TO_SLAB = 32, DEMI_TO_HEAD = 64, DEMI_HEADS = 128, DEMI_FIRSTS = 256,
        DEMI_SUM = 512, DEMI_LARGEST = 1024, DEMI_EITHER = 2048,
        DEMI_DEALT = DEMI_TO_SLAB | DEMI_TO_HEAD | DEMI_HEADS };
+/* dem_world_report prints this field of a dem_world_desc if it is not 0. */
+enum { DEMI_PRINTED = 1 << 20 };
 /* Returned by `zero`: the limits decide whether the field may be 0; it may be 0; it must be 0. */
 enum { DEMI_0_NOT, DEMI_0_TOO, DEMI_0_ALONE };
 /* One field. type: 'i' int, 'e' enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double,
@@ -4939,7 +4962,8 @@ static const demi_field_row demi_outlet_state_rows[] = {
 
 /* --- the desc of a world. It is checked before there is a world that could hold a message, so each
        limit has its message here. Laws, integrator, search, cone, solver and what depends on other
-       fields: see dem_world_create_error_get. --- */
+       fields: see dem_world_create_error_get. >>add-option: a field, a row, the code that reads
+       the field. --- */
 #define DEMI_ROW_OF(field, type) DEMI_ROW(dem_world_desc, field, type)
 #define DEMI_ROW_SAID(field, type, how, most, text) {#field, 0, DEMI_WHERE(dem_world_desc, field), \
     type, 0, how, most, "", 0, 0, 0, "dem_world_create: " text}
@@ -4975,10 +4999,12 @@ static const demi_field_row demi_world_desc_rows[] = {
                   "symplectic_euler position_verlet leapfrog"), DEMI_ROW_OF(dt, 'r'),
     DEMI_ROW_SAID(impact_speed, 'r', DEMI_FROM, DEMI_FARTHEST, "impact_speed must be 0 to 1e15 "
                   "m/s"), DEMI_ROW_ENUM(dem_world_desc, cone, 0, 0, "coulomb convex"),
-    DEMI_ROW_ENUM(dem_world_desc, solver, 0, 0, "gauss_seidel jacobi apgd spectral"),
-    DEMI_ROW_SAID(sweeps, 'i', DEMI_FROM, INT_MAX, "sweeps must be >= 0; 0 means 200"),
-    DEMI_ROW_SAID(tolerance, 'r', DEMI_FROM, DBL_MAX, "tolerance (m/s) must be finite and >= 0; 0 "
-                  "lets the library choose"), DEMI_ROW_OF(cold_start, 'i'),
+    DEMI_ROW_ENUM(dem_world_desc, solver, DEMI_PRINTED, 0, "gauss_seidel jacobi apgd spectral"),
+    DEMI_ROW_SAID(sweeps, 'i', DEMI_FROM | DEMI_PRINTED, INT_MAX,
+                  "sweeps must be >= 0; 0 means 200"),
+    DEMI_ROW_SAID(tolerance, 'r', DEMI_FROM | DEMI_PRINTED, DBL_MAX, "tolerance (m/s) must be "
+                  "finite and >= 0; 0 lets the library choose"),
+    DEMI_LIMITED(dem_world_desc, cold_start, 'i', DEMI_PRINTED, INT_MAX, ""),
     DEMI_ROW_ENUM(dem_world_desc, search, 0, 0, "auto all_pairs grid linked_list hierarchical "
                   "bins"), DEMI_ROW_SAID(skin, 'r', DEMI_ANY, DBL_MAX, "skin is not finite; 0 lets "
                   "the library choose, below 0 means no skin"),
@@ -5022,7 +5048,11 @@ typedef struct demi_scales {
     double E, G, R, M, beta, speed;
     const dem_pair *pair;
 } demi_scales;
-typedef struct demi_coefs { double kn, cn, kt, ct, kun, kad, cn_root, ct_root; } demi_coefs;
+#define DEMI_COEF_DOUBLE(PROPERTY, COEFFICIENT, UNIT) double COEFFICIENT;
+typedef struct demi_coefs {
+    double kn, cn, kt, ct, kun, cn_root, ct_root;
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_DOUBLE)
+} demi_coefs;
 /* F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E* sqrt(R*)
    m*),  kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)
    [TSU92, MIL] */
@@ -5232,6 +5262,7 @@ static int demi_zero_unloading(const dem_world *w, const void *item, const demi_
     DEMI_LIMITED_IF(DEMI_OF, field, 'r', how, most, unit, words, other, kinds, zero)
 #define DEMI_STATIC DEMI_ROW_IF(friction_static, DEMI_FROM, DEMI_MOST_RATIO, "", \
     "where the default is 0 (the same as the sliding friction)", 1, 0, 0)
+#define DEMI_PROPERTY_ROW(PROPERTY, COEFFICIENT, UNIT) DEMI_SI(PROPERTY, DEMI_FROM, UNIT),
 #define DEMI_OF dem_material_desc
 static const demi_field_row demi_material_rows[] = {
     DEMI_SI(density, DEMI_OVER, "kg/m3"),
@@ -5241,7 +5272,7 @@ static const demi_field_row demi_material_rows[] = {
     DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio),
     DEMI_ROW_IF(stiffness_unloading, DEMI_FROM, DEMI_MOST, "N/m", "which must then be set", 2, 0,
-                demi_zero_unloading), DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_ROW_END};
+                demi_zero_unloading), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
 #undef DEMI_OF
 #define DEMI_OF dem_pair
 #define DEMI_IMPULSES_ALONE(field, unit) DEMI_ROW_IF(field, DEMI_FROM, DEMI_MOST, unit, \
@@ -5252,9 +5283,10 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_ROW_IF(restitution, DEMI_OVER, 1, "", 0, 0, 0, demi_zero_law),
     DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
-    DEMI_SI(stiffness_adhesion, DEMI_FROM, "N/m"), DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
+    DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
     DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
-    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEMI_ROW_END};
+    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
+#undef DEMI_OF
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
     if (demi_rows_check(w, call, demi_material_rows, d, "", "set it in the desc before the call"))
@@ -5269,6 +5301,8 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     return DEM_OK;
 }
 
+#define DEMI_PROPERTY_MIX(PROPERTY, COEFFICIENT, UNIT) \
+    p.PROPERTY = (dem_real)sqrt((double)a->PROPERTY*(double)b->PROPERTY);
 /* Returns the properties of a pair of materials: moduli from compliances in series, as in Hertz's
    theory, springs in series for stiffnesses, geometric means for the rest. */
 static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
@@ -5288,8 +5322,7 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     p.friction_static = sticks ? (dem_real)sqrt(sa*sb) : 0;   /* 0: as sliding friction */
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
-    p.stiffness_adhesion =
-        (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
+    DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_MIX)
     /* twice the springs in series, so that equal materials give their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
         p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
@@ -5446,6 +5479,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     return DEM_OK;
 }
 
+#define DEMI_COEF_PUT(PROPERTY, COEFFICIENT, UNIT) \
+    out[DEMI_COEF_##COEFFICIENT] = (dem_real)k.COEFFICIENT;
 /* Computes the coefficients of a contact of materials a and b: those of the normal law (>>laws) and
    those that all laws share. cn and ct lack the part that is proportional to sqrt(m*); root[0] (cn)
    and root[1] (ct) receive its factors, per sqrt(kg). r_eff: m, the standard R*; stiff: kg, the
@@ -5457,8 +5492,9 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, stiff, 0, 1, p};
-    demi_coefs k = {0, 0, 0, 0, 0, 0, 0, 0};
+    demi_coefs k;
     double half = 1;
+    memset(&k, 0, sizeof k);
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
     if (mill) {  /* moduli of material b, of the wall or the grain */
@@ -5477,13 +5513,32 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     k.ct_root *= (double)p->tangent_damping;
     out[DEMI_KN] = (dem_real)k.kn; out[DEMI_CN] = (dem_real)k.cn;
     out[DEMI_KT] = (dem_real)k.kt; out[DEMI_CT] = (dem_real)k.ct;
-    out[DEMI_K_UN] = (dem_real)k.kun; out[DEMI_K_AD] = (dem_real)k.kad;
+    out[DEMI_K_UN] = (dem_real)k.kun;
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_PUT)
     out[DEMI_MU] = p->friction;
     out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
     root[0] = (dem_real)(half*k.cn_root);
     root[1] = (dem_real)(half*k.ct_root);
+}
+#define DEMI_COEF_USED(PROPERTY, COEFFICIENT, UNIT) used |= (k.COEFFICIENT > 0) << \
+    DEMI_COEF_##COEFFICIENT;
+/* Returns the bits of the coefficients, from DEMI_K_UN on, that the normal law in force uses: those
+   that are not 0 if everything that they may depend on is 1. */
+static int demi_law_own(const dem_world *w) {
+    dem_pair p;
+    const demi_scales s = {1, 1, 1, 1, 1, 1, &p};
+    const dem_real one = 1;
+    demi_coefs k;
+    size_t i;
+    int used;
+    for (i = 0; i < sizeof p; i += sizeof one) memcpy((char *)&p + i, &one, sizeof one);
+    memset(&k, 0, sizeof k);
+    demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
+    used = (k.kun > 0) << DEMI_K_UN;
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_USED)
+    return used;
 }
 /* The same with complete cn and ct. m_eff: kg, the standard m*. */
 static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
@@ -5539,6 +5594,7 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
     return bad;
 }
 
+#define DEMI_COEF_GET(PROPERTY, COEFFICIENT, UNIT) out->COEFFICIENT = coef[DEMI_COEF_##COEFFICIENT];
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out) {
@@ -5560,7 +5616,8 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
-    out->kun = coef[DEMI_K_UN]; out->kad = coef[DEMI_K_AD];
+    out->kun = coef[DEMI_K_UN];
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_GET)
     out->damping_ratio = (dem_real)w->pairs[i*DEMI_MATERIALS + j].damping;
     out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
                                                     ? (double)w->desc.impact_speed : 1);
@@ -5570,12 +5627,29 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     return DEM_OK;
 }
 
+/* A column for a coefficient of a single law that some pair has. */
+#define DEMI_PROPERTY_HEAD(PROPERTY, COEFFICIENT, UNIT) \
+    if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
+        fprintf(out, "  " #PROPERTY " [" UNIT "]");
+#define DEMI_PROPERTY_PRINT(PROPERTY, COEFFICIENT, UNIT) \
+    if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
+        fprintf(out, "  %-*.4g", (int)sizeof #PROPERTY " [" UNIT "]" - 1, (double)p->PROPERTY);
+static int demi_pairs_have(const dem_world *w, size_t offset) {
+    const int n = w->material_count;
+    dem_real x = 0;
+    int k;
+    for (k = 0; k < n*n && !(x > 0); k++)
+        memcpy(&x, (const char *)&w->pairs[k/n*DEMI_MATERIALS + k%n].given + offset, sizeof x);
+    return x > 0;
+}
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
     const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn%s\n", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
+            "kt/kn%s", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
+    DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_HEAD)
+    fprintf(out, "\n");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
@@ -5589,6 +5663,7 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
             if (!laws)
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
+            DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_PRINT)
             fprintf(out, "\n");
         }
 }
@@ -5711,7 +5786,7 @@ typedef struct demi_shape_row {
     dem_real (*thin)(const demi_part *p);               /* m, smallest radius */
     double (*equal)(const demi_part *p);                /* m, radius of the sphere of its volume */
     double (*curve)(const demi_part *p, double h);      /* m, radius of curvature at height h */
-    dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes drawn in output files */
+    dem_vec3 (*drawn)(const demi_part *p, dem_vec3 u);  /* m, point of the drawn surface along u */
     dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
     const char *touch;             /* functions for contacts with other kinds, see demi_listed */
 } demi_shape_row;
@@ -5720,7 +5795,7 @@ typedef struct demi_shape_row {
     static dem_real demi_##NAME##_thin(const demi_part *p); \
     static double demi_##NAME##_equal(const demi_part *p); \
     static double demi_##NAME##_curve(const demi_part *p, double h); \
-    static dem_vec3 demi_##NAME##_drawn(const demi_part *p); \
+    static dem_vec3 demi_##NAME##_drawn(const demi_part *p, dem_vec3 u); \
     static dem_real GAP(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
 DEMI_SHAPES(DEMI_SHAPE_DECLARE)
 #define DEMI_SHAPE_ROW(KIND, NAME, WORD, GAP, TOUCH) \
@@ -6399,11 +6474,9 @@ static dem_real demi_ball_support(const demi_shape *s, dem_vec3 n) { (void)n; re
 static dem_real demi_ball_thin(const demi_part *p) { return p->radius; }
 static double demi_ball_equal(const demi_part *p) { return (double)p->radius; }
 static double demi_ball_curve(const demi_part *p, double h) { (void)h; return (double)p->radius; }
-static dem_vec3 demi_ball_drawn(const demi_part *p) {
-    return demi_v(p->radius, p->radius, p->radius);
-}
+static dem_vec3 demi_ball_drawn(const demi_part *p, dem_vec3 u) { return demi_scale(u, p->radius); }
 static dem_real demi_ellipsoid_support(const demi_shape *s, dem_vec3 n) {
-    return demi_length(demi_v(n.x*s->axes.x, n.y*s->axes.y, n.z*s->axes.z));
+    return demi_length(demi_product(n, s->axes));
 }
 static dem_real demi_ellipsoid_thin(const demi_part *p) {
     return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
@@ -6415,7 +6488,9 @@ static double demi_ellipsoid_equal(const demi_part *p) {
 static double demi_ellipsoid_curve(const demi_part *p, double h) {
     return (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
 }
-static dem_vec3 demi_ellipsoid_drawn(const demi_part *p) { return p->axes; }
+static dem_vec3 demi_ellipsoid_drawn(const demi_part *p, dem_vec3 u) {
+    return demi_product(p->axes, u);
+}
 static dem_real demi_part_thin(const demi_part *p) { return demi_shape_rows[p->kind].thin(p); }
 static double demi_part_equal(const demi_part *p) { return demi_shape_rows[p->kind].equal(p); }
 /* Returns the radius for the stiffness of a contact, m. A stiffness that changes while the two roll
@@ -7454,9 +7529,9 @@ static double demi_polyhedron_curve(const demi_part *p, double h) {
     (void)h;
     return demi_polyhedron_equal(p);
 }
-/* Returns the semi-axes of the ellipsoid with the same moments of inertia, m. */
-static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
-    return demi_scale(demi_shape_alike(p->shape), p->scale);
+/* The ellipsoid with the same moments of inertia. */
+static dem_vec3 demi_polyhedron_drawn(const demi_part *p, dem_vec3 u) {
+    return demi_product(demi_scale(demi_shape_alike(p->shape), p->scale), u);
 }
 /* Extent of a part from its centre along n (unit), m. */
 static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
@@ -10409,13 +10484,20 @@ static int demi_pose_sane(const dem_pose *p) {
         ok = ok && demi_finite(p->rotation[i]) && DEMI_ABS(p->rotation[i]) <= 2;
     return ok;
 }
-/* True if the numbers of a motion are finite and in range. */
-static int demi_motion_sane(const dem_motion *m) {
-    return demi_place(m->velocity) && demi_place(m->point) && demi_place(m->axis) &&
-        demi_bounded((double)m->speed) && demi_bounded((double)m->amplitude) &&
-        demi_bounded((double)m->frequency) && demi_bounded((double)m->phase) &&
-        demi_bounded(m->start) && demi_bounded(m->ramp) && m->ramp >= 0;
-}
+/* Numbers of a motion, in the order in which a checkpoint has them, then what is not a number. */
+#define DEMI_MOVED(field, type, how, unit) \
+    DEMI_LIMITED(dem_motion, field, type, how, DEMI_FARTHEST, unit)
+static const demi_field_row demi_motion_rows[] = {
+    DEMI_ROW_ENUM(dem_motion, kind, DEMI_FROM, 0,
+                  "fixed translating rotating oscillating user table"),
+    DEMI_MOVED(velocity, 'v', DEMI_ANY, "m/s"), DEMI_MOVED(point, 'v', DEMI_ANY, "m"),
+    DEMI_MOVED(axis, 'v', DEMI_ANY, ""), DEMI_MOVED(speed, 'r', DEMI_ANY, "rad/s"),
+    DEMI_MOVED(amplitude, 'r', DEMI_ANY, "m"), DEMI_MOVED(frequency, 'r', DEMI_ANY, "Hz"),
+    DEMI_MOVED(phase, 'r', DEMI_ANY, "rad"), DEMI_MOVED(start, 'd', DEMI_ANY, "s"),
+    DEMI_MOVED(ramp, 'd', DEMI_FROM, "s"), DEMI_ROW_FREE(dem_motion, function),
+    DEMI_ROW_FREE(dem_motion, user), DEMI_ROW_FREE(dem_motion, table),
+    DEMI_ROW(dem_motion, table_count, 'i'), DEMI_ROW(dem_motion, table_repeats, 'i'),
+    DEMI_ROW_END};
 
 /* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
    -1 if there is no bound. */
@@ -11042,6 +11124,10 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 
 /* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
+    char of[24];
+    snprintf(of, sizeof of, " of wall %d", (int)id.id);
+    if (demi_rows_check(w, "dem_wall_motion_set", demi_motion_rows, motion, of,
+                        "start from DEM_MOTION")) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
                          "zero; give a direction",
@@ -11056,11 +11142,6 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          "DEM_MOTION_USER "
                          "and no function; "
                          "set motion.function", (int)id.id);
-    if (!demi_motion_sane(motion) || (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: a number in the motion of "
-                         "wall %d is not finite or beyond %g (m, m/s, rad/s, s), its ramp of %g s "
-                         "is below 0, or its kind %d is unknown; start from DEM_MOTION", (int)id.id,
-                         DEMI_FARTHEST, motion->ramp, (int)motion->kind);
     return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
 }
 /* Sets *next to wall `wall` (of this id, which need not exist yet) with a new motion. If that
@@ -11534,7 +11615,7 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
 
 /* Returns the offset in image_shift of b's image nearest to a. It is valid until the next list,
    because positions are wrapped into the periodic box only at a rebuild, and a period is at least
-   twice as long as two grains and the skin (demi_periods_refuse). */
+   twice as long as the largest diameter and the skin (demi_periods_refuse). */
 static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, int a, int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
     int code = 0, e, weight = 4;
@@ -12686,7 +12767,8 @@ static void demi_species_coefs(const dem_world *w, const demi_species *a, const 
    there are several materials, on materials. */
 static void demi_species_vary(dem_world *w) {
     const int rows = w->effects.species_count*w->effects.species_count;
-    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL | 1 << DEMI_K_AD;
+    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL;
+    const int own = (1 << DEMI_COEFS) - (1 << DEMI_K_UN);
     int e, k, materials = 0;
     w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
     if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF | 1 << DEMI_M_EFF);
@@ -12694,8 +12776,7 @@ static void demi_species_vary(dem_world *w) {
         for (k = 0; k < w->bodies.count; k++)
             materials |= w->bodies.material[k]^w->bodies.material[0];
         if (!materials) w->species_vary &= ~fixed;
-        if (!demi_normal_is(w, DEMI_BRANCHED))
-            w->species_vary &= ~(1 << DEMI_K_UN | 1 << DEMI_K_AD);
+        w->species_vary &= ~(own^demi_law_own(w));
         return;
     }
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
@@ -13208,7 +13289,7 @@ static void demi_skin_choose(dem_world *w) {
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
         w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
     }
-    for (k = 0; k < 3; k++) {  /* a period: at least twice two grains and the skin */
+    for (k = 0; k < 3; k++) {  /* a period: at least twice the largest diameter and the skin */
         const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
             2*(double)w->effects.radius_max - w->margin.reach;
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
@@ -13436,8 +13517,8 @@ static int demi_periods_refuse(dem_world *w) {
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (two grains and the skin%s, twice); make it "
-                      "longer or the grains smaller", (double)p.period[k], k, need,
+                      "axis %d, must be at least %g m (twice the sum of the largest "
+                      "diameter and the skin%s); make it longer or the grains smaller", (double)p.period[k], k, need,
                       w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }
@@ -14569,6 +14650,8 @@ DEMI_MOTION_STAGE(alike_following, 1, 1, 1, 0)
 DEMI_MOTION_STAGE(mixed_following, 0, 1, 1, 0)
 DEMI_MOTION_STAGE(mixed_ranged, 0, 1, 1, 1)
 
+#define DEMI_COEF_FETCH(PROPERTY, COEFFICIENT, UNIT) \
+    c->COEFFICIENT = t->coef[DEMI_COEF_##COEFFICIENT][q];
 /* Fills a dem_contact from row q; compilers leave out what the law does not use. */
 DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                   dem_contact *c) {
@@ -14585,7 +14668,8 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
     c->dt = s->dt;
     c->kn = t->coef[DEMI_KN][q]; c->cn = t->coef[DEMI_CN][q];
     c->kt = t->coef[DEMI_KT][q]; c->ct = t->coef[DEMI_CT][q];
-    c->kun = t->coef[DEMI_K_UN][q]; c->kad = t->coef[DEMI_K_AD][q];
+    c->kun = t->coef[DEMI_K_UN][q];
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_FETCH)
     c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
     c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
     c->sliding = t->memory[s->at_sliding][q];
@@ -19449,7 +19533,7 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->rows.coef[DEMI_KN][q] *= slope;
     t->rows.coef[DEMI_CN][q] *= slope;
     t->rows.coef[DEMI_K_UN][q] *= slope;
-    t->rows.coef[DEMI_K_AD][q] *= slope;
+    for (e = DEMI_K_UN + 1; e < DEMI_COEFS; e++) t->rows.coef[e][q] *= slope;
     t->rows.coef[DEMI_M_EFF][q] = k->m_eff;
     t->root[0][q] = slope*k->root[0];
     t->root[1][q] = k->root[1];
@@ -20373,6 +20457,19 @@ static void demi_impulses_lay(dem_world *w, int d) {
    tests/impulse/test_joints.c.
    --------------------------------------------------------------------------------------------- */
 
+/* Kinds of joints, in the order of dem_joint_kind: the number of their rows in the system, without
+   that of a motor. 3 rows hold the point, 5 the axis too, 6 all rotation. Kinds with 5 rows have an
+   axis and motors. >>add-joint: a constant there and a number here. */
+static const int demi_joint_kinds[] = {
+    0,                             /* DEM_JOINT_NONE */
+    3,                             /* DEM_JOINT_POINT */
+    5,                             /* DEM_JOINT_REVOLUTE */
+};
+enum { DEMI_JOINT_KINDS = sizeof demi_joint_kinds/sizeof *demi_joint_kinds };
+/* Returns the number of rows of a kind; 0 if there is no such kind. */
+static int demi_joint_rows(dem_joint_kind kind) {
+    return (int)kind > 0 && (int)kind < DEMI_JOINT_KINDS ? demi_joint_kinds[kind] : 0;
+}
 /* Returns the index of the body with this id, or -1 if it does not exist (any more). */
 static int demi_joint_body(const dem_world *w, dem_body b) {
     if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
@@ -20407,18 +20504,27 @@ static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
               demi_joints_in_force(w));
     return -1;
 }
-/* True if the values of a motor are allowed; 0 with an error message otherwise. The limit, in rad/s
-   and N m, is far beyond any machine and keeps the squares of the resulting values finite. */
-#define DEMI_MOTOR_MOST DEM_R(1e12)
-static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, dem_motor motor,
-                           dem_real speed, dem_real torque) {
-    if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && DEMI_ABS(speed) <= DEMI_MOTOR_MOST &&
-        DEMI_ABS(torque) <= DEMI_MOTOR_MOST && !(motor == DEM_MOTOR_SPEED && torque < 0) &&
-        (motor == DEM_MOTOR_NONE || kind == DEM_JOINT_REVOLUTE)) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; speed and "
-              "torque must lie within +-1e12, and the limit on torque of DEM_MOTOR_SPEED must be "
-              ">= 0 (0: no limit); likely the units are not SI, or the joint is not revolute: "
-              "only revolute joints have motors", call, (int)motor, (double)speed, (double)torque);
+/* The limits of a motor are far beyond any machine and keep the squares of the resulting values
+   finite. */
+#define DEMI_MOTOR_MOST 1e12
+#define DEMI_OF dem_joint_desc
+static const demi_field_row demi_joint_fields[] = {
+    DEMI_LIMITED(DEMI_OF, kind, 'i', DEMI_OVER, DEMI_JOINT_KINDS - 1, ""),
+    DEMI_ROW_ENUM(DEMI_OF, motor, DEMI_FROM, 0, "none speed torque"), DEMI_ROW(DEMI_OF, a, 'i'),
+    DEMI_ROW(DEMI_OF, b, 'i'), DEMI_ROW(DEMI_OF, wall, 'i'), DEMI_ROW(DEMI_OF, collide, 'i'),
+    DEMI_LIMITED(DEMI_OF, point, 'v', DEMI_ANY, DEMI_FARTHEST, "m"), DEMI_ROW(DEMI_OF, axis, 'v'),
+    DEMI_LIMITED(DEMI_OF, speed, 'r', DEMI_ANY, DEMI_MOTOR_MOST, "rad/s"),
+    DEMI_LIMITED(DEMI_OF, torque, 'r', DEMI_ANY, DEMI_MOTOR_MOST, "N m"), DEMI_ROW_END};
+#undef DEMI_OF
+/* True if the numbers of a desc and its motor are allowed; 0 with an error message otherwise. */
+static int demi_motor_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
+    if (demi_rows_check(w, call, demi_joint_fields, d, "", "start from DEM_JOINT_DESC, in SI units"))
+        return 0;
+    if (d->motor == DEM_MOTOR_NONE || (demi_joint_rows(d->kind) == 5 &&
+                                       !(d->motor == DEM_MOTOR_SPEED && d->torque < 0))) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, torque %g N m; only revolute joints have "
+              "motors, and the limit on torque of DEM_MOTOR_SPEED must be >= 0 (0: no limit)", call,
+              (int)d->motor, (double)d->torque);
     return 0;
 }
 /* Returns x in the frame of body `index`: a point, m, relative to its centre if `place` is 1, a
@@ -20428,28 +20534,23 @@ static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, 
     if (place) x = demi_nearest(&p, demi_sub(x, demi_at(w->bodies.pos + 4*index)));
     return dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*index), x);
 }
-/* True if a desc is allowed, except for its motor, see demi_motor_sane; 0 with an error message
-   otherwise. */
+/* True if a desc is allowed; 0 with an error message otherwise. */
 static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
     const dem_real size = demi_length(d->axis);
+    const int hinged = demi_joint_rows(d->kind) == 5;
     int a, b = -1;
     if (!demi_response_is(w, DEMI_JOINTED)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
                   "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
         return 0;
     }
-    if ((d->kind != DEM_JOINT_POINT && d->kind != DEM_JOINT_REVOLUTE) || !demi_place(d->point) ||
-        (d->kind == DEM_JOINT_REVOLUTE && (!demi_finite3(d->axis) || !(size > 0) ||
-                                           !demi_finite(size)))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: kind is %d, point (%g, %g, %g) m, axis (%g, %g, %g); "
-                  "kind must be DEM_JOINT_POINT or DEM_JOINT_REVOLUTE, the point within 1e15 m of "
-                  "the origin, the axis of a revolute joint finite and not 0", call, (int)d->kind,
-                  (double)d->point.x, (double)d->point.y, (double)d->point.z, (double)d->axis.x,
-                  (double)d->axis.y, (double)d->axis.z);
+    if (!demi_motor_sane(w, call, d)) return 0;
+    if (hinged && (!(size > 0) || !demi_finite(size))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not 0 for a "
+                  "revolute joint", call, (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
         return 0;
     }
-    if (w->desc.planar && d->kind == DEM_JOINT_REVOLUTE &&
-        !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
+    if (w->desc.planar && hinged && !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z, because "
                   "discs rotate about no other axis", call, (double)d->axis.x, (double)d->axis.y,
                   (double)d->axis.z);
@@ -20477,15 +20578,14 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     demi_joint j;
     dem_joint id;
     if (demi_null(w, call, d, "desc")) return demi_no_joint;
-    if (!demi_joint_sane(w, call, d) ||
-        !demi_motor_sane(w, call, d->kind, d->motor, d->speed, d->torque)) return demi_no_joint;
+    if (!demi_joint_sane(w, call, d)) return demi_no_joint;
     if (!demi_orient_begin(w) || !DEMI_GROW(w, w->joints, (size_t)w->joint_count + 1)) {
         demi_no_memory(w, call);
         return demi_no_joint;
     }
     memset(&j, 0, sizeof j);
     j.desc = *d;
-    j.desc.axis = d->kind == DEM_JOINT_REVOLUTE ? demi_unit(d->axis) : demi_v(0, 0, 0);
+    j.desc.axis = demi_joint_rows(d->kind) == 5 ? demi_unit(d->axis) : demi_v(0, 0, 0);
     if (d->b.slot) j.desc.wall.id = 0;          /* b is a body, so the wall is ignored */
     else j.desc.b.generation = 0;
     j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
@@ -20508,17 +20608,19 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     return id;
 }
 DEM_API dem_result dem_joint_motor_set(dem_world *w, dem_joint joint, dem_motor motor,
-                                       dem_real speed,
-                                   dem_real torque) {
+                                       dem_real speed, dem_real torque) {
     const char *call = "dem_joint_motor_set";
+    dem_joint_desc d;
     int i;
     if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_joint_find(w, call, joint);
-    if (i < 0 || !demi_motor_sane(w, call, w->joints[i].desc.kind, motor, speed, torque))
-        return DEM_ERROR_ARGUMENT;
-    w->joints[i].desc.motor = motor;
-    w->joints[i].desc.speed = speed;
-    w->joints[i].desc.torque = torque;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    d = w->joints[i].desc;
+    d.motor = motor;
+    d.speed = speed;
+    d.torque = torque;
+    if (!demi_motor_sane(w, call, &d)) return DEM_ERROR_ARGUMENT;
+    w->joints[i].desc = d;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -20677,7 +20779,7 @@ static int demi_joints_room(dem_world *w) {
             if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
             if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
             r->ends[e] = s->knot_of[body[e]];
-            r->rows = d->kind == DEM_JOINT_POINT ? 3 : 5 + (d->motor == DEM_MOTOR_SPEED);
+            r->rows = demi_joint_rows(d->kind) + (d->motor == DEM_MOTOR_SPEED);
         }
         if (!r->rows) continue;
         r->knot = demi_knot_add(s, -1, i);
@@ -20953,7 +21055,7 @@ static void demi_rod_lay(dem_world *w, int i) {
     r->arm[1] = b ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
     j->state.gap = demi_length(off);
     j->state.tilt = demi_length(demi_cross(y.axis, x.axis));
-    if (j->desc.kind == DEM_JOINT_REVOLUTE) {
+    if (demi_joint_rows(j->desc.kind) > 3) {
         r->along[0] = demi_across(x.axis);
         r->along[1] = demi_cross(x.axis, r->along[0]);
         r->along[2] = x.axis;
@@ -21090,7 +21192,8 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         demi_put(lacks, demi_scale(off, -part));
         for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
     }
-    if (!shifts) lacks[5] = w->joints[i].desc.speed - u[5];
+    if (!shifts)
+        lacks[5] = (w->joints[i].desc.motor ? w->joints[i].desc.speed : 0) - u[5];
     for (k = 0; k < 6; k++) {
         if (!demi_rod_row(w, r, k)) lacks[k] = 0;
         else if (!shifts) lacks[k] -= r->give[k]*r->given[k];
@@ -23075,7 +23178,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* positions tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* neighbours that a new grain may have */
-/* Steps after which outlets act at the latest (see demi_step_once); limit of counting outlets. */
+/* Steps after which outlets act at the latest (see demi_step_answer); limit of counting outlets. */
 enum { DEMI_OUTLET_REST = 64, DEMI_ZONES = 16 };
 
 static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i; }
@@ -24307,7 +24410,9 @@ static dem_result demi_springs_settle(dem_world *h) {
     if (result == DEM_OK) result = demi_grades_of(h, &g);
     if (result != DEM_OK) return result;
     if (!(g.bodies > 0) && !h->feed_count) {    /* nothing to limit it: walls still move */
-        if (!(h->clock.dt > 0)) h->clock.dt = h->desc.dt > 0 ? h->desc.dt : DEM_R(1e-3);
+        if (h->desc.dt > 0 || !(h->clock.dt > 0))
+            h->clock.dt = h->desc.dt > 0 ? h->desc.dt : DEM_R(1e-3);
+        demi_dt_share(h);
         return DEM_OK;
     }
     demi_advise_by(h, &g, &a);
@@ -24449,9 +24554,9 @@ static void demi_held_report(const dem_world *w, FILE *out) {
 /* Schedules the next examination of the present contacts: at increasing intervals while the scene
    does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,
    because user-defined numbers become unstable sooner. */
-static void demi_press_looked(demi_timing *clock, const dem_world *w) {
-    clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
-                                               w->desc.law_rate ? 8 : 1000);
+static void demi_press_looked(dem_world *h) {
+    const uint64_t since = h->clock.steps - h->clock.press_since;
+    h->clock.press_due = h->clock.steps + DEMI_MIN(8*since + 8, h->desc.law_rate ? 8 : 1000);
 }
 /* Fails because the given step is not stable, in the member that has the body with the smallest
    limit; the others return DEM_OK. */
@@ -24507,7 +24612,7 @@ static dem_result demi_dt_check(dem_world *h) {
         !demi_response_is(h, DEMI_LASTING)) return result;
     result = demi_press_limit(h, dt);
     if (result != DEM_OK) return result;
-    demi_press_looked(&h->clock, h);
+    demi_press_looked(h);
     limit = h->pressed.least;
     if (!(limit < dt)) return DEM_OK;
     if (!chosen) return demi_all_agree(h, demi_member_press_refuse);
@@ -24957,37 +25062,29 @@ static void demi_fields_sample(dem_world *w) {
     }
 }
 
-/* Fields of dem_field_desc, as checkpoints store and compare them; dem_field_add checks limits. */
-static const demi_field_row demi_field_rows[] = {
-    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
-    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
-    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
-    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
-    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r'), DEMI_ROW_END};
+#define DEMI_FIELD_MOST 268435456.0
+#define DEMI_FIELD(field, type, how, unit, other) \
+    DEMI_LIMITED_IF(dem_field_desc, field, type, how, DBL_MAX, unit, 0, other, 0, 0)
+static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, 'v'),
+    DEMI_LIMITED(dem_field_desc, cells, 'i', DEMI_OVER, DEMI_FIELD_MOST, ""),
+    DEMI_FIELD(start, 'd', DEMI_FROM, "s", 0), DEMI_FIELD(end, 'd', DEMI_ANY, "s", 0),
+    DEMI_FIELD(interval, 'd', DEMI_FROM, "s", 0), DEMI_ROW(dem_field_desc, material, 'i'),
+    DEMI_FIELD(radius_min, 'r', DEMI_FROM, "m", 0), DEMI_FIELD(radius_max, 'r', DEMI_FROM, "m", 1),
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
     demi_field field;
     int k;
     id.id = 0;
-    if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
-        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->interval >= 0) ||
-        !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
-        !demi_finite_double(d->end)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval is %g "
-                  "s; there must be >= 1 cells on each axis and at most 2^28 in all, and times "
-                  "must be finite and >= 0", d->cells[0], d->cells[1], d->cells[2], d->interval);
+    if (demi_rows_check(w, "dem_field_add", demi_field_rows, d, "",
+                        "start from DEM_FIELD_DESC and set only what differs")) return id;
+    if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, must be at most "
+                  "2^28 in all; choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
-    if (!(d->width >= 0) || !demi_finite(d->width) || !(d->radius_min >= 0) ||
-        !demi_finite(d->radius_max) || !(d->radius_max >= 0) ||
-        (d->radius_max > 0 && d->radius_max < d->radius_min)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: width is %g m, radii are %g to %g m; all "
-                  "must be finite and >= 0, radius_min below radius_max, and radius_max 0 for no "
-                  "limit", (double)d->width, (double)d->radius_min, (double)d->radius_max);
-        return id;
-    }
     if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
         return id;
     memset(&field, 0, sizeof field);
@@ -25935,6 +26032,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
                                  void *user) {
     if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
     const double start = w->clock.time, begun = demi_clock();
+    const uint64_t first = w->clock.steps;
     double last = begun, end;
     int chunk = 1;
     if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
@@ -25966,7 +26064,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
             if (result != DEM_OK) return result;
         }
         /* short steps: read the clock less often */
-        if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
+        if (now - begun < 0.05*(double)(w->clock.steps - first) && chunk < 1000) chunk++;
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;
@@ -29393,7 +29491,9 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
             row += 4*(size_t)g->count;
             for (e = 0; e < 4; e++) row[e] = w->bodies.orient[4*i + e];
             row += 4*(size_t)g->count;
-            demi_put(row, demi_shape_rows[p.kind].drawn(&p));
+            row[0] = demi_shape_rows[p.kind].drawn(&p, demi_v(1, 0, 0)).x;     /* semi-axes */
+            row[1] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 1, 0)).y;
+            row[2] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 0, 1)).z;
             g->own_ids[n] = (int32_t)w->bodies.slot[i];
             g->own_ids[n + g->count] = w->bodies.material[i];
             for (e = 0; e < g->real_count; e++)
@@ -29713,20 +29813,22 @@ static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t 
     s->links += count;
     s->polygons++;
 }
-/* Adds a sphere or an ellipsoid. Its first and last points are the poles. */
+/* Returns the direction of point i of a round part. The first and the last are the poles. */
+static dem_vec3 demi_round_direction(int i) {
+    const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES, side = (i - 1)%DEMI_ROUND_SIDES;
+    const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
+    const double round = 2*DEMI_PI*side/(int)DEMI_ROUND_SIDES, out = demi_sin(polar);
+    return demi_v((dem_real)(out*demi_cos(round)), (dem_real)(out*demi_sin(round)),
+                  (dem_real)demi_cos(polar));
+}
+/* Adds a part without faces: the points that its kind gives for these directions. */
 static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
                                const demi_part *p) {
-    const dem_vec3 a = demi_shape_rows[p->kind].drawn(p);
     const int64_t first = s->points;
     const int last = DEMI_ROUND_POINTS - 1;
     int i, k;
     for (i = 0; i < DEMI_ROUND_POINTS; i++) {
-        const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES;
-        const int side = (i - 1)%DEMI_ROUND_SIDES;
-        const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
-        const double round = 2*DEMI_PI*side/(int)DEMI_ROUND_SIDES, out = demi_sin(polar);
-        dem_vec3 x = demi_v(a.x*(dem_real)(out*demi_cos(round)),
-                            a.y*(dem_real)(out*demi_sin(round)), a.z*(dem_real)demi_cos(polar));
+        dem_vec3 x = demi_shape_rows[p->kind].drawn(p, demi_round_direction(i));
         if (p->kind != DEMI_BALL) x = dem_quat_rotate(p->q, x);
         demi_surface_point(s, w, body, centre, demi_add(p->centre, x));
     }
@@ -30292,17 +30394,14 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        dem_motion *m = &wall->motion;          /* pointers stay those of the reading world */
+        const demi_field_row *r = demi_motion_rows; /* pointers stay those of the reading world */
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->ahead, sizeof wall->ahead);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
-        DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
-        DEMI_VISIT(s, m->axis);     DEMI_VISIT(s, m->speed);      DEMI_VISIT(s, m->amplitude);
-        DEMI_VISIT(s, m->frequency); DEMI_VISIT(s, m->phase);     DEMI_VISIT(s, m->start);
-        DEMI_VISIT(s, m->ramp);
+        for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }
 /* Visits the sums of fields and the states of feeds and outlets. */
@@ -30951,7 +31050,7 @@ static int demi_contacts_check(const demi_reader *r) {
 /* Checks walls: poses must be possible, and motions must be finite and of the kind that the scene
    has. */
 static int demi_walls_check(const demi_reader *r) {
-    int i;
+    int i, k;
     for (i = 0; i < r->t->wall_count; i++) {
         const demi_wall *wall = &r->t->walls[i], *own = &r->w->walls[i];
         const dem_motion *m = &wall->motion;
@@ -30959,7 +31058,7 @@ static int demi_walls_check(const demi_reader *r) {
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
             return demi_lie(r, "pose of wall", i);
-        if (m->kind != own->motion.kind || !demi_motion_sane(m))
+        if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k))
             return demi_lie(r, "motion of wall", i);
     }
     return 1;
@@ -30984,18 +31083,16 @@ static int demi_measured_check(const demi_reader *r) {
 /* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
    id of a body that no longer exists names nothing. */
 static int demi_joints_check(const demi_reader *r) {
-    int i;
+    int i, k;
     for (i = 0; i < r->t->joint_count; i++) {
         const demi_joint *j = &r->t->joints[i];
         const dem_joint_state *o = &j->state;
-        if ((int)j->desc.kind <= 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
-            (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE || !r->t->bodies.orienting ||
-            (j->desc.motor != DEM_MOTOR_NONE && j->desc.kind != DEM_JOINT_REVOLUTE) ||
+        if (demi_rows_bad(r->w, demi_joint_fields, &j->desc, &k) || !r->t->bodies.orienting ||
+            (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
             j->desc.wall.id < 0 || (j->desc.wall.id &&
              demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
             j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
-            !(DEMI_ABS(j->desc.speed) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->bank) ||
-            !(DEMI_ABS(j->desc.torque) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->held) ||
+            !demi_finite_double(j->bank) || !demi_finite_double(j->held) ||
             !demi_finite(j->left) || !demi_finite(j->apart) ||
             !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
             !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
@@ -32498,6 +32595,15 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
     }
     return DEM_OK;
 }
+#define DEMI_TRIED(field, type, how, most, unit) \
+    DEMI_LIMITED(dem_trials_desc, field, type, how, most, unit)
+static const demi_field_row demi_trials_rows[] = {
+    DEMI_TRIED(duration, 'd', DEMI_OVER, DBL_MAX, "s"),
+    DEMI_TRIED(budget, 'd', DEMI_FROM, DBL_MAX, "s"),
+    DEMI_TRIED(tolerance, 'd', DEMI_FROM, DBL_MAX, ""), DEMI_TRIED(seeds, 'i', DEMI_FROM, 16, ""),
+    DEMI_TRIED(observable_count, 'i', DEMI_FROM, DEM_OBSERVABLES, ""),
+    DEMI_ROW_FREE(dem_trials_desc, observables), DEMI_ROW_FREE(dem_trials_desc, progress),
+    DEMI_ROW_FREE(dem_trials_desc, user), DEMI_ROW_END};
 /* Returns 1 with an error message if the desc is invalid or the scene cannot be compared. */
 static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
@@ -32508,15 +32614,10 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
                   "other dt, sweeps and tolerance instead");
         return 1;
     }
-    if (!(d->duration > 0) || !demi_finite_double(d->duration) || !(d->budget >= 0) ||
-        !demi_finite_double(d->budget) || !(d->tolerance >= 0) ||
-        !demi_finite_double(d->tolerance) || d->seeds < 0 || d->seeds == 1 ||
-        d->seeds > 16 || d->observable_count < 0 || d->observable_count > DEM_OBSERVABLES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, budget %g s, "
-                  "tolerance %g, seeds %d, observables %d; duration must be > 0, budget and "
-                  "tolerance >= 0, seeds 2 to 16 (0 means 3), observables 0 to %d; start from "
-                  "DEM_TRIALS_DESC and set duration", d->duration, d->budget, d->tolerance,
-                  d->seeds, d->observable_count, (int)DEM_OBSERVABLES);
+    if (demi_rows_check(w, "dem_trials_run", demi_trials_rows, d, "",
+                        "start from DEM_TRIALS_DESC and set duration")) return 1;
+    if (d->seeds == 1) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: seeds is 1, must be 2 to 16 (0 means 3)");
         return 1;
     }
     for (e = 0; e < d->observable_count; e++)
@@ -33437,6 +33538,19 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
             demi_law_memory_text(laws->rolling, text));
 }
+/* Prints the options of the desc that were set and that no other line prints. */
+static void demi_options_report(const dem_world *w, FILE *out) {
+    const demi_field_row *r;
+    char value[DEMI_ROW_MOST], text[48];
+    int count = 0;
+    for (r = demi_world_desc_rows; r->name; r++) {
+        if (!(r->how & DEMI_PRINTED) || !(fabs(demi_row_read(r, &w->asked, 0)) > 0)) continue;
+        demi_row_value(r, &w->asked, value);
+        demi_row_print(r, value, 0, 6, text, sizeof text);
+        fprintf(out, "%s%s %s", count++ ? ", " : "options    ", r->name, text);
+    }
+    if (count) fputc('\n', out);
+}
 /* Prints a line about bodies that are not spheres, or about orientations of spheres, if there are
    any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
@@ -33549,6 +33663,7 @@ static void demi_report(const dem_world *world, FILE *out) {
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
+    demi_options_report(w, out);
     demi_shapes_report(w, out);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
@@ -33642,8 +33757,8 @@ struct dem_slabs {
     int axis, count, first, local, ring, broken;
     double period, cut;            /* m: period along the axis; smallest thickness of a slab */
     double *borders;               /* m, count + 1; -1e300 and 1e300 at the ends of an open axis */
-    double *values;                /* work array for reductions, value_room */
-    size_t value_room;
+    double *values;                /* work array for reductions: DEMI_SLAB_BINS per slab, and 2 per
+                                      material */
     demi_slab *slabs;              /* local */
     demi_domain total;             /* the head's only work group: totals for demi_skin_choose */
     demi_message mine, all;         /* for dem_slabs_collect: reports of this process, of all */
@@ -34102,8 +34217,8 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding loses no ghost */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
-                         "%g m thick, must be at least %g m (two grains and the skin%s); use at "
-                         "most %d slabs or a smaller skin", s->count, s->period,
+                         "%g m thick, must be at least %g m (the largest diameter and the "
+                         "skin%s); use at most %d slabs or a smaller skin", s->count, s->period,
                          s->period/s->count, s->cut, h->margin.reach > 0
                          ? " and the law's range" : "", (int)(s->period/s->cut));
     return DEM_OK;
@@ -34120,23 +34235,15 @@ static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     for (i = w->bodies.count - 1; i >= 0; i--) if (demi_is_ghost(w, i)) demi_grain_forget(w, i);
     b->ghost_count = b->lent_count = 0;
 }
-/* Returns the side to which a grain at x (m, along the axis) belongs: -1 below, 0 here, 1 above.
-   *shift receives what is added to its position on the way there, m: a period or 0. A grain below
-   the first border stays if x + period is rounded to the last border or beyond. */
-static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, dem_real *shift) {
-    const dem_real period = (dem_real)s->period;
-    *shift = 0;
-    if ((double)x < s->borders[b->index]) {
-        if (b->index == 0) *shift = period;
-        return b->index == 0 && (double)(x + period) >= s->borders[s->count] ? 0 : -1;
-    }
-    if ((double)x >= s->borders[b->index + 1]) {
-        if (b->index == s->count - 1) *shift = -period;
-        return 1;
-    }
-    return 0;
+/* Returns the side to which a grain at x (m, along the axis) belongs: -1 below, 0 here, 1 above. A
+   grain below the first border stays if x + period is rounded to the last border or beyond. */
+static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x) {
+    if ((double)x < s->borders[b->index])
+        return b->index || (double)(x + (dem_real)s->period) < s->borders[s->count] ? -1 : 0;
+    return (double)x >= s->borders[b->index + 1];
 }
-/* Returns that shift, m, for all grains sent up (side 1) or down (side 0). */
+/* Returns what is added to positions that are sent up (side 1) or down (side 0), m: a period
+   or 0. */
 static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side) {
     if (side && b->index == s->count - 1) return -(dem_real)s->period;
     return !side && b->index == 0 ? (dem_real)s->period : 0;
@@ -34145,10 +34252,9 @@ static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side
    receivers have reserved memory. */
 static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    dem_real shift;
     int i, side, ok = 1, going[2] = {0, 0};
     for (i = 0; i < w->bodies.count; i++) {
-        side = demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift);
+        side = demi_slab_side(s, b, w->bodies.pos[4*i + s->axis]);
         if (!side) continue;
         w->bodies.ghost[w->bodies.slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
         going[side > 0]++;
@@ -34188,10 +34294,9 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
 /* Removes the grains that leave, and appends those that arrive. Nothing can fail any more. */
 static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    dem_real shift;
     int i, side;
     for (i = w->bodies.count - 1; i >= 0; i--)
-        if (demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift)) demi_grain_forget(w, i);
+        if (demi_slab_side(s, b, w->bodies.pos[4*i + s->axis])) demi_grain_forget(w, i);
     b->migrated += (uint64_t)b->leavers;
     for (side = 0; side < 2; side++) {
         const char *from = 0;
@@ -34617,9 +34722,8 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
    has the materials, shapes, walls, fields and outlets of the scene, and slots for all bodies that
    exist; the slabs of one process share the geometry of the first. Creation checks that all
    processes have built the same scene. Collection first checks whether the world can take
-   everything, then allocates, then writes. If the check fails, the world has not changed; if memory
-   runs out, it may have lost its contact histories. Writes to slabs, and in dem_slabs_collect to
-   the world.
+   everything, then allocates, then writes: a call that fails leaves the world as it was. Writes to
+   slabs, and in dem_slabs_collect to the world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- a user-defined allocator, as slabs on several threads call it: one call at a time --- */
@@ -34869,8 +34973,8 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
-    s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
-    s->values = (double *)demi_hold(h, DEMI_RUN, s->value_room, sizeof(double));
+    s->values = (double *)demi_hold(h, DEMI_RUN, n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8,
+                                    sizeof(double));
     s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
     s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
     s->team.members = (dem_world **)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(dem_world *));
@@ -35142,8 +35246,8 @@ static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) 
     }
 }
 /* Checks that the world can take the reports: it must be the scene of the slabs, without walls or
-   grains added or removed since. Then drops its list and its contact histories, and allocates room
-   for the reports. */
+   grains added or removed since. Then drops its list, allocates room for the reports, and clears
+   the contact histories. */
 static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
@@ -35201,8 +35305,6 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         }
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
-    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;
-    w->filed.count = 0;
     i = w->bodies.slot_count;
     if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)DEMI_MAX(s->slots - i, 0)))
@@ -35212,6 +35314,9 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         w->bodies.slot_count = i;
         return demi_no_memory(h, call);
     }
+    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;  /* those of the slabs take over */
+    w->filed.count = 0;
+    memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);
     return DEM_OK;
 }
@@ -35899,10 +36004,15 @@ static void demi_film_head(dem_replay *r) {
 static void demi_film_shape(dem_replay *r, int id) {
     const demi_shape *s = &r->world->shapes[id - 1];
     const dem_real axes[3] = {s->axes.x, s->axes.y, s->axes.z};
-    dem_real planes[3*DEM_POLYHEDRON_FACES];
+    dem_real planes[3*(DEM_POLYHEDRON_FACES + DEMI_ROUND_POINTS)];
     char text[32];
-    int k;
+    int k, faces = s->faces;
     for (k = 0; k < 3*s->faces; k++) planes[k] = (dem_real)s->hull[k/3*4 + k%3];
+    if (!s->count && !s->pieces && !faces && s->kind != DEMI_ELLIPSOID)
+        for (; faces < DEMI_ROUND_POINTS; faces++) {       /* planes that touch it all around */
+            const dem_vec3 n = demi_round_direction(faces);
+            demi_put(planes + 3*faces, demi_scale(n, 1/demi_shape_rows[s->kind].support(s, n)));
+        }
     fprintf(r->out.file, "<script type=\"dem/shape\">{\"id\":%d,\"radius\":%s", id,
             demi_format_real(text, (double)s->radius, 9));
     if (s->count) demi_film_reals(r->out.file, "parts", s->parts, s->count, 4, 4);
@@ -35919,7 +36029,7 @@ static void demi_film_shape(dem_replay *r, int id) {
         }
         fputs("]", r->out.file);
     }
-    else if (s->faces) demi_film_reals(r->out.file, "planes", planes, s->faces, 3, 3);
+    else if (faces) demi_film_reals(r->out.file, "planes", planes, faces, 3, 3);
     else demi_film_reals(r->out.file, "axes", axes, 1, 3, 3);
     fputs("}</script>\n", r->out.file);
 }
@@ -36189,6 +36299,16 @@ static void demi_film_free(dem_replay *r) {
     demi_free(w, r->bytes);
     demi_free(w, r);
 }
+#define DEMI_OF dem_replay_desc
+static const demi_field_row demi_replay_rows[] = {
+    DEMI_ROW_FREE(DEMI_OF, title), DEMI_ROW_FREE(DEMI_OF, number),
+    DEMI_ROW_FREE(DEMI_OF, number_fn), DEMI_ROW_FREE(DEMI_OF, user),
+    DEMI_ROW_IF(resolution, DEMI_FROM, DBL_MAX, "m",
+                "where 0 means 1/32 of the smallest radius", 0, 0, 0),
+    DEMI_LIMITED_IF(DEMI_OF, interval, 'd', DEMI_FROM, DBL_MAX, "s",
+                    "where 0 means frames only from dem_replay_frame_write", 0, 0, 0),
+    DEMI_ROW_END};
+#undef DEMI_OF
 DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_replay_desc *desc) {
     static const dem_replay_desc zero = {0, 0, 0, 0, 0, 0};
     const dem_replay_desc d = desc ? *desc : zero;
@@ -36197,16 +36317,8 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     size_t k;
     int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
     if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
-    if (!(d.resolution >= 0) || !demi_finite(d.resolution)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be "
-                  ">= 0, where 0 means 1/32 of the smallest radius", (double)d.resolution);
-        return 0;
-    }
-    if (!(d.interval >= 0) || !demi_finite_double(d.interval)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: interval is %g s, must be >= 0, where "
-                  "0 means frames only from dem_replay_frame_write", d.interval);
-        return 0;
-    }
+    if (demi_rows_check(w, "dem_replay_open", demi_replay_rows, &d, "",
+                        "start from DEM_REPLAY_DESC and set only what differs")) return 0;
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
         const char *name = demi_name(w->desc.body_reals, i, &n);
         if (strlen(d.number) == (size_t)n && !strncmp(name, d.number, (size_t)n)) break;

@@ -24,6 +24,12 @@ talking { comment = comment " " $0; if (/\*\/ *$/) talking = 0; next }
     list[++types] = name; from_run[name] = running; is_enum[name] = /^typedef enum/; head[name] = clean(comment); body[name] = ""; comment = ""
     inside = 1; sub(/^[^{]*\{/, "")
 }
+inside && /DEM_LAW_COEFFICIENTS\(DEM_PROPERTY_FIELD\)/ {      # one field, named at the beginning of its comment
+    at = 0; while (at + match(substr(body[name], at + 1), /\/\* [a-z_]+: /) > at) { from = at + RSTART; size = RLENGTH; at = from }
+    word = substr(body[name], from + 3, size - 5)
+    body[name] = substr(body[name], 1, from + 2) substr(body[name], from + size)
+    $0 = "    dem_real " word ";"
+}
 inside { body[name] = body[name] "\n" $0; if (/^\}/ || /\} dem_[a-z_]+;/) { inside = 0; sub(/\}[^}]*$/, "", body[name]) } next }
 /^static const dem_[a-z_]+ DEM_[A-Z_]+_ZERO/ { split($0, w, " "); constant[w[3]] = w[4]; sub(/_ZERO$/, "", constant[w[3]]) }
 /^(DEM_API|static inline) / { proto = ""; reading = 1 }
@@ -170,7 +176,7 @@ function desc(d,   k, j, m, one, text, known, units, not_scene, only_scene, used
         if (required && zero !~ /^required/) fault(d "." names[k] " must be set, and its comment does not begin with: required")
         if (is_enum[base]) {
             v = values(base)
-            if (known && words_of[d, one[1]] != constants_as_words) fault(d "." names[k] " has the words \"" words_of[d, one[1]] "\" in its row, and the constants \"" constants_as_words "\"")
+            if (known && words_of[d, one[1]] != "" && words_of[d, one[1]] != constants_as_words) fault(d "." names[k] " has the words \"" words_of[d, one[1]] "\" in its row, and the constants \"" constants_as_words "\"")
             r = v
             if (zero == "") zero = first_constant
             if (meant == "") meant = head[base]

@@ -25,19 +25,18 @@
    tests/impulse/test_joints.c.
    --------------------------------------------------------------------------------------------- */
 
-/* Kinds of joints, in the order of dem_joint_kind. >>add-joint: a constant there and a row here.
-   rows: number of rows in the system, without that of a motor. 3 hold the point, 5 the axis too, 6
-   all rotation. Kinds of 5 rows have an axis and motors. */
-typedef struct demi_joint_kind { const char *name; int rows; } demi_joint_kind;
-static const demi_joint_kind demi_joint_kinds[] = {
-    {"DEM_JOINT_NONE", 0},
-    {"DEM_JOINT_POINT", 3},
-    {"DEM_JOINT_REVOLUTE", 5},
+/* Kinds of joints, in the order of dem_joint_kind: the number of their rows in the system, without
+   that of a motor. 3 rows hold the point, 5 the axis too, 6 all rotation. Kinds with 5 rows have an
+   axis and motors. >>add-joint: a constant there and a number here. */
+static const int demi_joint_kinds[] = {
+    0,                             /* DEM_JOINT_NONE */
+    3,                             /* DEM_JOINT_POINT */
+    5,                             /* DEM_JOINT_REVOLUTE */
 };
 enum { DEMI_JOINT_KINDS = sizeof demi_joint_kinds/sizeof *demi_joint_kinds };
-/* Rows of a kind; 0: there is no such kind. */
+/* Returns the number of rows of a kind; 0 if there is no such kind. */
 static int demi_joint_rows(dem_joint_kind kind) {
-    return (int)kind > 0 && (int)kind < DEMI_JOINT_KINDS ? demi_joint_kinds[kind].rows : 0;
+    return (int)kind > 0 && (int)kind < DEMI_JOINT_KINDS ? demi_joint_kinds[kind] : 0;
 }
 /* Returns the index of the body with this id, or -1 if it does not exist (any more). */
 static int demi_joint_body(const dem_world *w, dem_body b) {

@@ -89,7 +89,7 @@ int main(int argc, char **argv) {
         ALL_ROWS(dem_feed_desc, demi_feed_rows);
         ALL_ROWS(dem_outlet_desc, demi_outlet_rows);
         ALL_ROWS(dem_motion, demi_motion_rows);
-        ALL_ROWS(dem_joint_desc, demi_joint_rows);
+        ALL_ROWS(dem_joint_desc, demi_joint_fields);
         ALL_ROWS(dem_trials_desc, demi_trials_rows);
         ALL_ROWS(dem_replay_desc, demi_replay_rows);
         ALL_ROWS(dem_wall_loads, demi_loads_rows);
@@ -108,7 +108,7 @@ int main(int argc, char **argv) {
     }
     TEST("each call refuses a value beyond the limit in the field's row, NaN and infinity, and names the field") {
         static const demi_field_row *const tables[ROWS_DESCS] = {demi_world_desc_rows, demi_material_rows, demi_pair_rows,
-            demi_wall_rows, demi_feed_rows, demi_outlet_rows, demi_motion_rows, demi_field_rows, demi_joint_rows,
+            demi_wall_rows, demi_feed_rows, demi_outlet_rows, demi_motion_rows, demi_field_rows, demi_joint_fields,
             demi_trials_rows, demi_replay_rows};
         int desc, k, tried = 0;
         for (desc = 0; desc < ROWS_DESCS; desc++) {
