@@ -13517,9 +13517,9 @@ static int demi_periods_refuse(dem_world *w) {
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (twice the sum of the largest "
-                      "diameter and the skin%s); make it longer or the grains smaller", (double)p.period[k], k, need,
-                      w->margin.reach > 0 ? " and the law's range" : "");
+                      "axis %d, must be at least %g m (twice the sum of the largest diameter "
+                      "and the skin%s); make it longer or the grains smaller", (double)p.period[k],
+                      k, need, w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }
     return 0;
@@ -20518,8 +20518,8 @@ static const demi_field_row demi_joint_fields[] = {
 #undef DEMI_OF
 /* True if the numbers of a desc and its motor are allowed; 0 with an error message otherwise. */
 static int demi_motor_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
-    if (demi_rows_check(w, call, demi_joint_fields, d, "", "start from DEM_JOINT_DESC, in SI units"))
-        return 0;
+    if (demi_rows_check(w, call, demi_joint_fields, d, "",
+                        "start from DEM_JOINT_DESC, in SI units")) return 0;
     if (d->motor == DEM_MOTOR_NONE || (demi_joint_rows(d->kind) == 5 &&
                                        !(d->motor == DEM_MOTOR_SPEED && d->torque < 0))) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, torque %g N m; only revolute joints have "

@@ -86,8 +86,8 @@ static const demi_field_row demi_joint_fields[] = {
 #undef DEMI_OF
 /* True if the numbers of a desc and its motor are allowed; 0 with an error message otherwise. */
 static int demi_motor_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
-    if (demi_rows_check(w, call, demi_joint_fields, d, "", "start from DEM_JOINT_DESC, in SI units"))
-        return 0;
+    if (demi_rows_check(w, call, demi_joint_fields, d, "",
+                        "start from DEM_JOINT_DESC, in SI units")) return 0;
     if (d->motor == DEM_MOTOR_NONE || (demi_joint_rows(d->kind) == 5 &&
                                        !(d->motor == DEM_MOTOR_SPEED && d->torque < 0))) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, torque %g N m; only revolute joints have "

@@ -338,9 +338,9 @@ static int demi_periods_refuse(dem_world *w) {
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (twice the sum of the largest "
-                      "diameter and the skin%s); make it longer or the grains smaller", (double)p.period[k], k, need,
-                      w->margin.reach > 0 ? " and the law's range" : "");
+                      "axis %d, must be at least %g m (twice the sum of the largest diameter "
+                      "and the skin%s); make it longer or the grains smaller", (double)p.period[k],
+                      k, need, w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }
     return 0;
