@@ -319,11 +319,12 @@ static dem_world *held_world(int planes, double dt, int allow) {
 /* The largest dt that is accepted, s. */
 static double held_limit(int planes) {
     dem_world *world = held_world(planes, 1e-9, 1);
-    int worst = 0;
     double limit;
     CHECK_EQ(dem_world_step(world, 1), DEM_OK);
-    limit = demi_press_limit(world, 1, &worst);
-    CHECK_EQ(worst < world->bodies.count, 1);
+    CHECK_EQ(demi_press_limit(world, 1), DEM_OK);
+    limit = world->pressed.least;
+    CHECK(limit < 1);
+    CHECK(world->pressed.worst < world->bodies.count);
     dem_world_destroy(world);
     return limit;
 }
@@ -354,7 +355,7 @@ static double tube_limit(int fine, dem_result *result) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_advice advice;
     double limit = 0;
-    int given, i, j, n = 0, worst = 0;
+    int given, i, j, n = 0;
     for (i = 0; i <= AROUND; i++)
         for (j = 0; j <= ALONG; j++) {
             const double angle = (i - AROUND/2)*0.25e-3/R;
@@ -388,7 +389,10 @@ static double tube_limit(int fine, dem_result *result) {
         CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
         desc.dt = (dem_real)(0.999*(double)advice.contact_time/50);
         *result = dem_world_step(world, 1);
-        if (given) limit = demi_press_limit(world, 1, &worst);
+        if (given) {
+            CHECK_EQ(demi_press_limit(world, 1), DEM_OK);
+            limit = world->pressed.least;
+        }
         dem_world_destroy(world);
     }
     return limit;
