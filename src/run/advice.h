@@ -131,7 +131,8 @@ static void demi_grades_add(const dem_world *w, demi_grades *g) {
         if (w->bodies.shaped && w->bodies.shape[i])
             g->spin = DEMI_MAX(g->spin, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
         if (w->bodies.inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], equal); continue; }
-        if (!g->many[m]++ || equal < g->smallest[m]) g->smallest[m] = equal;
+        if (!(g->many[m] > 0) || equal < g->smallest[m]) g->smallest[m] = equal;
+        g->many[m]++;
     }
 }
 /* Fills in *g for all members and all processes. Feeds count as if two grains of each of their
