@@ -4572,15 +4572,15 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
                      "and its message has not been read: \"%.320s\"; correct that call, or read "
                      "dem_world_error_get and continue without it", call, why);
 }
-/* Call this before a user-defined function. Calls that change the world fail until the caller
-   restores w->look.calling to the value returned here. `who` names the function in messages;
-   `within`: 1 inside a step. */
+/* Call this before a user-defined function. Calls that change the world fail until demi_called gets
+   the value returned here. `who` names the function in messages; `within`: 1 inside a step. */
 static demi_calling demi_calls(dem_world *w, const char *who, int within) {
     const demi_calling was = w->look.calling;
     w->look.calling.who = who;
     w->look.calling.within = within;
     return was;
 }
+static void demi_called(dem_world *w, demi_calling was) { w->look.calling = was; }
 /* The same for a function that only reads the world, possibly on several threads. Only a thread
    that finds no call in progress sets the mark, and only that thread removes it, so the mark cannot
    be left behind. */
@@ -4590,7 +4590,7 @@ static demi_calling demi_look_calls(const dem_world *w, const char *who) {
     return was;
 }
 static void demi_look_called(const dem_world *w, demi_calling was) {
-    if (!was.who) ((dem_world *)w)->look.calling = was;
+    if (!was.who) demi_called((dem_world *)w, was);
 }
 /* The first line of every public function is one of the next three. They return 1 if the world or
    `pointer` is null, and store an error message if there is a world to hold it. The first is for
@@ -4663,14 +4663,14 @@ static void *demi_block_alloc(dem_world *w, size_t bytes) {
     void *p;
     if (w->desc.allocator.alloc_fn) demi_calls(w, "the allocation of memory", 1);
     p = demi_raw_alloc(&w->desc.allocator, bytes);
-    if (w->desc.allocator.alloc_fn) w->look.calling = was;
+    if (w->desc.allocator.alloc_fn) demi_called(w, was);
     return p;
 }
 static void demi_block_free(dem_world *w, void *p, size_t bytes) {
     const demi_calling was = w->look.calling;
     if (w->desc.allocator.free_fn) demi_calls(w, "the release of memory", 1);
     demi_raw_free(&w->desc.allocator, p, bytes);
-    if (w->desc.allocator.free_fn) w->look.calling = was;
+    if (w->desc.allocator.free_fn) demi_called(w, was);
 }
 /* Allocates `count` items of `size` bytes, set to 0, and links them into a list of the world. With
    DEMI_LOOSE they are in no list and the caller must free them. Returns null if memory runs out,
@@ -5363,6 +5363,11 @@ static double demi_damping_for(double e, dem_tension tension) {
     }
     return (lo + hi)/2;
 }
+/* Marks the properties of pairs and the time step as outdated: the next step rebuilds the lists. */
+static void demi_pairs_changed(dem_world *w) {
+    w->stage.pairs_changed = 1;
+    w->stage.dt_valid = 0;
+}
 
 /* Stores the properties of materials i and j in both orders. Also computes their damping ratio,
    once, because it may need a bisection (demi_damping_for). */
@@ -5443,8 +5448,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
         if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
             demi_pair_put(w, i, m, &now);
     }
-    w->stage.pairs_changed = 1;                       /* the next step rebuilds the lists */
-    w->stage.dt_valid = 0;
+    demi_pairs_changed(w);
     demi_built(w, "dem_material_set");
     return DEM_OK;
 }
@@ -5473,9 +5477,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
-    w->stage.pairs_changed = 1;                       /* the next step rebuilds the lists */
+    demi_pairs_changed(w);
     demi_built(w, "dem_pair_set");
-    w->stage.dt_valid = 0;
     return DEM_OK;
 }
 
@@ -8200,9 +8203,17 @@ static double demi_body_energy(const dem_world *w, int i) {
         (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
-/* Marks forces, time step and half-step velocities as outdated, after any change of the scene. */
+/* Marks the time step as outdated, or forces and half-step velocities too, after a change of the
+   scene. */
+static void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
 static void demi_scene_changed(dem_world *w) {
-    w->stage.forces_valid = w->stage.dt_valid = w->stage.primed = 0;
+    w->stage.forces_valid = w->stage.primed = 0;
+    demi_dt_outdated(w);
+}
+/* Prepares a world without bodies. */
+static void demi_bodies_begin(dem_world *w) {
+    w->bodies.slot_free = w->bodies.slot_pending = -1;
+    w->stage.synced = 1;
 }
 
 /* Appends one sphere to the arrays and returns its slot. Memory must be reserved and the neighbour
@@ -11162,7 +11173,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     laid.symmetric = demi_wall_symmetric(&laid);
     was = demi_calls(w, "dem_wall_motion_set", 1);
     demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
-    w->look.calling = was;
+    demi_called(w, was);
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
@@ -13589,6 +13600,13 @@ static void demi_slots_release(dem_world *w) {
         w->bodies.slot_free = slot;
     }
 }
+/* Marks the lists as new. */
+static void demi_lists_made(dem_world *w) {
+    w->margin.gone = w->margin.walls_gone = 0;
+    w->clock.last_rebuild = w->clock.steps;
+    w->clock.rebuilds++;
+    w->stage.list_valid = 1;
+}
 /* Rebuilds everything that a step needs to find contacts: makes the checks, sorts the bodies,
    builds the lists and moves the contact histories to them. After DEM_ERROR_MEMORY no body and no
    history is lost, and the next call tries again. */
@@ -13625,10 +13643,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
-    w->margin.gone = w->margin.walls_gone = 0;
-    w->clock.last_rebuild = w->clock.steps;
-    w->clock.rebuilds++;
-    w->stage.list_valid = 1;
+    demi_lists_made(w);
     return DEM_OK;
 }
 /* Rebuilds the lists. A rebuild that fails restores the number of work groups. */
@@ -22989,7 +23004,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
-    w->look.calling = was;
+    demi_called(w, was);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
@@ -23150,7 +23165,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
-    w->look.calling = was;
+    demi_called(w, was);
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);
@@ -23346,7 +23361,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     feed.random = d->seed;
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
-    w->stage.dt_valid = 0;                            /* new grains may need a shorter one */
+    demi_dt_outdated(w);                        /* new grains may need a shorter one */
     demi_built(w, call);
     id.id = w->feed_count;
     return id;
@@ -25991,7 +26006,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
             whole = result == DEM_OK;
             if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
         }
-        h->look.calling = was;
+        demi_called(h, was);
         if (result == DEM_OK) result = demi_look(h);
     }
     if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */
@@ -26025,7 +26040,7 @@ static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn 
     const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
     const demi_calling was = demi_calls(w, call, 0);
     const int stop = progress && progress(w, done, done < 1 ? left : 0, user) && done < 1;
-    w->look.calling = was;
+    demi_called(w, was);
     return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
                             call, w->clock.time) : DEM_OK;
 }
@@ -26286,7 +26301,7 @@ static dem_result demi_contacts_settle(dem_world *w) {
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);
-    w->look.calling = was;
+    demi_called(w, was);
     return result;
 }
 /* The histories of sphere pairs are columns of the pruned neighbour list, so fn gets a copy that is
@@ -26327,7 +26342,7 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
             n++;
         }
     }
-    w->look.calling = was_calling;
+    demi_called(w, was_calling);
     if (changed) demi_scene_changed(w);
     return n;
 }
@@ -30498,6 +30513,11 @@ static int demi_body_lost(const dem_world *w) {
     }
     return -1;
 }
+/* Empties a file of contact histories that is out of date, since the lists hold them. */
+static void demi_filed_current(const dem_world *w, demi_filed *filed) {
+    if (w->stage.list_valid) filed->count = 0;
+    if (!filed->count) filed->rows = filed->stride = 0;
+}
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     if (demi_null_write(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
     const int lost = demi_body_lost(w);
@@ -30514,8 +30534,7 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
                          path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
-    if (w->stage.list_valid) w->filed.count = 0;      /* out of date: the list holds it now */
-    if (!w->filed.count) w->filed.rows = w->filed.stride = 0;
+    demi_filed_current(w, &w->filed);
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
     head.version = DEMI_CHECKPOINT_VERSION;
@@ -31264,8 +31283,7 @@ static char *demi_state_keep(dem_world *w, size_t *size) {
     dem_world look = *w;
     demi_stream s = {0, 0, 0, 0, 0, 0, 0};
     char *bytes;
-    if (look.stage.list_valid) look.filed.count = 0;  /* as dem_checkpoint_write has it */
-    if (!look.filed.count) look.filed.rows = look.filed.stride = 0;
+    demi_filed_current(w, &look.filed);
     demi_visit_state(&look, &s);
     *size = s.size;
     bytes = (char *)demi_alloc(w, s.size + 1, 1);
@@ -31412,7 +31430,7 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
         if (d->values) {
             const demi_calling was = demi_calls(w, "an output of values", 0);
             d->values(w, value, d->user);
-            w->look.calling = was;
+            demi_called(w, was);
         } else {
             const dem_counters c = dem_counters_get(w);
             const dem_totals t = dem_totals_get(w);
@@ -32469,8 +32487,8 @@ static void demi_try_set(dem_world *t, const demi_try *row) {
         if (was.contact_time > 0 && is.contact_time > 0)
             t->desc.dt *= is.contact_time/was.contact_time;
     }
-    t->stage.pairs_changed = 1;
-    t->stage.dt_valid = t->stage.primed = 0;
+    demi_pairs_changed(t);
+    t->stage.primed = 0;
 }
 /* Moves every body that is not fixed by at most 1e-6 of its radius along each axis, at random; seed
    0 moves none. This is far less than any relevant overlap, and enough for differences between runs
@@ -32742,7 +32760,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
                                "function "
                                "after %d of %d trials", k + 1, out->count);
     }
-    w->look.calling = was;
+    demi_called(w, was);
     demi_free(w, state);
     if (result != DEM_OK) return result;
     if (out->trial[0].done < out->seeds)
@@ -33165,8 +33183,8 @@ static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
     demi_finish(t);
     t->desc.dt = t->clock.dt;
     if (leave) leave(t, own);
-    t->stage.pairs_changed = 1;
-    t->stage.dt_valid = t->stage.primed = 0;
+    demi_pairs_changed(t);
+    t->stage.primed = 0;
     return t;
 }
 /* Returns the wall time (s) of `steps` steps; does nothing if *result is an error already. */
@@ -33280,7 +33298,7 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
     if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
     was = demi_calls(w, "dem_effects_get", 1);  /* copies call the user's functions */
     count = demi_effects_ask(w, budget, out);
-    w->look.calling = was;
+    demi_called(w, was);
     return count;
 }
 /* Prints one line per effect. A cost is too noisy if its standard error is above 10 % of a step, or
@@ -33410,8 +33428,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
-    w->bodies.slot_free = w->bodies.slot_pending = -1;
-    w->stage.synced = 1;
+    demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;
     w->bodies.booked = desc->ledger && demi_integrator_of(w)->predicts;
@@ -34556,10 +34573,7 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
         h->margin.skin = s->slabs[0].world->margin.skin;
         h->effects.radius_min = s->slabs[0].world->effects.radius_min;
     }
-    h->margin.gone = h->margin.walls_gone = 0;
-    h->clock.last_rebuild = h->clock.steps;
-    h->clock.rebuilds++;
-    h->stage.list_valid = 1;
+    demi_lists_made(h);
     return DEM_OK;
 }
 
@@ -34963,8 +34977,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     const size_t n = (size_t)s->count;
     h->asked = w->asked;
     demi_names_own(h, &w->asked);
-    h->stage.synced = 1;
-    h->bodies.slot_free = h->bodies.slot_pending = -1;
+    demi_bodies_begin(h);
     h->domains = &s->total;
     h->material_count = w->material_count;
     h->wall_count = w->wall_count;
@@ -35070,7 +35083,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
     was = demi_calls(w, "dem_slabs_create", 1);
     s = demi_slabs_make(w, desc);
-    w->look.calling = was;
+    demi_called(w, was);
     return s;
 }
 
@@ -35357,8 +35370,8 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         demi_effects(w);                        /* the world itself may never have been stepped */
         demi_kernel_choose(w);
     }
-    w->look.calling = was[1];
-    s->head.look.calling = was[0];
+    demi_called(w, was[1]);
+    demi_called(&s->head, was[0]);
     demi_free(w, add);
     demi_free(&s->head, seen);
     return result;
@@ -36267,7 +36280,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
         r->given[k] = 0;
     }
     if (!r->failed) demi_film_block(r);
-    w->look.calling = was;
+    demi_called(w, was);
     r->frames++;
     return demi_film_check(r, "dem_replay_frame_write");
 }

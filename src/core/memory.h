@@ -206,15 +206,15 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
                      "and its message has not been read: \"%.320s\"; correct that call, or read "
                      "dem_world_error_get and continue without it", call, why);
 }
-/* Call this before a user-defined function. Calls that change the world fail until the caller
-   restores w->look.calling to the value returned here. `who` names the function in messages;
-   `within`: 1 inside a step. */
+/* Call this before a user-defined function. Calls that change the world fail until demi_called gets
+   the value returned here. `who` names the function in messages; `within`: 1 inside a step. */
 static demi_calling demi_calls(dem_world *w, const char *who, int within) {
     const demi_calling was = w->look.calling;
     w->look.calling.who = who;
     w->look.calling.within = within;
     return was;
 }
+static void demi_called(dem_world *w, demi_calling was) { w->look.calling = was; }
 /* The same for a function that only reads the world, possibly on several threads. Only a thread
    that finds no call in progress sets the mark, and only that thread removes it, so the mark cannot
    be left behind. */
@@ -224,7 +224,7 @@ static demi_calling demi_look_calls(const dem_world *w, const char *who) {
     return was;
 }
 static void demi_look_called(const dem_world *w, demi_calling was) {
-    if (!was.who) ((dem_world *)w)->look.calling = was;
+    if (!was.who) demi_called((dem_world *)w, was);
 }
 /* The first line of every public function is one of the next three. They return 1 if the world or
    `pointer` is null, and store an error message if there is a world to hold it. The first is for
@@ -297,14 +297,14 @@ static void *demi_block_alloc(dem_world *w, size_t bytes) {
     void *p;
     if (w->desc.allocator.alloc_fn) demi_calls(w, "the allocation of memory", 1);
     p = demi_raw_alloc(&w->desc.allocator, bytes);
-    if (w->desc.allocator.alloc_fn) w->look.calling = was;
+    if (w->desc.allocator.alloc_fn) demi_called(w, was);
     return p;
 }
 static void demi_block_free(dem_world *w, void *p, size_t bytes) {
     const demi_calling was = w->look.calling;
     if (w->desc.allocator.free_fn) demi_calls(w, "the release of memory", 1);
     demi_raw_free(&w->desc.allocator, p, bytes);
-    if (w->desc.allocator.free_fn) w->look.calling = was;
+    if (w->desc.allocator.free_fn) demi_called(w, was);
 }
 /* Allocates `count` items of `size` bytes, set to 0, and links them into a list of the world. With
    DEMI_LOOSE they are in no list and the caller must free them. Returns null if memory runs out,

@@ -382,6 +382,11 @@ static int demi_body_lost(const dem_world *w) {
     }
     return -1;
 }
+/* Empties a file of contact histories that is out of date, since the lists hold them. */
+static void demi_filed_current(const dem_world *w, demi_filed *filed) {
+    if (w->stage.list_valid) filed->count = 0;
+    if (!filed->count) filed->rows = filed->stride = 0;
+}
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     if (demi_null_write(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
     const int lost = demi_body_lost(w);
@@ -398,8 +403,7 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
                          path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
-    if (w->stage.list_valid) w->filed.count = 0;      /* out of date: the list holds it now */
-    if (!w->filed.count) w->filed.rows = w->filed.stride = 0;
+    demi_filed_current(w, &w->filed);
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
     head.version = DEMI_CHECKPOINT_VERSION;

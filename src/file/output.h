@@ -100,7 +100,7 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
         if (d->values) {
             const demi_calling was = demi_calls(w, "an output of values", 0);
             d->values(w, value, d->user);
-            w->look.calling = was;
+            demi_called(w, was);
         } else {
             const dem_counters c = dem_counters_get(w);
             const dem_totals t = dem_totals_get(w);

@@ -571,8 +571,7 @@ static char *demi_state_keep(dem_world *w, size_t *size) {
     dem_world look = *w;
     demi_stream s = {0, 0, 0, 0, 0, 0, 0};
     char *bytes;
-    if (look.stage.list_valid) look.filed.count = 0;  /* as dem_checkpoint_write has it */
-    if (!look.filed.count) look.filed.rows = look.filed.stride = 0;
+    demi_filed_current(w, &look.filed);
     demi_visit_state(&look, &s);
     *size = s.size;
     bytes = (char *)demi_alloc(w, s.size + 1, 1);

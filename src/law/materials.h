@@ -126,6 +126,11 @@ static double demi_damping_for(double e, dem_tension tension) {
     }
     return (lo + hi)/2;
 }
+/* Marks the properties of pairs and the time step as outdated: the next step rebuilds the lists. */
+static void demi_pairs_changed(dem_world *w) {
+    w->stage.pairs_changed = 1;
+    w->stage.dt_valid = 0;
+}
 
 /* Stores the properties of materials i and j in both orders. Also computes their damping ratio,
    once, because it may need a bisection (demi_damping_for). */
@@ -206,8 +211,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
         if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
             demi_pair_put(w, i, m, &now);
     }
-    w->stage.pairs_changed = 1;                       /* the next step rebuilds the lists */
-    w->stage.dt_valid = 0;
+    demi_pairs_changed(w);
     demi_built(w, "dem_material_set");
     return DEM_OK;
 }
@@ -236,9 +240,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;
     demi_pair_put(w, i, j, p);
-    w->stage.pairs_changed = 1;                       /* the next step rebuilds the lists */
+    demi_pairs_changed(w);
     demi_built(w, "dem_pair_set");
-    w->stage.dt_valid = 0;
     return DEM_OK;
 }
 

@@ -415,7 +415,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
         r->given[k] = 0;
     }
     if (!r->failed) demi_film_block(r);
-    w->look.calling = was;
+    demi_called(w, was);
     r->frames++;
     return demi_film_check(r, "dem_replay_frame_write");
 }

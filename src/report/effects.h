@@ -383,8 +383,8 @@ static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
     demi_finish(t);
     t->desc.dt = t->clock.dt;
     if (leave) leave(t, own);
-    t->stage.pairs_changed = 1;
-    t->stage.dt_valid = t->stage.primed = 0;
+    demi_pairs_changed(t);
+    t->stage.primed = 0;
     return t;
 }
 /* Returns the wall time (s) of `steps` steps; does nothing if *result is an error already. */
@@ -498,7 +498,7 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
     if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
     was = demi_calls(w, "dem_effects_get", 1);  /* copies call the user's functions */
     count = demi_effects_ask(w, budget, out);
-    w->look.calling = was;
+    demi_called(w, was);
     return count;
 }
 /* Prints one line per effect. A cost is too noisy if its standard error is above 10 % of a step, or

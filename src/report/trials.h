@@ -124,8 +124,8 @@ static void demi_try_set(dem_world *t, const demi_try *row) {
         if (was.contact_time > 0 && is.contact_time > 0)
             t->desc.dt *= is.contact_time/was.contact_time;
     }
-    t->stage.pairs_changed = 1;
-    t->stage.dt_valid = t->stage.primed = 0;
+    demi_pairs_changed(t);
+    t->stage.primed = 0;
 }
 /* Moves every body that is not fixed by at most 1e-6 of its radius along each axis, at random; seed
    0 moves none. This is far less than any relevant overlap, and enough for differences between runs
@@ -397,7 +397,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
                                "function "
                                "after %d of %d trials", k + 1, out->count);
     }
-    w->look.calling = was;
+    demi_called(w, was);
     demi_free(w, state);
     if (result != DEM_OK) return result;
     if (out->trial[0].done < out->seeds)

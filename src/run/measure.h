@@ -68,7 +68,7 @@ static dem_result demi_contacts_settle(dem_world *w) {
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);
-    w->look.calling = was;
+    demi_called(w, was);
     return result;
 }
 /* The histories of sphere pairs are columns of the pruned neighbour list, so fn gets a copy that is
@@ -109,7 +109,7 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
             n++;
         }
     }
-    w->look.calling = was_calling;
+    demi_called(w, was_calling);
     if (changed) demi_scene_changed(w);
     return n;
 }

@@ -812,7 +812,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
             whole = result == DEM_OK;
             if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
         }
-        h->look.calling = was;
+        demi_called(h, was);
         if (result == DEM_OK) result = demi_look(h);
     }
     if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */

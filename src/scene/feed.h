@@ -177,7 +177,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     feed.random = d->seed;
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
-    w->stage.dt_valid = 0;                            /* new grains may need a shorter one */
+    demi_dt_outdated(w);                        /* new grains may need a shorter one */
     demi_built(w, call);
     id.id = w->feed_count;
     return id;

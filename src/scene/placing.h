@@ -442,7 +442,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
-    w->look.calling = was;
+    demi_called(w, was);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
@@ -603,7 +603,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
-    w->look.calling = was;
+    demi_called(w, was);
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);

@@ -410,6 +410,13 @@ static void demi_slots_release(dem_world *w) {
         w->bodies.slot_free = slot;
     }
 }
+/* Marks the lists as new. */
+static void demi_lists_made(dem_world *w) {
+    w->margin.gone = w->margin.walls_gone = 0;
+    w->clock.last_rebuild = w->clock.steps;
+    w->clock.rebuilds++;
+    w->stage.list_valid = 1;
+}
 /* Rebuilds everything that a step needs to find contacts: makes the checks, sorts the bodies,
    builds the lists and moves the contact histories to them. After DEM_ERROR_MEMORY no body and no
    history is lost, and the next call tries again. */
@@ -446,10 +453,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
-    w->margin.gone = w->margin.walls_gone = 0;
-    w->clock.last_rebuild = w->clock.steps;
-    w->clock.rebuilds++;
-    w->stage.list_valid = 1;
+    demi_lists_made(w);
     return DEM_OK;
 }
 /* Rebuilds the lists. A rebuild that fails restores the number of work groups. */

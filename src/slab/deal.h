@@ -244,8 +244,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     const size_t n = (size_t)s->count;
     h->asked = w->asked;
     demi_names_own(h, &w->asked);
-    h->stage.synced = 1;
-    h->bodies.slot_free = h->bodies.slot_pending = -1;
+    demi_bodies_begin(h);
     h->domains = &s->total;
     h->material_count = w->material_count;
     h->wall_count = w->wall_count;
@@ -351,7 +350,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
     was = demi_calls(w, "dem_slabs_create", 1);
     s = demi_slabs_make(w, desc);
-    w->look.calling = was;
+    demi_called(w, was);
     return s;
 }
 
@@ -638,8 +637,8 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         demi_effects(w);                        /* the world itself may never have been stepped */
         demi_kernel_choose(w);
     }
-    w->look.calling = was[1];
-    s->head.look.calling = was[0];
+    demi_called(w, was[1]);
+    demi_called(&s->head, was[0]);
     demi_free(w, add);
     demi_free(&s->head, seen);
     return result;

@@ -585,10 +585,7 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
         h->margin.skin = s->slabs[0].world->margin.skin;
         h->effects.radius_min = s->slabs[0].world->effects.radius_min;
     }
-    h->margin.gone = h->margin.walls_gone = 0;
-    h->clock.last_rebuild = h->clock.steps;
-    h->clock.rebuilds++;
-    h->stage.list_valid = 1;
+    demi_lists_made(h);
     return DEM_OK;
 }
 

@@ -651,7 +651,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     laid.symmetric = demi_wall_symmetric(&laid);
     was = demi_calls(w, "dem_wall_motion_set", 1);
     demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
-    w->look.calling = was;
+    demi_called(w, was);
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
