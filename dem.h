@@ -4905,7 +4905,7 @@ static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) 
 #define DEMI_OF dem_world
 static const demi_field_row demi_number_rows[] = {
     /* as dem_world_gravity_set and dem_world_dt_set have left them */
-    DEMI_N(desc.gravity, 'v', DEMI_TO_SLAB | DEMI_HEADS),
+    DEMI_N(desc.gravity, 'v', DEMI_ANY | DEMI_TO_SLAB | DEMI_HEADS),
     DEMI_N(desc.dt, 'r', DEMI_FROM | DEMI_TO_SLAB | DEMI_HEADS),
     DEMI_LIMITED(DEMI_OF, clock.time, 'd', DEMI_ANY | DEMI_DEALT, DEMI_FARTHEST, ""),
     DEMI_LIMITED(DEMI_OF, clock.since.time, 'd', DEMI_ANY | DEMI_DEALT, DEMI_FARTHEST, ""),

@@ -341,6 +341,16 @@ static dem_world *rich_world(int steps) {
     scene_step(world, steps ? 1 : 0);
     return world;
 }
+/* Makes a number of the world NaN, if its row has limits. */
+static int lie_row(dem_world *w, const demi_field_row *r) {
+    const double d = HUGE_VAL - HUGE_VAL;
+    const dem_real x = (dem_real)d;
+    char *at = (char *)w + r->offset;
+    if (!(r->how & DEMI_LIMITS) || !strchr("drv", r->type)) return 0;
+    if (r->type == 'd') memcpy(at, &d, sizeof d);
+    else memcpy(at, &x, sizeof x);
+    return 1;
+}
 /* Puts one lie into the world that is about to be written: some number that cannot be. Answers 0
    when there is no lie of that number. Those of 100 and more are about a world without a list. */
 static int lie_tell(dem_world *w, int lie) {
@@ -348,6 +358,7 @@ static int lie_tell(dem_world *w, int lie) {
     demi_feed *f = demi_feed_at(w, 0);
     const int huge = 0x7fffffff, twice = w->near.k[1];
     int shaped = 0, kept_wall = 0;
+    if (lie >= 200) return lie_row(w, demi_number_rows + (lie - 200));
     while (!w->bodies.shape[shaped]) shaped++;
     while (kept_wall + 1 < o->kept && w->kept_now[kept_wall].b >= 0) kept_wall++;
     switch (lie) {
@@ -1107,6 +1118,22 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
         CHECK_EQ(told, 79);
+        remove(path);
+    }
+    TEST("every number of a world with a range is rejected if it is NaN, also with a correct checksum") {
+        int row, told = 0;
+        for (row = 0; demi_number_rows[row].name; row++) {
+            dem_world *liar = rich_world(20), *world = rich_world(20);
+            if (lie_write(liar, 200 + row)) {
+                told++;
+                refused(world, DEM_ERROR_FORMAT, ": invalid ");
+            }
+            if (test_now.wrong) printf("        %s\n", demi_number_rows[row].name);
+            dem_world_destroy(liar);
+            dem_world_destroy(world);
+            if (test_now.wrong) break;
+        }
+        CHECK(told > 15);
         remove(path);
     }
     TEST("a checkpoint that cannot be written leaves the older file intact and reports why") {
