@@ -449,7 +449,7 @@ static void unused_values(void) {
         CHECK(joint.id);
         desc.motor = DEM_MOTOR_TORQUE;
         desc.torque = DEM_R(1e13);
-        CHECK(!dem_joint_add(world, &desc).id && strstr(dem_world_error_get(world), "1e12"));
+        CHECK(!dem_joint_add(world, &desc).id && strstr(dem_world_error_get(world), "1e+12"));
         desc.b.slot = 0;                        /* now the wall counts */
         desc.torque = 0;
         CHECK(!dem_joint_add(world, &desc).id && strstr(dem_world_error_get(world), "wall"));
