@@ -156,7 +156,7 @@ else skip "gcc -m32 does not link (Debian package gcc-multilib)"; fi
 # programs are ten times as slow: it leaves the hard cases and these tests out, which would take hours. Where an emulator
 # runs the programs, only three.
 emulator=
-long="facets|memory|polyhedra|rocks|shapes|sieve_rocks|slabs|trials|tumbler"
+long="api|corona|decompose|exam|facets|joints|kept|memory|polyhedra|rocks|rotation|search|shapes|sieve_rocks|slabs|trials|tumbler"
 tests() {
     turn=1
     names=$(for t in tests/*/test_*.c tests/hard/hard_*.c; do echo "build/$(basename "$t" .c)"; done)
