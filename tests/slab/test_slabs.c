@@ -835,7 +835,7 @@ int main(int argc, char **argv) {
     TEST("a number of slabs gives the same bits on one, two, three and four threads") {
         int scene, threads;
         for (scene = 0; scene < BITS; scene++) {
-            const int steps = scene < SHAPES ? 1500 : 900;
+            const int steps = scene < SHAPES ? 2000 : 1200;
             const uint64_t one = bits_of(scene, 1, 4, steps);
             for (threads = 2; threads <= 4; threads++)
                 CHECK_EQ(bits_of(scene, threads, 4, steps), one);
