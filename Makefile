@@ -218,7 +218,8 @@ clean: ## remove build/
 # examples/*.h are companions of dem.h (moldyn.h, tumbler.h, ...), which tests and benches include, too
 HEADERS := $(wildcard examples/*.h)
 ROOMS_O := $(FOLDERS:%=build/rooms/%.o)
-# -O3 takes three times as long to compile as -O2 and is for those that run long
+# -O3 takes three times as long to compile as -O2 and is for those that run long. Tests themselves, not the rooms that they
+# test, are compiled with -O1
 LEVEL    = $(if $(filter file,$(origin CFLAGS)),-O2)
 build/rooms/made: $(ROOMS) src/open.awk src/open.sh
 	@sh src/open.sh build/rooms && touch $@
@@ -237,7 +238,7 @@ OPEN = -include build/rooms/private.h
 build/obj/test_own_law.o: OPEN =# compiles a law into dem.h
 define TEST
 build/obj/$(2).o: $(1) $(wildcard tests/*.h) $(HEADERS) build/rooms/private.h build/flags
-	$$(COMPILE) $$(LEVEL) $$(OMP) $$(OPEN) -c -o $$@ $(1)
+	$$(COMPILE) $$(LEVEL:-O2=-O1) $$(OMP) $$(OPEN) -c -o $$@ $(1)
 build/$(2): build/obj/$(2).o $(if $(filter test_own_law,$(2)),,$(if $(filter test_api test_feed,$(2)),$(SMALL_O),$(ROOMS_O)))
 	$$(CC) -o $$@ $$^ $$(LINK)
 endef
