@@ -4,6 +4,7 @@
 # "N passed, N failed, N skipped" and a non-zero code when anything failed. CASES=REGEX runs the cases whose names
 # match, NOT=REGEX leaves those out that match, which finishes a check that was interrupted.
 JOBS=${JOBS:-1}
+export OMP_WAIT_POLICY=passive   # several programs share the cores: a thread that waits sleeps
 dir=build/check
 rm -rf $dir; mkdir -p $dir build/tmp
 number=1000; skipped=0; left=0; turn=2                 # turn 1: the long ones, which begin first

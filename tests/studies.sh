@@ -2,6 +2,7 @@
 # at a time. long: runs the commands as they are written, once instead of --repeats times. Those that take an hour stay
 # short. A study that a program knows and no page runs is a failure, and so is one that a page names without a command.
 JOBS=${JOBS:-1}
+export OMP_WAIT_POLICY=passive   # several programs share the cores: a thread that waits sleeps
 dir=build/out/studies
 programs="mill screener ellipsoids separator"
 pages="README.md docs/*.md"
