@@ -39,6 +39,8 @@
        >>sheets            connected facets of a surface, their orientation and open edges
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+       >>joins             facets of walls that move together: doubles, covers, dividing
+       >>surfaces          one surface per rigid motion: weights of its edges and corners
        >>distances         distance of a point from an element of a wall
      search/ - which bodies may touch: from candidates to the pruned neighbour list
        >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
@@ -3828,20 +3830,12 @@ typedef struct demi_response_kind {
 #define DEMI_RESPONSE_KIND(NAME, MEMORY, VECTORS, TRAITS, ...) {NAME, MEMORY, VECTORS, TRAITS},
 static const demi_response_kind demi_response_kinds[] = {DEMI_RESPONSES(DEMI_RESPONSE_KIND)};
 
-/* A segment of a triangle's side between points where corners of other triangles lie on it. */
-typedef struct demi_cut {
-    dem_vec3 a, b;                 /* its ends, local frame, m */
-    dem_real weight;               /* 0: another facet accounts for it */
-    int32_t number, end[2];        /* of the segment (of the edge, if it is a whole edge); of its
-                                      ends */
-    int32_t side;                  /* of the element */
-} demi_cut;
 /* A side of a triangle at which its sheet (>>sheets: connected facets) may end, because no single
    triangle continues there. side: 3*element + side. normal: mean normals of the sheet at both ends,
    unit, oriented as the sheet's first facet. */
 typedef struct demi_border { int32_t side; dem_vec3 normal[2]; } demi_border;
 
-/* A wall. */
+/* A wall, or a surface that several walls are joined to (>>surfaces). */
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
     int32_t id;                    /* dem_wall id; of a removed wall: its old id */
@@ -3855,23 +3849,28 @@ typedef struct demi_wall {
     dem_real *vertices;            /* vertex_count x 3, m, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
     /* surfaces of facets (mesh, profile), see >>facets */
-    int edge_count, cut_count, number_count;   /* number_count: faces, edges, corners, cuts */
+    int edge_count, number_count;  /* number_count: faces, edges and corners */
     int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to k + 1 */
     dem_real *weight;              /* weights of faces, edges and corners, in this order */
     unsigned char *owns;           /* element_count: bit k: this facet accounts for edge k;
                                       bit 3 + k: for corner k */
+    unsigned char *ends;           /* element_count: bit k: the surface ends at side k (profile:
+                                      corner k), where no single other facet continues it */
     int32_t *sheet;                /* element_count: number of its sheet, from 1; < 0: oriented
-                                      against the sheet's first facet; 0: a duplicate facet */
+                                      against the sheet's first facet */
     dem_real *planes;              /* element_count x 4: unit normal and n.x of its plane, m; zeros:
                                       too thin to have a plane */
     dem_real plane_slack;          /* m, bound on the rounding error of a distance from a plane */
     demi_border *borders;          /* border_count: of sheets, by side (mesh) */
     int border_count;
-    int32_t *cut_start;            /* element_count + 1: first segment of each in `cuts`; null: no
-                                      cuts */
-    demi_cut *cuts;
+    int chain;                     /* list of its arrays: DEMI_SCENE; DEMI_RUN if it is joined */
+    int32_t *whose;                /* number_count, of a joined surface: the wall of each face, edge
+                                      and corner */
+    int lead;                      /* of a joined surface: the wall that it moves with */
+    int joined;                    /* wall: 1 + index of its joined surface; 0: it is its own */
+    int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other */
-    int lone;                      /* 1: no facet has neighbours in other walls or images */
+    int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
     int repeats[3];                /* 1: repeats along a periodic axis, since it is not longer than
                                       the period */
@@ -4273,7 +4272,9 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
-    int facets_valid;              /* weights of facets fit the walls and their motions */
+    int facets_valid;              /* surfaces fit the walls and their motions */
+    int surface_count;             /* >>surfaces: joined surfaces */
+    demi_wall *surfaces;
     /* >>measure, >>feed, >>placing, >>advice */
     int field_count;
     demi_field *fields;
@@ -7567,6 +7568,28 @@ static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_v
     return DEMI_MAX(most, d - p->radius - q->radius);
 }
 
+enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };     /* largest number of corners of a polygon */
+/* Clips a convex polygon to n.(x - o) >= 0. Returns its number of corners. */
+static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
+    demi_d3 out[DEMI_SECTION];
+    double d[DEMI_SECTION];
+    int i, less = 0, left = 0;
+    for (i = 0; i < count; i++) {
+        d[i] = demi_d3_dot(n, demi_d3_sub(x[i], o));
+        less += d[i] < 0;
+    }
+    if (!less) return count;
+    if (less == count) return 0;
+    for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
+        const int next = i + 1 < count ? i + 1 : 0;
+        if (!(d[i] < 0)) out[left++] = x[i];
+        if ((d[i] < 0) != (d[next] < 0))
+            out[left++] = demi_d3_between(x[i], x[next], d[i]/(d[i] - d[next]));
+    }
+    memcpy(x, out, (size_t)left*sizeof *out);
+    return left;
+}
+
 /* ---------------------------------------------------------------------------------------------
    >>unions
    Unions: several shapes as one rigid body, each with contacts of its own. A piece of a union is
@@ -9334,11 +9357,10 @@ static void demi_finish(dem_world *w) {
    handles that.
 
    The law, with its friction and history, is evaluated at each remaining contact point and
-   multiplied by its weight. Surfaces of walls that do not move relative to each other are joined,
-   and each wall has its part of common weights. Not joined, so that contacts add up as in a corner:
-   facets that intersect or overlap in one plane, cracks, and seams between walls of different
-   kinds. That the Euler characteristic is additive is well known; as a contact rule we have not
-   found it published. Tests: tests/surface/test_facets.c.
+   multiplied by its weight. Walls that do not move relative to each other are joined to one surface
+   (>>surfaces). Not joined, so that contacts add up as in a corner: facets that intersect, cracks,
+   and seams between walls of different kinds. That the Euler characteristic is additive is well
+   known; as a contact rule we have not found it published. Tests: tests/surface/test_facets.c.
    --------------------------------------------------------------------------------------------- */
 DEM_INLINE int demi_wall_is(const demi_wall *wall, int trait) {
     return (demi_wall_kinds[wall->kind].traits & trait) != 0;
@@ -9354,7 +9376,8 @@ static double demi_far2(const double *a, const double *b) {
    split across its longest side; each has a range of `order` and the box of its points. */
 enum { DEMI_TREE_LEAF = 8 };
 typedef struct demi_tree {
-    const double *x;               /* points x 3, m: not a copy */
+    const double *x, *half;        /* points x 3, m: not a copy; half sizes of boxes about them, or
+                                      null */
     int32_t *order;                /* points */
     double *box;                   /* nodes x 6: lowest and highest x, y, z */
     size_t points, nodes;
@@ -9394,10 +9417,13 @@ static void demi_tree_node(demi_tree *t, size_t node, int from, int to) {
     const int mid = from + (to - from)/2;
     int i, k, axis = 0;
     for (k = 0; k < 3; k++) {
-        box[k] = box[3 + k] = t->x[3*t->order[from] + k];
-        for (i = from + 1; i < to; i++) {
-            box[k] = DEMI_MIN(box[k], t->x[3*t->order[i] + k]);
-            box[3 + k] = DEMI_MAX(box[3 + k], t->x[3*t->order[i] + k]);
+        box[k] = 1e300;
+        box[3 + k] = -1e300;
+        for (i = from; i < to; i++) {
+            const int p = 3*t->order[i] + k;
+            const double at = t->x[p], half = t->half ? t->half[p] : 0;
+            box[k] = DEMI_MIN(box[k], at - half);
+            box[3 + k] = DEMI_MAX(box[3 + k], at + half);
         }
         if (box[3 + k] - box[k] > box[3 + axis] - box[axis]) axis = k;
     }
@@ -9588,11 +9614,12 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     demi_tree tree;
     int i, k, count = 0, ok = 0;
     memset(&tree, 0, sizeof tree);
-    wall->owns = (unsigned char *)demi_hold(w, DEMI_SCENE, (size_t)all, 1);
-    wall->edges = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all*3, sizeof(int32_t));
-    wall->planes = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)all*4, sizeof(dem_real));
-    if (!x || !same || !sides || !near_by || !wall->owns || !wall->edges || !wall->planes)
-        goto done;
+    wall->owns = (unsigned char *)demi_hold(w, wall->chain, (size_t)all, 1);
+    wall->edges = (int32_t *)demi_hold(w, wall->chain, (size_t)all*3, sizeof(int32_t));
+    wall->planes = (dem_real *)demi_hold(w, wall->chain, (size_t)all*4, sizeof(dem_real));
+    wall->ends = (unsigned char *)demi_hold(w, wall->chain, (size_t)all, 1);
+    if (!x || !same || !sides || !near_by || !wall->owns || !wall->edges || !wall->planes ||
+        !wall->ends) goto done;
     for (i = 0; i < 3*wall->vertex_count; i++) x[i] = (double)wall->vertices[i];
     if (!demi_tree_make(w, &tree, x, wall->vertex_count)) goto done;
     demi_near_by(x, wall, 0, near_by);
@@ -9603,6 +9630,7 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     for (i = 0; i < all; i++) {
         const int32_t *c = wall->corners + n*i;
         if (!demi_facet_counts(x, near_by, c, n)) continue;
+        wall->ends[i] = 1;                      /* until weights are there */
         for (k = 0; k < n; k++) {
             if (!same[c[k]]) wall->owns[i] = (unsigned char)(wall->owns[i] | 8 << k);
             same[c[k]] = 1;
@@ -9619,10 +9647,11 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
         }
         wall->edges[3*s->facet + s->side] = wall->edge_count - 1;
     }
-    wall->weight = (dem_real *)demi_hold(w, DEMI_SCENE,
+    wall->weight = (dem_real *)demi_hold(w, wall->chain,
                                          (size_t)all + (size_t)wall->edge_count + vertices,
                                           sizeof(dem_real));
     ok = wall->weight != 0;
+    for (i = 0; i < all && ok; i++) wall->weight[i] = (dem_real)wall->ends[i];
 done:
     demi_free(w, x);
     demi_tree_free(w, &tree);
@@ -9637,541 +9666,6 @@ static int demi_facets_any(const demi_wall *wall) {
     int i;
     for (i = 0; i < wall->element_count; i++) if (wall->owns[i]) return 1;
     return 0;
-}
-
-/* True if two walls are at rest relative to each other: both fixed, or moved alike. */
-static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
-    const dem_motion *m = &a->motion, *o = &b->motion;
-    if (a == b) return 1;
-    if (m->kind != o->kind || m->kind == DEM_MOTION_USER || m->kind == DEM_MOTION_TABLE) return 0;
-    if (m->kind == DEM_MOTION_FIXED) return 1;
-    if (memcmp(&m->start, &o->start, sizeof m->start) ||
-        memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
-        memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
-    return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
-        ? !memcmp(&m->point, &o->point, sizeof m->point) &&
-          !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
-          !memcmp(&m->speed, &o->speed, sizeof m->speed)
-        : !memcmp(&m->amplitude, &o->amplitude, sizeof m->amplitude) &&
-          !memcmp(&m->frequency, &o->frequency, sizeof m->frequency) &&
-          !memcmp(&m->phase, &o->phase, sizeof m->phase);
-}
-
-/* --- periodic images of walls. A wall that is not longer than the period along a periodic axis
-   repeats there: it is searched for at the images of bodies and, where it ends exactly where its
-   image begins, the two are one surface. A longer wall represents all its images and must extend
-   beyond both faces by a grain. Infinite walls are their own images. --- */
-static void demi_extent_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad) {
-    dem_real at[3];
-    int k;
-    demi_put(at, x);
-    for (k = 0; k < 3; k++) {
-        lo[k] = DEMI_MIN(lo[k], at[k] - pad);
-        hi[k] = DEMI_MAX(hi[k], at[k] + pad);
-    }
-}
-/* Sets the extent of a finite wall along the world axes, in its present pose. */
-static void demi_wall_span(demi_wall *wall) {
-    const dem_pose *p = &wall->pose;
-    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
-    const dem_real far = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
-    dem_real lo[3] = {far, far, far}, hi[3] = {-far, -far, -far};
-    int i;
-    for (i = 0; i < wall->vertex_count; i++)
-        demi_extent_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
-                                        demi_at(wall->vertices + 3*i))), pad);
-    for (i = 0; i < wall->ring_count; i++) {
-        const dem_vec3 n = demi_v(p->rotation[2], p->rotation[5], p->rotation[8]);
-        const dem_vec3 x = demi_add(p->position, demi_scale(n, wall->ring_height[i]));
-        const dem_vec3 out = demi_v(DEMI_SQRT(DEMI_MAX(1 - n.x*n.x, 0)),
-                                    DEMI_SQRT(DEMI_MAX(1 - n.y*n.y, 0)),
-                                    DEMI_SQRT(DEMI_MAX(1 - n.z*n.z, 0)));
-        demi_extent_add(lo, hi, demi_add(x, demi_scale(out, wall->ring_radius[i])), 0);
-        demi_extent_add(lo, hi, demi_sub(x, demi_scale(out, wall->ring_radius[i])), 0);
-    }
-    if (!wall->vertex_count && !wall->ring_count)
-        demi_extent_add(lo, hi, p->position, wall->extent);
-    if (demi_wall_is(wall, DEMI_DRAWN)) {
-        lo[2] = -far/4;
-        hi[2] = far/4;
-    }
-    memcpy(wall->span_lo, lo, sizeof lo);
-    memcpy(wall->span_hi, hi, sizeof hi);
-}
-/* Sets, for each wall, along which axes it repeats. */
-static void demi_walls_repeat(dem_world *w) {
-    const demi_periods p = demi_periods_of(w);
-    int i, k;
-    w->repeating = 0;
-    for (k = 0; k < 3; k++) w->wall_period[k] = p.period[k] > 0 ? p.period[k] : w->ring_period[k];
-    for (i = 0; i < w->wall_count; i++) {
-        demi_wall *wall = &w->walls[i];
-        memset(wall->repeats, 0, sizeof wall->repeats);
-        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
-        if (!(w->wall_period[0] > 0 || w->wall_period[1] > 0 || w->wall_period[2] > 0)) continue;
-        demi_wall_span(wall);
-        for (k = 0; k < 3; k++) {
-            const dem_real most = DEMI_MAX(DEMI_ABS(wall->span_lo[k]), DEMI_ABS(wall->span_hi[k]));
-            const dem_real slack = 8*(dem_real)FLT_EPSILON*most;
-            wall->repeats[k] = w->wall_period[k] > 0 &&
-                wall->span_hi[k] - wall->span_lo[k] <= w->wall_period[k] + slack;
-            w->repeating |= wall->repeats[k];
-        }
-    }
-}
-static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
-    return demi_v((dem_real)a*w->wall_period[0], (dem_real)b*w->wall_period[1],
-                  (dem_real)c*w->wall_period[2]);
-}
-
-/* The surfaces of a group of walls, joined to one. Points are the corners of all of them, one wall
-   after the other, in the pose in which their motion began (so that a restart finds the same);
-   facets are their elements, without those that have no size. */
-typedef struct demi_join {
-    int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
-    int points, facets, sides, cuts;
-    int images;                    /* of facets: the last ones; their wall is -1 */
-    double *x, *near_by;           /* points: x 3; m, welding tolerance */
-    demi_tree tree;                /* of points */
-    int32_t *same, *mark;          /* points: the first one here; scratch */
-    double *faces, *corners;       /* points: facets there, in all and with a corner */
-    double *edges;                 /* points: sum of weights of edges that end there */
-    double *own;                   /* points: facets of one wall with a corner there */
-    int32_t *facet;                /* facets x 5: wall, element, points of its corners */
-    double *count;                 /* facets: 1; 1/n if they coincide in n walls */
-    demi_side *side, *piece;       /* uncut, and cut: side 3 + k is a piece of side k */
-    int32_t *cut;                  /* cuts x 6: wall, element, points, number, side */
-    double *cut_weight;
-    size_t point_room, facet_room, cut_room;
-} demi_join;
-
-/* Frees the join; weights, cuts and owners have been handed to the walls by then. */
-static void demi_join_free(dem_world *w, demi_join *j) {
-    demi_free(w, j->x);
-    demi_free(w, j->near_by);
-    demi_tree_free(w, &j->tree);
-    demi_free(w, j->same);
-    demi_free(w, j->mark);
-    demi_free(w, j->faces);
-    demi_free(w, j->corners);
-    demi_free(w, j->edges);
-    demi_free(w, j->own);
-    demi_free(w, j->facet);
-    demi_free(w, j->count);
-    demi_free(w, j->side);
-    demi_free(w, j->piece);
-    demi_free(w, j->cut);
-    demi_free(w, j->cut_weight);
-}
-static int demi_join_member(const dem_world *w, int wall, int group, int per) {
-    const demi_wall *m = &w->walls[wall];
-    return demi_faceted(m) && m->group == group && per == demi_wall_per(m);
-}
-/* True if a wall stays at rest relative to its image along an axis. */
-static int demi_wall_keeps(const demi_wall *wall, int axis) {
-    const dem_motion *m = &wall->motion;
-    const dem_vec3 n = demi_unit(m->axis), e = demi_v(axis == 0, axis == 1, axis == 2);
-    return wall->repeats[axis] && (m->kind != DEM_MOTION_ROTATING ||
-                                   demi_length(demi_cross(n, e)) <= DEM_R(1e-6));
-}
-/* Adds images of facets that touch the group. They count for the weights of edges and corners at
-   them, and get no weight themselves. fill 0: only counts them, with one point per corner. */
-static void demi_join_images(const dem_world *w, demi_join *j, int group, int fill) {
-    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, slack = 0;
-    int i, e, k, c, n, first = 0;
-    if (!w->repeating) return;
-    for (i = group; i < w->wall_count; i++)
-        for (k = 0; k < 3 && demi_join_member(w, i, group, j->per); k++) {
-            lo[k] = DEMI_MIN(lo[k], (double)w->walls[i].span_lo[k]);
-            hi[k] = DEMI_MAX(hi[k], (double)w->walls[i].span_hi[k]);
-            if (k == 2 && j->per == 2) continue;
-            slack = DEMI_MAX(slack, 8*(double)FLT_EPSILON*DEMI_MAX(fabs(lo[k]), fabs(hi[k])));
-        }
-    for (i = group; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        if (!demi_join_member(w, i, group, j->per)) continue;
-        for (n = 0; n < 27; n++) {
-            const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
-            const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
-            int use = n != 13;
-            for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(wall, k));
-            for (e = 0; e < wall->element_count && use; e++) {
-                double x[9], a = 0, b = 0;
-                int near = 1;
-                for (c = 0; c < j->per; c++) {
-                    const dem_vec3 at = demi_add(by, demi_add(wall->pose.position,
-                        demi_rotate(wall->pose.rotation, demi_at(wall->vertices + 3*
-                                                               wall->corners[j->per*e + c]))));
-                    demi_d3_put(x + 3*c, demi_d3_of(at));
-                }
-                for (k = 0; k < 3; k++) {
-                    for (c = 0; c < j->per; c++) {
-                        a = c ? DEMI_MIN(a, x[3*c + k]) : x[k];
-                        b = c ? DEMI_MAX(b, x[3*c + k]) : x[k];
-                    }
-                    near = near && a <= hi[k] + slack && b >= lo[k] - slack;
-                }
-                if (!near) continue;
-                if (!fill) {
-                    j->point_room += (size_t)j->per;
-                    j->facet_room++;
-                    continue;
-                }
-                memcpy(j->x + 3*j->points, x, (size_t)j->per*3*sizeof *x);
-                for (c = 0; c < j->per; c++)    /* as for the wall's own corners */
-                    j->near_by[j->points + c] = j->near_by[first + wall->corners[j->per*e + c]];
-                j->points += j->per;
-                j->images++;
-            }
-        }
-        first += wall->vertex_count;
-    }
-}
-/* Collects the points and facets of all walls of a group. Returns 0 if memory ran out. */
-static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
-    int i, e, k, first = 0, real_points;
-    memset(j, 0, sizeof *j);
-    j->per = per;
-    for (i = group; i < w->wall_count; i++) {
-        if (!demi_join_member(w, i, group, per)) continue;
-        j->point_room += (size_t)w->walls[i].vertex_count;
-        j->facet_room += (size_t)w->walls[i].element_count;
-    }
-    demi_join_images(w, j, group, 0);
-    if (j->point_room > INT_MAX/8 || j->facet_room > INT_MAX/8) return 0;
-    j->x = (double *)demi_alloc(w, j->point_room*3, sizeof(double));
-    j->near_by = (double *)demi_alloc(w, j->point_room, sizeof(double));
-    j->same = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
-    j->mark = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
-    j->faces = (double *)demi_alloc(w, j->point_room, sizeof(double));
-    j->corners = (double *)demi_alloc(w, j->point_room, sizeof(double));
-    j->edges = (double *)demi_alloc(w, j->point_room, sizeof(double));
-    j->own = (double *)demi_alloc(w, j->point_room, sizeof(double));
-    j->facet = (int32_t *)demi_alloc(w, j->facet_room*5, sizeof(int32_t));
-    j->count = (double *)demi_alloc(w, j->facet_room, sizeof(double));
-    j->side = (demi_side *)demi_alloc(w, j->facet_room*3, sizeof(demi_side));
-    if (!j->x || !j->near_by || !j->same || !j->mark || !j->faces || !j->corners ||
-        !j->edges || !j->own || !j->facet || !j->count || !j->side) return 0;
-    for (i = group; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        if (!demi_join_member(w, i, group, per)) continue;
-        for (k = 0; k < wall->vertex_count; k++) {
-            const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation,
-                                         demi_at(wall->vertices + 3*k)));
-            demi_d3_put(j->x + 3*j->points++, demi_d3_of(at));
-        }
-        demi_near_by(j->x, wall, first, j->near_by);
-        first += wall->vertex_count;
-    }
-    real_points = j->points;
-    demi_join_images(w, j, group, 1);
-    first = 0;
-    if (!demi_tree_make(w, &j->tree, j->x, j->points)) return 0;
-    demi_points_weld(&j->tree, j->near_by, j->same);
-    for (i = group; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        if (!demi_join_member(w, i, group, per)) continue;
-        for (e = 0; e < wall->element_count; e++) {
-            int32_t *f = j->facet + 5*j->facets;
-            f[0] = i;
-            f[1] = e;
-            for (k = 0; k < per; k++) f[2 + k] = j->same[first + wall->corners[per*e + k]];
-            if (!demi_facet_counts(j->x, j->near_by, f + 2, per)) continue;
-            j->count[j->facets++] = 1;
-        }
-        first += wall->vertex_count;
-    }
-    for (i = 0; i < j->images; i++) {
-        int32_t *f = j->facet + 5*j->facets;
-        f[0] = f[1] = -1;
-        for (k = 0; k < per; k++) f[2 + k] = j->same[real_points + per*i + k];
-        if (!demi_facet_counts(j->x, j->near_by, f + 2, per)) continue;
-        j->count[j->facets++] = 1;
-    }
-    return 1;
-}
-/* Facets that coincide, such as the touching sides of two boxes, count once in total: the first of
-   each wall counts, in equal parts. */
-static void demi_join_double(demi_join *j) {
-    demi_side *s = j->side;
-    int i, k, end;
-    for (i = 0; i < j->facets; i++) {
-        int32_t c[3];
-        for (k = 0; k < 3; k++) c[k] = j->facet[5*i + 2 + (k < j->per ? k : 0)];
-        s[i] = demi_side_of(DEMI_MIN(c[0], DEMI_MIN(c[1], c[2])),
-                            DEMI_MAX(c[0], DEMI_MAX(c[1], c[2])), 0, i);
-        if (j->per == 3) s[i].facet = c[0] + c[1] + c[2] - s[i].lo - s[i].hi;
-    }
-    qsort(s, (size_t)j->facets, sizeof *s, demi_side_compare);
-    for (i = 0; i < j->facets; i = end) {
-        int walls = 0;
-        for (end = i; end < j->facets && s[end].lo == s[i].lo && s[end].hi == s[i].hi &&
-             s[end].facet == s[i].facet; end++) {
-            const int wall = j->facet[5*s[end].side];      /* ascending, as facets are */
-            j->count[s[end].side] = end == i || wall != j->facet[5*s[end - 1].side];
-            walls += j->count[s[end].side] > 0;
-        }
-        for (k = i; k < end; k++) j->count[s[k].side] /= walls;
-    }
-    for (i = 0; i < j->facets; i++)
-        for (k = 0; k < j->per; k++) {
-            j->faces[j->facet[5*i + 2 + k]] += j->count[i];
-            j->corners[j->facet[5*i + 2 + k]] += j->count[i];
-        }
-}
-/* Finds the points on the line from a to b, without its ends, once per position and in order.
-   Returns their number; out may be null. */
-static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
-    const double *p = j->x + 3*a, *q = j->x + 3*b;
-    const demi_d3 way = demi_d3_sub(demi_d3_at(q), demi_d3_at(p));
-    const double size2 = demi_far2(p, q), ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
-    demi_search_line line;
-    int32_t at;
-    int i, n = 0;
-    demi_tree_line(&line, &j->tree, p, q, ends);
-    while ((at = demi_tree_next(&line)) >= 0) {
-        const demi_d3 to = demi_d3_sub(demi_d3_at(j->x + 3*at), demi_d3_at(p));
-        const double most = DEMI_MIN(ends, j->near_by[at]), t = demi_d3_dot(to, way)/size2;
-        if (j->same[at] != at || at == a || at == b || !(j->corners[at] > 0)) continue;
-        if (!(t > 0 && t < 1) || !(demi_d3_square(demi_d3_plus(to, -t, way)) <= most*most))
-            continue;
-        n++;
-        if (!out) continue;
-        for (i = n - 1; i > 0 && demi_far2(p, j->x + 3*out[i - 1]) > t*t*size2; i--)
-            out[i] = out[i - 1];
-        out[i] = at;
-    }
-    return n;
-}
-/* Cuts the sides of triangles at corners of others that lie on them. Returns 0 if memory ran
-   out. */
-static int demi_join_cut(dem_world *w, demi_join *j) {
-    int32_t *between = 0;
-    size_t most = 0, room = 0;
-    int i, k, end, cuts, n = 0, pass;
-    for (i = 0; i < j->facets; i++)
-        for (k = 0; k < 3; k++)
-            j->side[j->sides++] = demi_side_of(j->facet[5*i + 2 + k], j->facet[5*i + 2 + (k + 1)%3],
-                                               i, k);
-    qsort(j->side, (size_t)j->sides, sizeof *j->side, demi_side_compare);
-    for (pass = 0; pass < 2; pass++) {          /* count, then make them */
-        for (i = 0; i < j->sides; i = end) {
-            const demi_side *s = j->side + i;
-            for (end = i; end < j->sides && j->side[end].lo == s->lo && j->side[end].hi == s->hi;)
-                end++;
-            cuts = demi_join_between(j, s->lo, s->hi, between);
-            most = DEMI_MAX(most, (size_t)cuts);
-            room += pass ? 0 : (size_t)(end - i)*((size_t)cuts + 1);
-            j->cut_room += pass || !cuts ? 0 : (size_t)(end - i)*((size_t)cuts + 1);
-            for (; pass && s < j->side + end; s++) {
-                for (k = 0; k <= cuts; k++)
-                    j->piece[n++] = demi_side_of(k ? between[k - 1] : s->lo, k < cuts ? between[k]
-                                                 : s->hi, s->facet, s->side + (cuts ? 3 : 0));
-                for (k = 0; k < cuts; k++) j->faces[between[k]] += j->count[s->facet];
-            }
-        }
-        if (pass) break;
-        if (room > INT_MAX/8) return 0;
-        j->piece = (demi_side *)demi_alloc(w, room, sizeof *j->piece);
-        between = (int32_t *)demi_alloc(w, most, sizeof *between);
-        j->cut = (int32_t *)demi_alloc(w, j->cut_room*6, sizeof *j->cut);
-        j->cut_weight = (double *)demi_alloc(w, j->cut_room, sizeof *j->cut_weight);
-        if ((room && !j->piece) || (most && !between) ||
-            (j->cut_room && (!j->cut || !j->cut_weight))) break;
-    }
-    j->sides = n;
-    if (pass == 1 && n) qsort(j->piece, (size_t)n, sizeof *j->piece, demi_side_compare);
-    demi_free(w, between);
-    return pass == 1;
-}
-/* Assigns one wall's part, `more`, of the weight at sides first .. end - 1 of the join: to one of
-   its edges, or else to the first of its cuts; the other cuts record its number. */
-static void demi_join_edge(dem_world *w, demi_join *j, int first, int end, int id, double more) {
-    demi_wall *wall = &w->walls[id];
-    int k, whole = -1, number = 0;
-    for (k = first; k < end && whole < 0; k++) {
-        const int32_t *f = j->facet + 5*j->piece[k].facet;
-        if (f[0] == id && j->piece[k].side < 3)
-            whole = wall->edges[3*f[1] + j->piece[k].side];
-    }
-    if (whole >= 0) {
-        number = wall->element_count + whole;
-        wall->weight[number] = (dem_real)more;
-    } else number = wall->element_count + wall->edge_count + wall->vertex_count + wall->cut_count;
-    for (k = first; k < end; k++) {
-        const demi_side *s = j->piece + k;
-        const int32_t *f = j->facet + 5*s->facet;
-        int32_t *c;
-        if (f[0] != id || s->side < 3) continue;
-        c = j->cut + 6*j->cuts;
-        c[0] = id; c[1] = f[1]; c[2] = s->lo; c[3] = s->hi; c[4] = number; c[5] = s->side - 3;
-        j->cut_weight[j->cuts++] = whole < 0 ? more : 0;
-        wall->cut_count++;
-        whole = 0;                              /* the first cut has it */
-    }
-}
-/* Computes the weights of edges and divides them among walls. */
-static void demi_join_edges(dem_world *w, demi_join *j) {
-    int i, k, end, other;
-    for (i = 0; i < j->sides; i = end) {
-        const demi_side *s = j->piece + i;
-        double all = 0;
-        for (end = i; end < j->sides && j->piece[end].lo == s->lo && j->piece[end].hi == s->hi;)
-            all += j->count[j->piece[end++].facet];
-        j->edges[s->lo] += all > 0 ? 1 - all : 0;
-        j->edges[s->hi] += all > 0 ? 1 - all : 0;
-        for (k = i; k < end; k++) {             /* each wall at its first side */
-            const int id = j->facet[5*j->piece[k].facet];
-            double mine = 0;
-            int first = k;
-            if (id < 0) continue;               /* an image */
-            for (other = i; other < end; other++) {
-                if (j->facet[5*j->piece[other].facet] != id) continue;
-                first = DEMI_MIN(first, other);
-                mine += j->count[j->piece[other].facet];
-            }
-            if (first == k)
-                demi_join_edge(w, j, i, end, id, all > 0 ? mine*(1 - all)/all : 0);
-        }
-    }
-}
-/* Corners of profiles that lie on other segments also count as corners of those. */
-static int demi_join_profiles(dem_world *w, demi_join *j) {
-    int32_t *between = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *between);
-    int i, k;
-    if (!between) return 0;
-    for (i = 0; i < j->facets; i++) {
-        const int n = demi_join_between(j, j->facet[5*i + 2], j->facet[5*i + 3], between);
-        for (k = 0; k < n; k++) j->faces[between[k]] += j->count[i];
-    }
-    demi_free(w, between);
-    return 1;
-}
-/* Computes the weights of corners and faces. */
-static void demi_join_corners(dem_world *w, demi_join *j) {
-    int f, end, g, k;
-    for (f = 0; f < j->facets; f = end) {       /* one wall after the other */
-        const int id = j->facet[5*f];
-        demi_wall *wall = &w->walls[id < 0 ? 0 : id];
-        dem_real *corner;
-        if (id < 0) return;                     /* images get no weight */
-        corner = wall->weight + wall->element_count + wall->edge_count;
-        memset(j->own, 0, (size_t)j->points*sizeof *j->own);
-        for (end = f; end < j->facets && j->facet[5*end] == id; end++) {
-            wall->weight[j->facet[5*end + 1]] = (dem_real)j->count[end];
-            for (k = 0; k < j->per; k++) j->own[j->facet[5*end + 2 + k]] += j->count[end];
-        }
-        for (g = f; g < end; g++) {
-            const int element = j->facet[5*g + 1];
-            for (k = 0; k < j->per; k++) {
-                const int32_t at = j->facet[5*g + 2 + k];
-                if (!(wall->owns[element] >> (3 + k) & 1) || !(j->own[at] > 0)) continue;
-                corner[wall->corners[j->per*element + k]] =
-                    (dem_real)((1 - j->faces[at] - j->edges[at])*j->own[at]/j->corners[at]);
-                j->own[at] = 0;
-            }
-        }
-    }
-}
-static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32_t point) {
-    return demi_unrotate(wall->home.rotation, demi_sub(demi_d3_real(demi_d3_at(j->x + 3*point)),
-                                                       wall->home.position));
-}
-/* Hands the cuts to their walls, by element. Returns 0 if memory ran out. */
-static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
-    int32_t *own = j->mark;                     /* by point: number of the wall's corner there */
-    int i, k, e, first = 0, passed = 0;
-    for (i = group; i < w->wall_count; i++) {
-        demi_wall *wall = &w->walls[i];
-        const size_t n = (size_t)wall->element_count + 1;
-        if (!demi_join_member(w, i, group, j->per)) continue;
-        first = passed;
-        passed += wall->vertex_count;
-        wall->number_count += wall->cut_count;
-        if (!wall->cut_count) continue;
-        wall->cut_start = (int32_t *)demi_hold(w, DEMI_SCENE, n, sizeof(int32_t));
-        wall->cuts = (demi_cut *)demi_hold(w, DEMI_SCENE, (size_t)wall->cut_count,
-                                           sizeof(demi_cut));
-        if (!wall->cut_start || !wall->cuts) return 0;
-        for (k = 0; k < j->points; k++) own[k] = -1;
-        for (k = 0; k < wall->vertex_count; k++) {
-            const int32_t at = j->same[first + k];
-            if (own[at] < 0) own[at] = wall->element_count + wall->edge_count + k;
-        }
-        for (k = 0; k < j->cuts; k++) if (j->cut[6*k] == i) wall->cut_start[j->cut[6*k + 1] + 1]++;
-        for (k = 0; k < wall->element_count; k++) wall->cut_start[k + 1] += wall->cut_start[k];
-        for (k = j->cuts - 1; k >= 0; k--) {    /* backwards: starts end where they were */
-            const int32_t *c = j->cut + 6*k;
-            demi_cut *to;
-            if (c[0] != i) continue;
-            to = wall->cuts + --wall->cut_start[c[1] + 1];
-            to->a = demi_join_local(j, wall, c[2]);
-            to->b = demi_join_local(j, wall, c[3]);
-            to->number = c[4];
-            to->side = c[5];
-            for (e = 0; e < 2; e++)             /* corners of other walls: beyond its own numbers */
-                to->end[e] = own[c[2 + e]] >= 0 ? own[c[2 + e]]
-                    : wall->number_count + c[2 + e];
-            to->weight = (dem_real)j->cut_weight[k];
-        }
-        for (k = 0; k < wall->element_count; k++) wall->cut_start[k] = wall->cut_start[k + 1];
-        wall->cut_start[wall->element_count] = wall->cut_count;
-        wall->number_count += j->points;
-    }
-    return 1;
-}
-/* Removes the cuts of a wall: then only facets that share corners are neighbours. */
-static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
-    demi_free(w, wall->cut_start);
-    demi_free(w, wall->cuts);
-    wall->cut_start = 0;
-    wall->cuts = 0;
-    wall->cut_count = 0;
-}
-/* Marks the walls of a group that share nothing with others or with their own images. */
-static void demi_join_lone(dem_world *w, int group, int per) {
-    int i, members = 0;
-    for (i = group; i < w->wall_count; i++) members += demi_join_member(w, i, group, per);
-    for (i = group; i < w->wall_count; i++) {
-        const int *repeats = w->walls[i].repeats;
-        if (demi_join_member(w, i, group, per))
-            w->walls[i].lone = members == 1 && !repeats[0] && !repeats[1] && !repeats[2];
-    }
-}
-/* Groups the walls and computes the weights of their facets again. Returns 0 if memory ran out; the
-   next call then tries again. */
-static int demi_facets_weigh(dem_world *w) {
-    int i, k, per, ok = 1;
-    demi_walls_repeat(w);
-    for (i = 0; i < w->wall_count; i++) {
-        demi_wall *wall = &w->walls[i];
-        for (k = 0; k < i; k++)
-            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall))
-                break;
-        wall->group = k;
-        if (!demi_faceted(wall)) continue;
-        demi_facets_drop_cuts(w, wall);
-        wall->number_count = wall->element_count + wall->edge_count + wall->vertex_count;
-        memset(wall->weight, 0, ((size_t)wall->element_count + (size_t)wall->edge_count +
-                                 (size_t)wall->vertex_count)*sizeof(dem_real));
-    }
-    for (i = 0; i < w->wall_count && ok; i++)
-        for (per = 2; per <= 3 && ok; per++) {
-            demi_join j;
-            if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].group != i) continue;
-            for (k = i; k < w->wall_count && !demi_join_member(w, k, i, per);) k++;
-            if (k == w->wall_count) continue;
-            demi_join_lone(w, i, per);
-            ok = demi_join_begin(w, &j, i, per);
-            if (ok) demi_join_double(&j);
-            if (ok) ok = per == 3 ? demi_join_cut(w, &j) : demi_join_profiles(w, &j);
-            if (ok && per == 3) demi_join_edges(w, &j);
-            if (ok) demi_join_corners(w, &j);
-            if (ok) ok = demi_join_hand(w, &j, i);
-            demi_join_free(w, &j);
-        }
-    w->facets_valid = ok;
-    return ok;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -10197,7 +9691,7 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     int i, k, c, count = 0;
     for (i = 0; i < 3*all; i++) count += demi_side_ends(wall, beside, i);
     wall->border_count = count;
-    wall->borders = (demi_border *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MAX(count, 1),
+    wall->borders = (demi_border *)demi_hold(w, wall->chain, (size_t)DEMI_MAX(count, 1),
                                              sizeof *wall->borders);
     if (!first || !wall->borders) { demi_free(w, first); return 0; }
     memset(first, 0, (size_t)(points + 2)*sizeof *first);
@@ -10229,26 +9723,9 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     demi_free(w, first);
     return 1;
 }
-/* Marks triangles with the same corners as an earlier one: their sheet is INT_MAX. s: room for all
-   elements. */
-static void demi_facets_copies(demi_wall *wall, demi_side *s) {
-    const int all = wall->element_count;
-    int i;
-    for (i = 0; i < all; i++) {
-        const int32_t *c = wall->corners + 3*i;
-        const int32_t lo = DEMI_MIN(c[0], DEMI_MIN(c[1], c[2]));
-        const int32_t hi = DEMI_MAX(c[0], DEMI_MAX(c[1], c[2]));
-        s[i] = demi_side_of(lo, hi, c[0] + c[1] + c[2] - lo - hi, i);
-    }
-    qsort(s, (size_t)all, sizeof *s, demi_side_compare);
-    for (i = 1; i < all; i++)
-        if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi && s[i].facet == s[i - 1].facet)
-            wall->sheet[s[i].side] = INT_MAX;
-}
 /* Assigns facets to sheets: those connected by edges (for segments: ends) that exactly two facets
    share. wall->sheet is negative for facets that are oriented opposite to the first of their sheet.
-   A triangle with the corners of an earlier one belongs to no sheet, since that one represents
-   both. beside: for each side the neighbour's (3*element + side), or -1. Returns 0 if memory ran
+   beside: for each side the neighbour's (3*element + side), or -1. Returns 0 if memory ran
    out. */
 static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     const int n = demi_wall_per(wall), all = wall->element_count;
@@ -10256,10 +9733,9 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     int32_t *beside = (int32_t *)demi_alloc(w, (size_t)all*4, sizeof *beside);
     int32_t *row = beside ? beside + 3*all : 0;
     int i, k, count = 0, rows, sheets = 0;
-    wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
-    if (n == 3 && sides && wall->sheet) demi_facets_copies(wall, sides);
+    wall->sheet = (int32_t *)demi_hold(w, wall->chain, (size_t)all, sizeof(int32_t));
     for (i = 0; i < all && sides && beside && wall->sheet; i++)
-        for (k = 0; k < n && !wall->sheet[i]; k++) {
+        for (k = 0; k < n; k++) {
             const int32_t *c = wall->corners + n*i;
             sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
         }
@@ -10293,7 +9769,6 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
             }
         }
     }
-    for (i = 0; i < all && count; i++) if (wall->sheet[i] == INT_MAX) wall->sheet[i] = 0;
     demi_free(w, sides);
     i = count && (n != 3 || demi_wall_borders(w, wall, beside));
     demi_free(w, beside);
@@ -10529,8 +10004,8 @@ static double demi_wall_speed(const demi_wall *wall) {
    --------------------------------------------------------------------------------------------- */
 /* Pointers to the arrays that a wall owns. These are freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
-    &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->borders, &(wall)->planes, \
-    &(wall)->cut_start, &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, \
+    &(wall)->weight, &(wall)->owns, &(wall)->ends, &(wall)->sheet, &(wall)->borders, \
+    &(wall)->planes, &(wall)->whose, &(wall)->cell_start, &(wall)->cell_items, \
     &(wall)->motion.table}
 /* Frees the arrays of a wall and clears it: it is then a removed wall. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
@@ -10538,8 +10013,8 @@ static void demi_wall_free(dem_world *w, demi_wall *wall) {
     size_t k;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a trial copy does not own
-                                                                      it */
+        if (demi_owns(w, wall->chain, data)) demi_free(w, data);    /* a trial copy does not own
+                                                                       it */
     }
     memset(wall, 0, sizeof *wall);
 }
@@ -10551,7 +10026,7 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     int ok = 1;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        copy = data ? demi_hold(w, DEMI_SCENE, demi_room(data, 1), 1) : 0;
+        copy = data ? demi_hold(w, wall->chain, demi_room(data, 1), 1) : 0;
         ok = ok && !copy == !data;
         if (copy) memcpy(copy, data, demi_room(data, 1));
         memcpy(places[k], &copy, sizeof copy);
@@ -10560,6 +10035,44 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     return ok;
 }
 
+/* True if two walls are at rest relative to each other: both fixed, or moved alike. */
+static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    if (a == b) return 1;
+    if (m->kind != o->kind || m->kind == DEM_MOTION_USER || m->kind == DEM_MOTION_TABLE) return 0;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (memcmp(&m->start, &o->start, sizeof m->start) ||
+        memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
+        memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
+    return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
+        ? !memcmp(&m->point, &o->point, sizeof m->point) &&
+          !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
+          !memcmp(&m->speed, &o->speed, sizeof m->speed)
+        : !memcmp(&m->amplitude, &o->amplitude, sizeof m->amplitude) &&
+          !memcmp(&m->frequency, &o->frequency, sizeof m->frequency) &&
+          !memcmp(&m->phase, &o->phase, sizeof m->phase);
+}
+
+/* True if no other wall moves with this one. */
+static int demi_wall_alone(const dem_world *w, const demi_wall *wall, int place) {
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (i != place && w->walls[i].kind != DEMI_WALL_NONE &&
+            demi_walls_together(&w->walls[i], wall)) return 0;
+    return 1;
+}
+/* Called when a wall is added, removed or moved otherwise. Surfaces are made again (>>surfaces),
+   and the numbers of their features change: contacts are followed by direction once. */
+static void demi_surfaces_outdated(dem_world *w) {
+    int d, k;
+    w->facets_valid = 0;
+    for (d = 0; d < DEMI_DOMAINS; d++)
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (c->b < 0 && (demi_faceted(&w->walls[c->wall])))
+                c->element = -1;
+        }
+}
 /* Returns the number of corners of an element and writes their coordinates. */
 static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) {
     const int n = demi_wall_per(wall);
@@ -10659,7 +10172,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
     if (wall->element_count <= 4) return 1;     /* a few: all are examined */
     demi_wall_cells_choose(wall);
     n = wall->cells[0]*wall->cells[1]*wall->cells[2];
-    wall->cell_start = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)n + 1, sizeof(int32_t));
+    wall->cell_start = (int32_t *)demi_hold(w, wall->chain, (size_t)n + 1, sizeof(int32_t));
     if (!wall->cell_start) return 0;
     for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back */
         for (i = wall->element_count - 1; i >= 0; i--) {
@@ -10676,7 +10189,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
         if (pass == 0) {
             for (i = 1; i <= n; i++) wall->cell_start[i] += wall->cell_start[i - 1];
             wall->cell_item_count = wall->cell_start[n];
-            wall->cell_items = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)wall->cell_item_count,
+            wall->cell_items = (int32_t *)demi_hold(w, wall->chain, (size_t)wall->cell_item_count,
                                                      sizeof(int32_t));
             if (!wall->cell_items) return 0;
         }
@@ -10735,7 +10248,7 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
     w->walls[i] = *wall;
     w->walls[i].id = id.id;
     w->wall_count = DEMI_MAX(w->wall_count, i + 1);
-    w->facets_valid = 0;
+    demi_surfaces_outdated(w);
     demi_built(w, call);
     demi_scene_changed(w);
     return id;
@@ -10761,6 +10274,7 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
     demi_pose_identity(&wall->home);
     wall->kind = kind;
     wall->share = 1;
+    wall->chain = DEMI_SCENE;
     wall->symmetric = 1;                        /* until it moves */
     return demi_material_index(w, call, material, &wall->material) == DEM_OK;
 }
@@ -11201,8 +10715,9 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    if (w->repeating || !demi_wall_alone(w, &w->walls[i], i) || !demi_wall_alone(w, &next, i))
+        demi_surfaces_outdated(w);
     w->walls[i] = next;
-    w->facets_valid = 0;
     demi_built(w, "dem_wall_motion_set");
     demi_scene_changed(w);
     return DEM_OK;
@@ -11241,7 +10756,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     demi_wall_forget(w, i);
     demi_wall_free(w, &w->walls[i]);            /* other walls keep their indices */
     w->walls[i].id = id.id;
-    w->facets_valid = 0;
+    demi_surfaces_outdated(w);
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -11282,6 +10797,918 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
     if (i < 0) return DEM_ERROR_ARGUMENT;
     demi_loads_reset(&w->walls[i].loads);
     return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>joins
+   Facets of walls that move together, made into facets of one surface: corners at the same position
+   become one, facets that coincide or cover each other in a plane are resolved, and facets are
+   divided where corners of others lie on their sides. Before that: which walls move together, and
+   how walls repeat in a periodic world. >>surfaces makes the surfaces. Owns the numbers of walls
+   that say how they repeat; a demi_join exists only while a surface is made.
+   --------------------------------------------------------------------------------------------- */
+/* --- periodic images of walls. A wall that is not longer than the period along a periodic axis
+   repeats there: it is searched for at the images of bodies and, where it ends exactly where its
+   image begins, the two are one surface. A longer wall represents all its images and must extend
+   beyond both faces by a grain. Infinite walls are their own images. --- */
+static void demi_extent_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad) {
+    dem_real at[3];
+    int k;
+    demi_put(at, x);
+    for (k = 0; k < 3; k++) {
+        lo[k] = DEMI_MIN(lo[k], at[k] - pad);
+        hi[k] = DEMI_MAX(hi[k], at[k] + pad);
+    }
+}
+/* Sets the extent of a finite wall along the world axes, in its present pose. */
+static void demi_wall_span(demi_wall *wall) {
+    const dem_pose *p = &wall->pose;
+    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
+    const dem_real far = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
+    dem_real lo[3] = {far, far, far}, hi[3] = {-far, -far, -far};
+    int i;
+    for (i = 0; i < wall->vertex_count; i++)
+        demi_extent_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
+                                        demi_at(wall->vertices + 3*i))), pad);
+    for (i = 0; i < wall->ring_count; i++) {
+        const dem_vec3 n = demi_v(p->rotation[2], p->rotation[5], p->rotation[8]);
+        const dem_vec3 x = demi_add(p->position, demi_scale(n, wall->ring_height[i]));
+        const dem_vec3 out = demi_v(DEMI_SQRT(DEMI_MAX(1 - n.x*n.x, 0)),
+                                    DEMI_SQRT(DEMI_MAX(1 - n.y*n.y, 0)),
+                                    DEMI_SQRT(DEMI_MAX(1 - n.z*n.z, 0)));
+        demi_extent_add(lo, hi, demi_add(x, demi_scale(out, wall->ring_radius[i])), 0);
+        demi_extent_add(lo, hi, demi_sub(x, demi_scale(out, wall->ring_radius[i])), 0);
+    }
+    if (!wall->vertex_count && !wall->ring_count)
+        demi_extent_add(lo, hi, p->position, wall->extent);
+    if (demi_wall_is(wall, DEMI_DRAWN)) {
+        lo[2] = -far/4;
+        hi[2] = far/4;
+    }
+    memcpy(wall->span_lo, lo, sizeof lo);
+    memcpy(wall->span_hi, hi, sizeof hi);
+}
+/* Sets, for each wall, along which axes it repeats. */
+static void demi_walls_repeat(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    w->repeating = 0;
+    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
+    for (k = 0; k < 3; k++) w->wall_period[k] = p.period[k] > 0 ? p.period[k] : w->ring_period[k];
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        memset(wall->repeats, 0, sizeof wall->repeats);
+        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
+        if (!(w->wall_period[0] > 0 || w->wall_period[1] > 0 || w->wall_period[2] > 0)) continue;
+        demi_wall_span(wall);
+        for (k = 0; k < 3; k++) {
+            const dem_real most = DEMI_MAX(DEMI_ABS(wall->span_lo[k]), DEMI_ABS(wall->span_hi[k]));
+            const dem_real slack = 8*(dem_real)FLT_EPSILON*most;
+            wall->repeats[k] = w->wall_period[k] > 0 &&
+                wall->span_hi[k] - wall->span_lo[k] <= w->wall_period[k] + slack;
+            w->repeating |= wall->repeats[k];
+        }
+    }
+    for (i = 0; i < w->surface_count && w->repeating; i++) demi_wall_span(&w->surfaces[i]);
+}
+static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
+    return demi_v((dem_real)a*w->wall_period[0], (dem_real)b*w->wall_period[1],
+                  (dem_real)c*w->wall_period[2]);
+}
+
+/* --- collecting --- */
+
+/* The facets of the walls of a group while they are joined. Points are corners, one wall after the
+   other, in the pose in which their motion began, so that a restart finds the same; then the
+   corners of periodic images that are near. */
+typedef struct demi_join {
+    int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
+    int points, facets, sides, lead;
+    int changed;                   /* facets were removed or divided */
+    double *x, *near_by;           /* points x 3, m; welding tolerance, m */
+    demi_tree tree;                /* of points */
+    int32_t *same;                 /* points: the first one at this position */
+    int32_t *facet;                /* facets x 6: points of its corners, wall, element, and the
+                                      closed shell that it is part of, or -1 */
+    demi_side *side;
+    int32_t *root;                 /* facets: a tree of those that are connected */
+    unsigned char *mark;           /* facets, points: DEMI_JOIN_... */
+} demi_join;
+enum { DEMI_JOIN_OPEN = 1, DEMI_JOIN_PAIRED = 2, DEMI_JOIN_ANCHORED = 4, DEMI_JOIN_GONE = 8 };
+
+static void demi_join_free(dem_world *w, demi_join *j) {
+    demi_free(w, j->x);
+    demi_free(w, j->near_by);
+    demi_tree_free(w, &j->tree);
+    demi_free(w, j->same);
+    demi_free(w, j->facet);
+    demi_free(w, j->side);
+    demi_free(w, j->root);
+    demi_free(w, j->mark);
+}
+/* True if a wall is part of a join: of this group, kind of facet, and axes along which it repeats.
+   lead: the first such wall. */
+static int demi_join_member(const dem_world *w, int wall, int lead, int per) {
+    const demi_wall *m = &w->walls[wall];
+    return demi_faceted(m) && m->group == w->walls[lead].group && per == demi_wall_per(m) &&
+        !memcmp(m->repeats, w->walls[lead].repeats, sizeof m->repeats);
+}
+/* True if a wall stays at rest relative to its image along an axis. */
+static int demi_wall_keeps(const demi_wall *wall, int axis) {
+    const dem_motion *m = &wall->motion;
+    const dem_vec3 n = demi_unit(m->axis), e = demi_v(axis == 0, axis == 1, axis == 2);
+    return wall->repeats[axis] && (m->kind != DEM_MOTION_ROTATING ||
+                                   demi_length(demi_cross(n, e)) <= DEM_R(1e-6));
+}
+/* Sets *by, m, to the displacement of the n-th periodic image (0 .. 26; 13 is the wall itself).
+   Returns 0 if the wall does not repeat there. */
+static int demi_join_shift(const dem_world *w, const demi_wall *wall, int n, demi_d3 *by) {
+    const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+    int k, use = n != 13;
+    for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(wall, k));
+    *by = demi_d3_of(demi_wall_shift(w, s[0], s[1], s[2]));
+    return use;
+}
+/* Adds, or counts if `fill` is 0, the corners of images within the box of the walls. Returns their
+   number. */
+static int demi_join_images(const dem_world *w, demi_join *j, int fill) {
+    const demi_wall *wall = &w->walls[j->lead];
+    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, slack = 0;
+    const int own = j->points;
+    int i, k, n, count = 0;
+    for (i = 0; i < own; i++)
+        for (k = 0; k < 3; k++) {
+            lo[k] = DEMI_MIN(lo[k], j->x[3*i + k]);
+            hi[k] = DEMI_MAX(hi[k], j->x[3*i + k]);
+            slack = DEMI_MAX(slack, 8*(double)FLT_EPSILON*fabs(j->x[3*i + k]));
+        }
+    for (n = 0; n < 27; n++) {
+        demi_d3 by;
+        if (!demi_join_shift(w, wall, n, &by)) continue;
+        for (i = 0; i < own; i++) {
+            double x[3];
+            int near = 1;
+            demi_d3_put(x, demi_d3_add(demi_d3_at(j->x + 3*i), by));
+            for (k = 0; k < 3; k++) near = near && x[k] >= lo[k] - slack && x[k] <= hi[k] + slack;
+            if (!near) continue;
+            count++;
+            if (!fill) continue;
+            memcpy(j->x + 3*j->points, x, sizeof x);
+            j->near_by[j->points++] = j->near_by[i];
+        }
+    }
+    return count;
+}
+/* Collects the points and facets of all walls of a group. Returns 0 if memory ran out. */
+static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
+    size_t points = 0, facets = 0, images;
+    int i, e, k, first = 0;
+    memset(j, 0, sizeof *j);
+    j->per = per;
+    j->lead = lead;
+    for (i = lead; i < w->wall_count; i++) {
+        if (!demi_join_member(w, i, lead, per)) continue;
+        points += (size_t)w->walls[i].vertex_count;
+        facets += (size_t)w->walls[i].element_count;
+    }
+    if (points > INT_MAX/8 || facets > INT_MAX/8) return 0;
+    j->x = (double *)demi_alloc(w, points*3, sizeof(double));
+    j->near_by = (double *)demi_alloc(w, points, sizeof(double));
+    j->facet = (int32_t *)demi_alloc(w, facets*6, sizeof(int32_t));
+    j->side = (demi_side *)demi_alloc(w, facets*3, sizeof(demi_side));
+    j->root = (int32_t *)demi_alloc(w, facets, sizeof(int32_t));
+    if (!j->x || !j->near_by || !j->facet || !j->side || !j->root) return 0;
+    for (i = lead; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (!demi_join_member(w, i, lead, per)) continue;
+        for (k = 0; k < wall->vertex_count; k++)
+            demi_d3_put(j->x + 3*j->points++, demi_d3_of(demi_add(wall->home.position,
+                        demi_rotate(wall->home.rotation, demi_at(wall->vertices + 3*k)))));
+        demi_near_by(j->x, wall, first, j->near_by);
+        first += wall->vertex_count;
+    }
+    images = (size_t)demi_join_images(w, j, 0);
+    if (images && (!demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*(points + images)) ||
+                   !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), points + images)))
+        return 0;
+    demi_join_images(w, j, 1);
+    points += images;
+    j->same = (int32_t *)demi_alloc(w, points, sizeof(int32_t));
+    j->mark = (unsigned char *)demi_alloc(w, DEMI_MAX(points, facets), 1);
+    if (!j->same || !j->mark || !demi_tree_make(w, &j->tree, j->x, j->points)) return 0;
+    demi_points_weld(&j->tree, j->near_by, j->same);
+    for (i = lead, first = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (!demi_join_member(w, i, lead, per)) continue;
+        for (e = 0; e < wall->element_count; e++) {
+            int32_t *f = j->facet + 6*j->facets;
+            for (k = 0; k < 3; k++)
+                f[k] = k < per ? j->same[first + wall->corners[per*e + k]] : f[1];
+            f[3] = i;
+            f[4] = e;
+            j->facets += demi_facet_counts(j->x, j->near_by, f, per);
+        }
+        first += wall->vertex_count;
+    }
+    return 1;
+}
+/* Lists the sides of all facets (of profiles their ends), sorted by their points. */
+static void demi_join_sides(demi_join *j) {
+    int i, k;
+    for (i = 0, j->sides = 0; i < j->facets; i++)
+        for (k = 0; k < j->per; k++) {
+            const int32_t *f = j->facet + 6*i;
+            j->side[j->sides++] = demi_side_of(f[k], f[j->per == 3 ? (k + 1)%3 : k], i, k);
+        }
+    qsort(j->side, (size_t)j->sides, sizeof *j->side, demi_side_compare);
+}
+/* Returns the end of the run of sides with the same points that begins at i. */
+static int demi_sides_end(const demi_side *side, int count, int i) {
+    int end = i + 1;
+    while (end < count && side[end].lo == side[i].lo && side[end].hi == side[i].hi) end++;
+    return end;
+}
+/* +1 if a facet runs along its side from the lower to the higher point, or begins at this corner of
+   a profile; otherwise -1. */
+static int demi_join_sign(const demi_join *j, const demi_side *s) {
+    return j->per == 2 ? 1 - 2*s->side : j->facet[6*s->facet + s->side] == s->lo ? 1 : -1;
+}
+static int32_t demi_join_root(demi_join *j, int32_t i) {
+    while (j->root[i] != i) i = j->root[i] = j->root[j->root[i]];
+    return i;
+}
+static void demi_join_unite(demi_join *j, int32_t a, int32_t b) {
+    a = demi_join_root(j, a);
+    b = demi_join_root(j, b);
+    j->mark[DEMI_MIN(a, b)] |= j->mark[DEMI_MAX(a, b)] & (DEMI_JOIN_OPEN | DEMI_JOIN_ANCHORED);
+    j->root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
+}
+/* Marks the connected facets of a wall as open unless they bound a volume, that is unless at each
+   side as many facets run in one direction as in the other. */
+static void demi_join_open(demi_join *j) {
+    int i, k, m, end;
+    for (i = 0; i < j->facets; i++) { j->root[i] = i; j->mark[i] = 0; }
+    for (i = 0; i < j->sides; i = end) {
+        end = demi_sides_end(j->side, j->sides, i);
+        for (k = i; k < end; k++) {
+            const int wall = j->facet[6*j->side[k].facet + 3];
+            int sum = 0;
+            for (m = i; m < end; m++) {
+                if (j->facet[6*j->side[m].facet + 3] != wall) continue;
+                sum += demi_join_sign(j, &j->side[m]);
+                demi_join_unite(j, j->side[k].facet, j->side[m].facet);
+            }
+            if (sum) j->mark[demi_join_root(j, j->side[k].facet)] |= DEMI_JOIN_OPEN;
+        }
+    }
+    for (i = 0; i < j->facets; i++) {
+        j->facet[6*i + 5] = demi_join_root(j, i);
+        j->mark[i] |= j->mark[j->facet[6*i + 5]] & DEMI_JOIN_OPEN;
+        if (j->mark[i]) j->facet[6*i + 5] = -1;
+    }
+}
+/* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
+   side: the plane then acts alone. */
+static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
+    const int32_t *f = j->facet + 6*i;
+    int p, k;
+    for (p = 0; p < w->wall_count; p++) {
+        const demi_wall *plane = &w->walls[p];
+        const dem_real *R = plane->home.rotation;
+        const demi_d3 n = demi_d3_of(demi_v(R[2], R[5], R[8]));
+        const demi_d3 o = demi_d3_of(plane->home.position);
+        if (plane->kind != DEMI_WALL_PLANE || plane->group != w->walls[j->lead].group) continue;
+        for (k = 0; k < j->per; k++)
+            if (!(fabs(demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[k]), o))) <=
+                  j->near_by[f[k]])) break;
+        if (k == j->per && (f[5] < 0 || j->per == 2 || demi_d3_dot(n, demi_d3_normal(
+            demi_d3_at(j->x + 3*f[0]), demi_d3_at(j->x + 3*f[1]), demi_d3_at(j->x + 3*f[2]))) > 0))
+            return 1;
+    }
+    return 0;
+}
+/* The orientation of a facet relative to its corners in ascending order: +1 or -1. */
+static int demi_facet_turn(const int32_t *f, int per) {
+    if (per == 2) return f[0] < f[1] ? 1 : -1;
+    return (f[0] < f[1]) + (f[1] < f[2]) + (f[2] < f[0]) == 2 ? 1 : -1;
+}
+/* Of facets that coincide, keeps the first. Where the boundaries of two closed bodies coincide with
+   opposite orientations, as where two boxes stand side by side, nothing remains: there is no
+   surface between them. A patch of such pairs counts only if at some side of it two other facets
+   continue the surface. So a sheet that is given twice, in either winding, remains. */
+static void demi_join_double(const dem_world *w, demi_join *j) {
+    demi_side *s = j->side;
+    int i, k, m, end, left;
+    demi_join_sides(j);
+    demi_join_open(j);
+    for (i = 0; i < j->facets; i++) {           /* facets by their corners */
+        const int32_t *f = j->facet + 6*i, last = j->per == 3 ? f[2] : f[1];
+        const int32_t lo = DEMI_MIN(f[0], DEMI_MIN(f[1], last));
+        const int32_t hi = DEMI_MAX(f[0], DEMI_MAX(f[1], last));
+        s[i] = demi_side_of(lo, hi, j->per == 3 ? f[0] + f[1] + f[2] - lo - hi : 0, i);
+        j->root[i] = i;
+    }
+    qsort(s, (size_t)j->facets, sizeof *s, demi_side_compare);
+    for (i = 0; i < j->facets; i = end) {
+        int turns = 0, way[2] = {0, 0};
+        for (end = i; end < j->facets && s[end].lo == s[i].lo && s[end].hi == s[i].hi &&
+             s[end].facet == s[i].facet; end++) {
+            const int f = s[end].side;
+            if (end > i) j->mark[f] |= DEMI_JOIN_GONE;
+            if (!(j->mark[f] & DEMI_JOIN_OPEN)) way[demi_facet_turn(j->facet + 6*f, j->per) > 0]++;
+        }
+        turns = end - i == 2 && way[0] == 1 && way[1] == 1;
+        for (k = i; k < end && turns; k++) j->mark[s[k].side] |= DEMI_JOIN_PAIRED;
+    }
+    demi_join_sides(j);
+    for (i = 0; i < j->sides; i = end) {        /* patches of pairs, and what continues at them */
+        int first = -1, beside = 0;
+        end = demi_sides_end(s, j->sides, i);
+        for (k = i; k < end; k++) {
+            const unsigned char mark = j->mark[s[k].facet];
+            if (!(mark & DEMI_JOIN_PAIRED)) beside += !(mark & DEMI_JOIN_GONE);
+            else if (first < 0) first = s[k].facet;
+            else demi_join_unite(j, first, s[k].facet);
+        }
+        if (first >= 0 && beside > 1) j->mark[demi_join_root(j, first)] |= DEMI_JOIN_ANCHORED;
+    }
+    for (i = left = 0; i < j->facets; i++) {
+        const int root = demi_join_root(j, i), paired = j->mark[i] & DEMI_JOIN_PAIRED;
+        if (paired ? j->mark[root] & DEMI_JOIN_ANCHORED || j->mark[i] & DEMI_JOIN_GONE
+            : j->mark[i] & DEMI_JOIN_GONE || demi_join_in_plane(w, j, i)) continue;
+        for (m = 0; m < 6; m++) j->facet[6*left + m] = j->facet[6*i + m];
+        left++;
+    }
+    j->changed |= left < j->facets;
+    j->facets = left;
+}
+
+/* --- facets in one plane that cover each other --- */
+
+/* A convex piece of a triangle. */
+enum { DEMI_SHARD = 12 };
+typedef struct demi_shard { int count; demi_d3 x[DEMI_SHARD]; } demi_shard;
+/* The width of a piece, m: twice its area over the length of its outline. */
+static double demi_shard_width(const demi_shard *s) {
+    demi_d3 area = demi_d(0, 0, 0);
+    double around = 0;
+    int k;
+    for (k = 0; k < s->count; k++) {
+        const demi_d3 a = s->x[k], b = s->x[(k + 1)%s->count];
+        area = demi_d3_add(area, demi_d3_cross(demi_d3_sub(a, s->x[0]), demi_d3_sub(b, s->x[0])));
+        around += demi_d3_length(demi_d3_sub(b, a));
+    }
+    return around > 0 ? demi_d3_length(area)/around : 0;
+}
+static demi_shard demi_shard_of(const demi_join *j, int i) {
+    demi_shard s;
+    for (s.count = 0; s.count < 3; s.count++)
+        s.x[s.count] = demi_d3_at(j->x + 3*j->facet[6*i + s.count]);
+    return s;
+}
+static demi_d3 demi_shard_normal(const demi_shard *t) {
+    return demi_d3_unit(demi_d3_normal(t->x[0], t->x[1], t->x[2]));
+}
+/* Clips a piece to side k of triangle t; out: to what is beyond that side. */
+static void demi_shard_clip(demi_shard *s, const demi_shard *t, int k, int out) {
+    const demi_d3 e = demi_d3_sub(t->x[(k + 1)%3], t->x[k]);
+    const demi_d3 in = demi_d3_cross(demi_shard_normal(t), e);
+    s->count = demi_polygon_clip(s->x, s->count, out ? demi_d3_scale(in, -1) : in, t->x[k]);
+}
+/* True if triangle t covers a part of triangle s wider than `tiny`, m, in the same plane. */
+static int demi_shard_covered(const demi_shard *s, const demi_shard *t, double tiny) {
+    const demi_d3 n = demi_shard_normal(t);
+    demi_shard common = *s;
+    int k;
+    for (k = 0; k < 3; k++)
+        if (!(fabs(demi_d3_dot(n, demi_d3_sub(s->x[k], t->x[0]))) <= tiny)) return 0;
+    for (k = 0; k < 3; k++) demi_shard_clip(&common, t, k, 0);
+    return demi_shard_width(&common) > tiny;
+}
+/* Removes from the pieces of a facet what triangle t covers. Returns 0 if memory ran out. */
+static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const demi_shard *t,
+                            double tiny) {
+    const int all = *count;
+    int i, k, left = 0;
+    if (!demi_grow(w, DEMI_LOOSE, pieces, sizeof **pieces, 4*(size_t)all)) return 0;
+    memmove(*pieces + 3*all, *pieces, (size_t)all*sizeof **pieces);
+    for (i = 0; i < all; i++) {
+        demi_shard rest = (*pieces)[3*all + i];
+        for (k = 0; k < 3 && rest.count < DEMI_SHARD; k++) {
+            demi_shard *out = &(*pieces)[left];
+            *out = rest;
+            demi_shard_clip(out, t, k, 1);
+            left += demi_shard_width(out) > tiny;
+            demi_shard_clip(&rest, t, k, 0);
+        }
+    }
+    *count = left;
+    return 1;
+}
+/* Adds the pieces of facet i as facets. Returns 0 if memory ran out. */
+static int demi_join_shards(dem_world *w, demi_join *j, int i, const demi_shard *piece, int count) {
+    int p, k, m;
+    for (p = 0; p < count; p++, piece++) {
+        const size_t points = (size_t)(j->points + piece->count);
+        if (!demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*points) ||
+            !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), points) ||
+            !demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t),
+                       6*(size_t)(j->facets + piece->count))) return 0;
+        for (k = 2; k < piece->count; k++) {
+            int32_t *f = j->facet + 6*j->facets++;
+            f[0] = j->points;
+            f[1] = j->points + k - 1;
+            f[2] = j->points + k;
+            for (m = 3; m < 6; m++) f[m] = j->facet[6*i + m];
+        }
+        for (k = 0; k < piece->count; k++) {
+            demi_d3_put(j->x + 3*j->points, piece->x[k]);
+            j->near_by[j->points++] = j->near_by[j->facet[6*i]];
+        }
+    }
+    return 1;
+}
+/* Welds all points again after facets were added, and drops facets `gone` and those without size.
+   Returns 0 if memory ran out. */
+static int demi_join_again(dem_world *w, demi_join *j, const unsigned char *gone, int all) {
+    int i, k, left;
+    demi_tree_free(w, &j->tree);
+    j->changed = 1;
+    if (!demi_grow(w, DEMI_LOOSE, &j->same, sizeof(int32_t), (size_t)j->points) ||
+        !demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)DEMI_MAX(j->points, j->facets)) ||
+        !demi_grow(w, DEMI_LOOSE, &j->side, sizeof(demi_side), 3*(size_t)j->facets) ||
+        !demi_grow(w, DEMI_LOOSE, &j->root, sizeof(int32_t), (size_t)j->facets) ||
+        !demi_tree_make(w, &j->tree, j->x, j->points)) return 0;
+    demi_points_weld(&j->tree, j->near_by, j->same);
+    for (i = left = 0; i < j->facets; i++) {
+        int32_t *f = j->facet + 6*left;
+        if (i < all && gone[i]) continue;
+        memmove(f, j->facet + 6*i, 6*sizeof *f);
+        for (k = 0; k < 3; k++) f[k] = j->same[f[k]];
+        left += demi_facet_counts(j->x, j->near_by, f, 3);
+    }
+    j->facets = left;
+    return 1;
+}
+/* Resolves facets in one plane that cover each other, such as folded triangles and floors that
+   overlap: the first one keeps what is common, the others keep the rest. Where the boundaries of
+   two closed bodies touch, neither keeps it. Returns 0 if memory ran out. */
+static int demi_join_cover(dem_world *w, demi_join *j) {
+    const int all = j->facets;
+    double *middle = (double *)demi_alloc(w, (size_t)all*3, sizeof *middle);
+    double *half = (double *)demi_alloc(w, (size_t)all*3, sizeof *half);
+    unsigned char *gone = (unsigned char *)demi_alloc(w, (size_t)all, 1);
+    demi_shard *pieces = 0;
+    demi_tree tree;
+    int i, k, m, any = 0, ok = middle && half && gone;
+    memset(&tree, 0, sizeof tree);
+    for (i = 0; i < all && ok; i++)
+        for (k = 0; k < 3; k++) {
+            double lo = 1e300, hi = -1e300;
+            for (m = 0; m < 3; m++) {
+                lo = DEMI_MIN(lo, j->x[3*j->facet[6*i + m] + k]);
+                hi = DEMI_MAX(hi, j->x[3*j->facet[6*i + m] + k]);
+            }
+            middle[3*i + k] = (lo + hi)/2;
+            half[3*i + k] = (hi - lo)/2;
+        }
+    tree.half = half;
+    ok = ok && demi_tree_make(w, &tree, middle, all);
+    for (i = 0; i < all && ok; i++) {
+        const double *at = middle + 3*i, *size = half + 3*i;
+        const demi_shard own = demi_shard_of(j, i);
+        const double tiny = j->near_by[j->facet[6*i]];
+        demi_search_line line;
+        int32_t other;
+        int count = 0;
+        demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
+        while (ok && (other = demi_tree_next(&line)) >= 0) {
+            const int32_t shell = j->facet[6*i + 5], its = j->facet[6*other + 5];
+            const int closed = shell >= 0 && its >= 0 && shell != its;
+            demi_shard t;
+            for (k = 0; k < 3; k++)
+                if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
+            if (k < 3 || other == i || (other > i && !closed)) continue;
+            t = demi_shard_of(j, other);
+            if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
+                continue;
+            if (!demi_shard_covered(&own, &t, tiny)) continue;
+            if (!gone[i]) {
+                ok = demi_grow(w, DEMI_LOOSE, &pieces, sizeof *pieces, 1);
+                if (ok) pieces[0] = own;
+                count = 1;
+                any = gone[i] = 1;
+            }
+            if (ok && count) ok = demi_shards_less(w, &pieces, &count, &t, tiny);
+        }
+        if (ok && gone[i]) ok = demi_join_shards(w, j, i, pieces, count);
+    }
+    if (ok && any) ok = demi_join_again(w, j, gone, all);
+    demi_free(w, middle);
+    demi_free(w, half);
+    demi_free(w, gone);
+    demi_free(w, pieces);
+    demi_tree_free(w, &tree);
+    return ok;
+}
+/* Finds the points on the line from a to b, without its ends, in order. Returns their number; out
+   may be null. */
+static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
+    const double *p = j->x + 3*a, *q = j->x + 3*b;
+    const demi_d3 way = demi_d3_sub(demi_d3_at(q), demi_d3_at(p));
+    const double size2 = demi_far2(p, q), ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
+    demi_search_line line;
+    int32_t at;
+    int i, n = 0;
+    demi_tree_line(&line, &j->tree, p, q, ends);
+    while ((at = demi_tree_next(&line)) >= 0) {
+        const demi_d3 to = demi_d3_sub(demi_d3_at(j->x + 3*at), demi_d3_at(p));
+        const double most = DEMI_MIN(ends, j->near_by[at]), t = demi_d3_dot(to, way)/size2;
+        if (j->same[at] != at || at == a || at == b || !j->mark[at]) continue;
+        if (!(t > 0 && t < 1) || !(demi_d3_square(demi_d3_plus(to, -t, way)) <= most*most))
+            continue;
+        n++;
+        if (!out) continue;
+        for (i = n - 1; i > 0 && demi_far2(p, j->x + 3*out[i - 1]) > t*t*size2; i--)
+            out[i] = out[i - 1];
+        out[i] = at;
+    }
+    return n;
+}
+/* Replaces facet i by the facets of its outline, `count` points: of a profile the segments between
+   them, of a mesh triangles about the middle. Returns 0 if memory ran out. */
+static int demi_join_fan(dem_world *w, demi_join *j, int i, const int32_t *outline, int count) {
+    const int pieces = j->per == 3 ? count : count - 1;
+    const int32_t wall = j->facet[6*i + 3], element = j->facet[6*i + 4];
+    demi_d3 middle = demi_d(0, 0, 0);
+    int k;
+    if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 6*(size_t)(j->facets + pieces)) ||
+        !demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*(size_t)(j->points + 1))) return 0;
+    for (k = 0; k < 3; k++)
+        middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[6*i + k]));
+    if (j->per == 3) demi_d3_put(j->x + 3*j->points, middle);
+    for (k = 0; k < pieces; k++) {
+        int32_t *f = j->facet + 6*(k ? j->facets++ : i);
+        f[0] = outline[k];
+        f[1] = outline[(k + 1)%count];
+        f[2] = j->per == 3 ? j->points : f[1];
+        f[3] = wall;
+        f[4] = element;
+    }
+    j->points += j->per == 3;
+    j->changed = 1;
+    return 1;
+}
+/* Divides facets at corners of others, and of images, that lie on their sides. Returns 0 if memory
+   ran out. */
+static int demi_join_divide(dem_world *w, demi_join *j) {
+    const int all = j->facets, points = j->points;
+    int32_t *outline = 0;
+    size_t room = 0;
+    int i, k, m, count, ok = 1;
+    if (!demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)points)) return 0;
+    for (i = 0; i < points; i++) j->mark[i] = 0;
+    for (i = 0; i < 6*all; i++) if (i%6 < j->per) j->mark[j->facet[i]] = 1;
+    if (w->repeating) for (i = 0; i < points; i++) j->mark[i] = j->same[i] == i;
+    for (i = 0; i < all && ok; i++) {
+        const int32_t *f = j->facet + 6*i, corner[3] = {f[0], f[1], f[2]};
+        for (k = count = 0; k < j->per && (j->per == 3 || !k); k++) {
+            const int32_t a = corner[k], b = corner[(k + 1)%j->per];
+            /* the same result from either side */
+            const int cuts = demi_join_between(j, DEMI_MIN(a, b), DEMI_MAX(a, b), 0);
+            if ((size_t)(count + cuts + 4) > room) {
+                room = 2*(size_t)(count + cuts + 4);
+                ok = demi_grow(w, DEMI_LOOSE, &outline, sizeof *outline, room);
+                if (!ok) break;
+            }
+            outline[count] = a;
+            demi_join_between(j, DEMI_MIN(a, b), DEMI_MAX(a, b), outline + count + 1);
+            for (m = 0; m < cuts/2 && a > b; m++) {
+                const int32_t t = outline[count + 1 + m];
+                outline[count + 1 + m] = outline[count + cuts - m];
+                outline[count + cuts - m] = t;
+            }
+            count += cuts + 1;
+        }
+        if (j->per == 2 && ok) outline[count++] = corner[1];
+        if (ok && count > j->per) ok = demi_join_fan(w, j, i, outline, count);
+    }
+    demi_free(w, outline);
+    return ok;
+}
+/* Makes one surface of the facets: none coincide or cover each other, and none has corners of
+   others on its sides. Returns 0 if memory ran out. */
+static int demi_join_resolve(dem_world *w, demi_join *j) {
+    demi_join_double(w, j);
+    if (!j->facets) return 1;                   /* all lie in planes */
+    if (j->per == 3) return demi_join_cover(w, j) && demi_join_divide(w, j);
+    if (!demi_join_divide(w, j) ||              /* then segments that overlap coincide */
+        !demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)j->facets) ||
+        !demi_grow(w, DEMI_LOOSE, &j->side, sizeof(demi_side), 3*(size_t)j->facets) ||
+        !demi_grow(w, DEMI_LOOSE, &j->root, sizeof(int32_t), (size_t)j->facets)) return 0;
+    demi_join_double(w, j);
+    return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>surfaces
+   One surface per rigid motion. Meshes that do not move relative to each other are joined into one
+   surface (>>joins), and so are profiles: grains then do not feel how a scene was divided into
+   walls or facets. Facets of a surface share whole sides, and each face, edge and corner has an
+   integer weight (>>facets).
+
+   A wall that shares nothing is its own surface. Any other is part of a joined surface
+   (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
+   or more, and `whose` tells which wall a face, edge or corner belongs to: contacts act on that
+   wall and use its material. Surfaces are made again when a wall is added, removed or moved
+   otherwise. This part owns w->surfaces and the weights of facets.
+   --------------------------------------------------------------------------------------------- */
+/* The surface with this number: a wall, or a joined surface. */
+DEM_INLINE const demi_wall *demi_surface_of(const dem_world *w, int number) {
+    return number < w->wall_count ? &w->walls[number] : &w->surfaces[number - w->wall_count];
+}
+/* The wall that feature `number` (a face, edge or corner) of a surface belongs to. */
+DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, int32_t number) {
+    return surface->whose ? surface->whose[number] : (int)(surface - w->walls);
+}
+
+/* True if a plane is in the place of an earlier one that moves with it. */
+static int demi_plane_again(const dem_world *w, int wall) {
+    const demi_wall *own = &w->walls[wall];
+    int i;
+    for (i = 0; i < wall && own->kind == DEMI_WALL_PLANE; i++) {
+        const demi_wall *a = &w->walls[i];
+        const dem_real *R = a->home.rotation, *Q = own->home.rotation;
+        const dem_vec3 n = demi_v(R[2], R[5], R[8]), m = demi_v(Q[2], Q[5], Q[8]);
+        const dem_vec3 d = demi_sub(own->home.position, a->home.position);
+        const dem_real far = demi_length(own->home.position) + demi_length(a->home.position);
+        if (a->kind == DEMI_WALL_PLANE && a->group == own->group &&
+            demi_length(demi_sub(n, m)) <= DEM_R(1e-6) &&
+            DEMI_ABS(demi_dot(n, d)) <= 4*(dem_real)FLT_EPSILON*far) return 1;
+    }
+    return 0;
+}
+/* Writes the joined facets to a surface. Returns 0 if memory ran out. */
+static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
+    const demi_wall *lead = &w->walls[j->lead];
+    int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
+    int i, k, ok;
+    *s = *lead;
+    s->vertex_count = s->edge_count = s->border_count = s->cell_item_count = 0;
+    s->vertices = s->weight = s->planes = 0;
+    s->corners = s->edges = s->sheet = s->whose = s->cell_start = s->cell_items = 0;
+    s->owns = s->ends = 0;
+    s->borders = 0;
+    s->motion.table = 0;
+    s->chain = DEMI_RUN;
+    s->lead = j->lead;
+    s->joined = 0;
+    memset(s->cells, 0, sizeof s->cells);
+    s->element_count = j->facets;
+    s->vertices = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)j->points*3, sizeof(dem_real));
+    s->corners = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)(j->facets*j->per), sizeof(int32_t));
+    ok = at && s->vertices && s->corners;
+    for (i = 0; i < j->points && ok; i++) at[i] = -1;
+    for (i = 0; i < j->facets && ok; i++)
+        for (k = 0; k < j->per; k++) {
+            const int32_t p = j->facet[6*i + k];
+            if (at[p] < 0) {
+                at[p] = s->vertex_count++;
+                demi_put(s->vertices + 3*at[p], demi_unrotate(lead->home.rotation, demi_sub(
+                    demi_d3_real(demi_d3_at(j->x + 3*p)), lead->home.position)));
+            }
+            s->corners[j->per*i + k] = at[p];
+        }
+    demi_free(w, at);
+    ok = ok && demi_facets_begin(w, s) && demi_wall_sheets(w, s);
+    if (!ok) return 0;
+    s->number_count = s->element_count + s->edge_count + s->vertex_count;
+    s->whose = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)s->number_count, sizeof(int32_t));
+    if (!s->whose) return 0;
+    for (i = 0; i < s->element_count; i++) {
+        int32_t *edge = s->whose + s->element_count, *corner = edge + s->edge_count;
+        s->whose[i] = j->facet[6*i + 3];
+        for (k = 0; k < j->per; k++) {
+            if (s->owns[i] >> k & 1) edge[s->edges[3*i + k]] = j->facet[6*i + 3];
+            if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[6*i + 3];
+        }
+    }
+    demi_wall_bounds(s);
+    return demi_wall_index(w, s);
+}
+
+/* --- weights --- */
+
+/* What meets at the edges and corners of a surface, its periodic images included. Points are the
+   surface's corners, then those of images of facets that touch it. */
+typedef struct demi_meets_at {
+    int points, sides;
+    double *x, *near_by;
+    int32_t *same, *first;         /* points: the first one here; the corner it is an image of */
+    int32_t *faces, *edges;        /* points: facets; sum of the weights of edges */
+    demi_side *side;               /* side: that of the facet, + 3 if the facet is an image */
+    demi_tree tree;
+} demi_meets_at;
+static void demi_meets_free(dem_world *w, demi_meets_at *m) {
+    demi_free(w, m->x);
+    demi_free(w, m->near_by);
+    demi_free(w, m->same);
+    demi_free(w, m->first);
+    demi_free(w, m->faces);
+    demi_free(w, m->edges);
+    demi_free(w, m->side);
+    demi_tree_free(w, &m->tree);
+}
+/* True if a facet has a size (demi_facets_begin). */
+DEM_INLINE int demi_facet_there(const demi_wall *s, int e) { return s->weight[e] > 0; }
+/* Adds facet e, its corners at points p, to what meets. */
+static void demi_meets_add(const demi_wall *s, demi_meets_at *m, int e, const int32_t *p,
+                           int image) {
+    const int per = demi_wall_per(s);
+    int k;
+    for (k = 0; k < per; k++) {
+        m->faces[p[k]]++;
+        if (per == 3) m->side[m->sides++] = demi_side_of(p[k], p[(k + 1)%3], e, k + 3*image);
+    }
+}
+/* Adds the images of facets that touch the surface. Returns 0 if memory ran out. */
+static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
+    const int per = demi_wall_per(s), own = s->vertex_count;
+    int n, e, k, i, pass, images = 0;
+    for (pass = 0; pass < 2; pass++) {          /* count, then add */
+        for (n = 0; n < 27; n++) {
+            demi_d3 by;
+            if (!demi_join_shift(w, s, n, &by)) continue;
+            for (e = 0; e < s->element_count; e++) {
+                int32_t at[3];
+                int touches = 0;
+                if (!demi_facet_there(s, e)) continue;
+                for (k = 0; k < per; k++) {
+                    const int32_t c = s->corners[per*e + k];
+                    double x[3];
+                    demi_search_line line;
+                    int32_t other;
+                    demi_d3_put(x, demi_d3_add(demi_d3_at(m->x + 3*c), by));
+                    at[k] = -1;
+                    demi_tree_line(&line, &m->tree, x, x, m->near_by[c]);
+                    while ((other = demi_tree_next(&line)) >= 0 && at[k] < 0) {
+                        const double most = DEMI_MIN(m->near_by[c], m->near_by[other]);
+                        if (demi_far2(x, m->x + 3*other) <= most*most &&
+                            m->faces[m->same[other]]) at[k] = m->same[other];
+                    }
+                    touches |= at[k] >= 0;
+                    if (at[k] >= 0 && pass) m->first[at[k]] = DEMI_MIN(m->first[at[k]], c);
+                }
+                if (!touches) continue;
+                images++;
+                for (k = 0; k < per && pass; k++) {
+                    double x[3];
+                    if (at[k] >= 0) continue;
+                    demi_d3_put(x, demi_d3_add(demi_d3_at(m->x + 3*s->corners[per*e + k]), by));
+                    for (i = own; i < m->points && !(demi_far2(x, m->x + 3*i) <=
+                         m->near_by[i]*m->near_by[i]); i++) continue;
+                    at[k] = i;
+                    if (i < m->points) continue;
+                    memcpy(m->x + 3*i, x, sizeof x);
+                    m->near_by[i] = m->near_by[s->corners[per*e + k]];
+                    m->points++;
+                }
+                if (pass) demi_meets_add(s, m, e, at, 1);
+            }
+        }
+        if (pass) break;
+        s->wraps = images > 0;
+        k = own + 3*images;
+        if (!demi_grow(w, DEMI_LOOSE, &m->x, sizeof(double), 3*(size_t)k) ||
+            !demi_grow(w, DEMI_LOOSE, &m->near_by, sizeof(double), (size_t)k) ||
+            !demi_grow(w, DEMI_LOOSE, &m->faces, sizeof(int32_t), (size_t)k) ||
+            !demi_grow(w, DEMI_LOOSE, &m->edges, sizeof(int32_t), (size_t)k) ||
+            !demi_grow(w, DEMI_LOOSE, &m->side, sizeof(demi_side),
+                       3*((size_t)s->element_count + (size_t)images))) return 0;
+    }
+    return 1;
+}
+/* Computes the weights of the edges and corners of a surface, and where it ends. An edge or corner
+   that is a periodic image of another one of this surface leaves its weight to the first of them.
+   Returns 0 if memory ran out. */
+static int demi_surface_weigh(dem_world *w, demi_wall *s) {
+    const int per = demi_wall_per(s), all = s->element_count, own = s->vertex_count;
+    const int repeats = s->repeats[0] || s->repeats[1] || s->repeats[2];
+    dem_real *edge = s->weight + all, *corner = edge + s->edge_count;
+    demi_meets_at m;
+    int i, k, end, ok;
+    memset(&m, 0, sizeof m);
+    s->lone = !repeats;
+    s->wraps = 0;
+    memset(s->ends, 0, (size_t)all);
+    s->number_count = all + s->edge_count + own;
+    m.points = own;
+    m.first = (int32_t *)demi_alloc(w, (size_t)own, sizeof(int32_t));
+    m.faces = (int32_t *)demi_alloc(w, (size_t)own, sizeof(int32_t));
+    m.edges = (int32_t *)demi_alloc(w, (size_t)own, sizeof(int32_t));
+    m.side = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof(demi_side));
+    ok = m.first && m.faces && m.edges && m.side;
+    for (i = 0; i < own && ok; i++) m.first[i] = i;
+    for (i = 0; i < all && ok; i++)
+        if (demi_facet_there(s, i)) demi_meets_add(s, &m, i, s->corners + per*i, 0);
+    if (ok && repeats) {
+        m.x = (double *)demi_alloc(w, (size_t)own*3, sizeof(double));
+        m.near_by = (double *)demi_alloc(w, (size_t)own, sizeof(double));
+        m.same = (int32_t *)demi_alloc(w, (size_t)own, sizeof(int32_t));
+        ok = m.x && m.near_by && m.same;
+        for (i = 0; i < own && ok; i++)
+            demi_d3_put(m.x + 3*i, demi_d3_of(demi_add(s->home.position, demi_rotate(
+                s->home.rotation, demi_at(s->vertices + 3*i)))));
+        if (ok) demi_near_by(m.x, s, 0, m.near_by);
+        ok = ok && demi_tree_make(w, &m.tree, m.x, own);
+        if (ok) demi_points_weld(&m.tree, m.near_by, m.same);
+        ok = ok && demi_meets_images(w, s, &m);
+    }
+    if (ok) qsort(m.side, (size_t)m.sides, sizeof *m.side, demi_side_compare);
+    for (i = 0; i < m.sides && ok; i = end) {
+        int32_t first = INT_MAX, e;
+        int count;
+        end = demi_sides_end(m.side, m.sides, i);
+        count = end - i;
+        m.edges[m.side[i].lo] += 1 - count;
+        m.edges[m.side[i].hi] += 1 - count;
+        for (k = i; k < end; k++) {
+            e = s->edges[3*m.side[k].facet + m.side[k].side%3];
+            first = DEMI_MIN(first, e);
+        }
+        for (k = i; k < end; k++) {
+            const demi_side *at = m.side + k;
+            if (at->side >= 3) continue;
+            e = s->edges[3*at->facet + at->side];
+            edge[e] = e == first ? (dem_real)(1 - count) : 0;
+            if (count != 2)
+                s->ends[at->facet] = (unsigned char)(s->ends[at->facet] | 1 << at->side);
+        }
+    }
+    for (i = 0; i < own && ok; i++)
+        corner[i] = m.faces[i] && m.first[i] == i ? (dem_real)(1 - m.faces[i] - m.edges[i]) : 0;
+    for (i = 0; i < 2*all && ok && per == 2; i++)
+        if (m.faces[s->corners[i]] != 2)
+            s->ends[i/2] = (unsigned char)(s->ends[i/2] | 1 << i%2);
+    demi_meets_free(w, &m);
+    return ok;
+}
+
+/* --- all surfaces --- */
+
+/* Lets joined surfaces follow their walls. Contact detection and the search call it. */
+static void demi_surfaces_follow(dem_world *w) {
+    int i;
+    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
+}
+static void demi_surfaces_free(dem_world *w) {
+    int i;
+    for (i = 0; i < w->surface_count; i++) demi_wall_free(w, &w->surfaces[i]);
+    w->surface_count = 0;
+}
+/* Joins the walls with wall `lead`, the first of them, and computes the weights of their facets.
+   Returns 0 if memory ran out. */
+static int demi_surface_make(dem_world *w, int lead) {
+    const int per = demi_wall_per(&w->walls[lead]);
+    int i, members = 0, ok;
+    demi_join j;
+    for (i = lead; i < w->wall_count; i++) members += demi_join_member(w, i, lead, per);
+    ok = demi_join_begin(w, &j, lead, per);
+    if (ok) ok = demi_join_resolve(w, &j);
+    for (i = lead; i < w->wall_count; i++)
+        if (ok && demi_join_member(w, i, lead, per)) w->walls[i].covered = !j.facets;
+    if (ok && j.facets && (j.changed || members > 1)) {
+        ok = DEMI_GROW(w, w->surfaces, (size_t)w->surface_count + 1) &&
+            demi_join_make(w, &j, &w->surfaces[w->surface_count++]) &&
+            demi_surface_weigh(w, &w->surfaces[w->surface_count - 1]);
+        for (i = lead; i < w->wall_count && ok; i++)
+            if (demi_join_member(w, i, lead, per)) w->walls[i].joined = w->surface_count;
+    } else if (ok && j.facets) ok = demi_surface_weigh(w, &w->walls[lead]);
+    demi_join_free(w, &j);
+    return ok;
+}
+/* Groups the walls and makes all surfaces again. Returns 0 if memory ran out; the next call then
+   tries again. */
+static int demi_surfaces_make(dem_world *w) {
+    int i, k, ok = 1;
+    demi_surfaces_free(w);
+    demi_walls_repeat(w);
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        wall->joined = wall->covered = 0;
+        for (k = 0; k < i; k++)
+            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall))
+                break;
+        wall->group = k;
+        wall->covered = demi_plane_again(w, i);
+    }
+    for (i = 0; i < w->wall_count && ok; i++) {
+        if (!demi_faceted(&w->walls[i]) || w->walls[i].joined) continue;
+        ok = demi_surface_make(w, i);
+    }
+    demi_walls_repeat(w);                       /* now of the joined ones, too */
+    w->facets_valid = ok;
+    return ok;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -12403,9 +12830,10 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
     }
     domain->walls = n;
 }
-/* Lists the elements of wall j near body i, displaced by `shift` (m) to one of its images. */
+/* Lists the elements of surface j (demi_surface_of) near body i, displaced by `shift` (m) to one of
+   its images. */
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
-    const demi_wall *wall = &w->walls[j];
+    const demi_wall *wall = demi_surface_of(w, j);
     const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
@@ -12460,15 +12888,16 @@ static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 p
     *shift = demi_at(x);
     return !n;
 }
-/* Lists the elements of all walls near body i, unless it is fixed or a ghost. */
+/* Lists the elements of all surfaces near body i, unless it is fixed or a ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, n;
     if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
-    for (j = 0; j < w->wall_count; j++) {
+    for (j = 0; j < w->wall_count + w->surface_count; j++) {
+        const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
-        if (w->walls[j].kind == DEMI_WALL_NONE) continue;
-        for (n = 0; demi_wall_image(w, &w->walls[j], demi_at(w->bodies.pos + 4*i),
+        if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered) continue;
+        for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
             demi_wall_look(w, domain, d, i, j, shift);
     }
@@ -12578,14 +13007,13 @@ static void demi_cross_index(dem_world *w) {
    edges), and four more by gaps. */
 static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
-    const demi_wall *wall = &w->walls[id];
+    const demi_wall *wall = demi_surface_of(w, id);
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
     const int sets = wall->kind == DEMI_WALL_SIEVE ? 2 : 1, ways = sets*DEMI_FLATS;    /* wires */
     int n = 0, flats = 0;
     for (; k < w->domains[d].walls && w->wall_body[base + k] == body &&
            w->wall_id[base + k] == id; k++) {
-        const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[base + k] : 0;
-        n += kind->most + (cut ? 2*(cut[1] - cut[0]) : 0);
+        n += kind->most;
         flats += kind->corners ? 4*ways + 4 : 8*ways;
     }
     if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);
@@ -13622,7 +14050,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after checks, which must not move bodies */
-    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
+    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
         (double)demi_cover(w);
@@ -13723,8 +14151,8 @@ static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem
     p->at[i].overlap = DEMI_SQRT(d2);
     p->count++;
 }
-/* Removes contact points whose weights cancel, and merges those that coincide to rounding (a side
-   and a cut of it). */
+/* Removes contact points whose weights cancel, and merges those that coincide to rounding (of a
+   corner and its periodic image). */
 static void demi_places_merge(demi_places *p, dem_real near_by) {
     int i, k, count = 0;
     for (i = 0; i < p->count; i++) {
@@ -13760,8 +14188,8 @@ DEM_INLINE void demi_facet_alone(const demi_wall *wall, int e, dem_vec3 x, dem_r
     if (d2 < within*within && wall->weight[e] > 0)
         demi_places_add(p, demi_facet_number(wall, e, n, where), wall->weight[e], d, d2);
 }
-/* Adds the contact points nearer than `within` of element e and of the edges, corners and cuts that
-   it owns. */
+/* Adds the contact points nearer than `within` of element e and of the edges and corners that it
+   owns. */
 DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                                   dem_real within, demi_places *p) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
@@ -13795,16 +14223,6 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
         d2 = demi_dot(y[k], y[k]);
         if (d2 < most) demi_places_add(p, number, weight[number], y[k], d2);
     }
-    if (!wall->cut_start) return;
-    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
-        const demi_cut *c = &wall->cuts[k];
-        dem_vec3 a = demi_sub(c->a, x), b = demi_sub(c->b, x);
-        if (!(c->weight < 0 || c->weight > 0)) continue;
-        if (part) { a = demi_in_measure(part, a); b = demi_in_measure(part, b); }
-        d = demi_side_point(a, b, 0, 1, &at);
-        d2 = demi_dot(d, d);
-        if (d2 < most) demi_places_add(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
-    }
 }
 /* --- rings. If the part of a surface within reach of a sphere closes to a ring, at the rim of a
    hole or in a funnel, its Euler characteristic is 0 and there would be no force. A ring counts as
@@ -13818,7 +14236,7 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
    A dimple that is reached down to its tip is an almost closed ring: D is small, and E is X, which
    is smooth. An open ring counts as one piece; which of its sides are nearest may change at any
    moment, as on the medial line of a single wall. Energy is conserved in both cases. Rings across a
-   seam of two walls are not detected. --- */
+   periodic face are not detected. --- */
 /* Orders links: sides before corners, then by number and facet. */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
@@ -13862,43 +14280,6 @@ static int demi_link_add(demi_link *link, int count, int facet, dem_real within,
     to->sides[0] = to->sides[1] = -1;
     return count + 1;
 }
-/* Returns the number of the side of element e that ends at `corner`, or of the piece that ends
-   there if the side is cut. */
-static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t corner) {
-    int k = wall->cut_start ? wall->cut_start[e] : 0;
-    for (; wall->cut_start && k < wall->cut_start[e + 1]; k++) {
-        const demi_cut *c = &wall->cuts[k];
-        if (c->side == side && (c->end[0] == corner || c->end[1] == corner)) return c->number;
-    }
-    return wall->element_count + wall->edges[3*e + side];
-}
-/* Adds the pieces of the cut sides of element e, and the corners of other elements between them.
-   *sides receives one bit per cut side. Returns the new number of links. */
-static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
-                          dem_real within, demi_link *link, int count, int facet, int *sides) {
-    int k, m, q;
-    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
-        const demi_cut *c = &wall->cuts[k];
-        dem_vec3 end[2];
-        end[0] = demi_sub(c->a, x);
-        end[1] = demi_sub(c->b, x);
-        for (q = 0; q < 2 && part; q++) end[q] = demi_in_measure(part, end[q]);
-        *sides |= 1 << c->side;
-        count = demi_link_add(link, count, facet, within, c->number, end, end + 1, c->end);
-        for (q = 0; q < 2; q++)                 /* the corner to the next piece */
-            for (m = k + 1; m < wall->cut_start[e + 1]; m++) {
-                const demi_cut *o = &wall->cuts[m];
-                const int before = count;
-                if (o->side != c->side || (o->end[0] != c->end[q] && o->end[1] != c->end[q]))
-                    continue;
-                count = demi_link_add(link, count, facet, within, c->end[q], end + q, 0, 0);
-                if (count == before) continue;
-                link[before].sides[0] = c->number;
-                link[before].sides[1] = o->number;
-            }
-    }
-    return count;
-}
 /* Adds the sides and corners of element e, if it is within reach. Returns the new number of
    links. */
 static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
@@ -13906,7 +14287,7 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
     const int edges = wall->element_count, corners = edges + wall->edge_count;
     const int32_t *v;
     dem_vec3 y[3], d;
-    int k, n, where, cut = 0;
+    int k, n, where;
     dem_real l;
     if (!(wall->weight[e] > 0)) return count;
     n = demi_facet_seen(wall, e, x, part, y);
@@ -13920,8 +14301,6 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
         ring->distance = l;
         ring->point = d;
     }
-    if (wall->cut_start)
-        count = demi_links_cut(wall, e, x, part, within, link, count, ring->facets, &cut);
     for (k = 0; k < n; k++) {
         const int b = (k + 1)%n, before = count;
         int32_t ends[2];
@@ -13929,10 +14308,10 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
         ends[1] = corners + v[b];
         count = demi_link_add(link, count, ring->facets, within, corners + v[k], y + k, 0, 0);
         if (count > before && n == 3) {
-            link[before].sides[0] = demi_link_side(wall, e, k, corners + v[k]);
-            link[before].sides[1] = demi_link_side(wall, e, (k + 2)%3, corners + v[k]);
+            link[before].sides[0] = edges + wall->edges[3*e + k];
+            link[before].sides[1] = edges + wall->edges[3*e + (k + 2)%3];
         }
-        if (n == 3 && !(cut >> k & 1))
+        if (n == 3)
             count = demi_link_add(link, count, ring->facets, within, edges + wall->edges[3*e + k],
                                   y + k, y + b, ends);
     }
@@ -15345,7 +15724,6 @@ typedef struct demi_pressure {
     demi_d3 at, force, torque;     /* integrals over S of u x, u n, u x cross n */
     double deep;                   /* largest u */
 } demi_pressure;
-enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 }; /* corners of a polygon */
 /* Adds a polygon of `count` corners x in the pyramid of face f. unit: normal of S; height: m, of
    the polygon above the centre, for a pair the sum of both. */
 static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int f, const demi_d3 *x,
@@ -15435,27 +15813,7 @@ static int demi_pyramid_section(const demi_solid *s, int f, double centre, const
     }
     return count;
 }
-/* Clips a convex polygon to n.(x - o) >= 0. Returns its number of corners. */
-static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
-    demi_d3 out[DEMI_SECTION];
-    double d[DEMI_SECTION];
-    int i, less = 0, left = 0;
-    for (i = 0; i < count; i++) {
-        d[i] = demi_d3_dot(n, demi_d3_sub(x[i], o));
-        less += d[i] < 0;
-    }
-    if (!less) return count;
-    if (less == count) return 0;
-    for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
-        const int next = i + 1 < count ? i + 1 : 0;
-        if (!(d[i] < 0)) out[left++] = x[i];
-        if ((d[i] < 0) != (d[next] < 0))
-            out[left++] = demi_d3_between(x[i], x[next], d[i]/(d[i] - d[next]));
-    }
-    memcpy(x, out, (size_t)left*sizeof *out);
-    return left;
-}
-/* Clips it to the pyramid over face f. */
+/* Clips a polygon to the pyramid over face f. */
 static int demi_pyramid_clip(const demi_solid *s, int f, demi_d3 *x, int count) {
     int i;
     for (i = s->rim[f]; i < s->rim[f + 1] && count > 2; i++) {
@@ -16274,6 +16632,7 @@ typedef struct demi_view {
     const int32_t *element;        /* of the candidates of this image; `count` of them */
     const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
     int count, left;               /* left: count, plus those of later images */
+    int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
 /* Returns the view of candidates first .. last - 1 of work group d, before its first image. The
@@ -16282,13 +16641,13 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     const int k = d*w->wall_stride + first;
     demi_view v;
     v.w = w;
-    v.wall = &w->walls[w->wall_id[k]];
+    v.wall = demi_surface_of(w, w->wall_id[k]);
     v.d = d;
     v.gone = demi_walls_gone(w);
     v.element = w->wall_element + k;
     v.gap = w->wall_gap + k;
     v.from = w->wall_shift + 3*(size_t)k;
-    v.count = 0;
+    v.count = v.several = 0;
     v.left = last - first;
     return v;
 }
@@ -16717,18 +17076,13 @@ static void demi_mesh_bend(const demi_wall *wall, const int32_t *among, int coun
     int k, q, found = 0;
     if (number < edges) return;
     b->turn = -1/b->dist;
-    for (k = 0; k < count && !found && (number < corners ||
-         number >= corners + wall->vertex_count); k++) {
+    for (k = 0; k < count && !found && number < corners; k++) {
         const int e = among[k];
         dem_vec3 y[3];
         demi_wall_corners(wall, e, y);
         for (q = 0; q < 3 && !found; q++)
             if ((found = edges + wall->edges[3*e + q] == number) != 0)
                 b->axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
-        for (q = wall->cut_start ? wall->cut_start[e] : 0;
-             wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
-            if ((found = wall->cuts[q].number == number) != 0)
-                b->axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
     }
 }
 /* At a curve the normal n rotates by -1/dist for displacements across it. Along it, with K the
@@ -16830,12 +17184,20 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    contact points per direction.
    --------------------------------------------------------------------------------------------- */
 
-/* Pressures on one wall, grouped by the direction of the surface. */
+/* Pressures on one surface, grouped by the direction of the surface and, if it is joined, by
+   walls. */
 typedef struct demi_flats {
     int count;
+    const int32_t *whose;                      /* as in demi_wall; may be null */
+    dem_vec3 now;                              /* m, shift of the image that is examined */
     int32_t element[DEMI_FLATS];               /* the first of each group */
+    dem_vec3 shift[DEMI_FLATS];                /* m, its image */
     demi_pressure press[DEMI_FLATS];
 } demi_flats;
+static void demi_flats_begin(demi_flats *f, const demi_view *v) {
+    f->count = 0;
+    f->whose = v->wall->whose;
+}
 /* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
     const double size = demi_d3_length(s->force);
@@ -16845,9 +17207,12 @@ static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *
     for (i = 0; i < f->count; i++) {
         const demi_d3 F = f->press[i].force;
         const double along = demi_d3_dot(F, s->force)/(size*demi_d3_length(F));
+        if (f->whose && f->whose[f->element[i]] != f->whose[element] && f->count < DEMI_FLATS)
+            continue;
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && f->count < DEMI_FLATS) {
+        f->shift[f->count] = f->now;
         f->element[f->count] = element;
         f->press[f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
@@ -16883,6 +17248,7 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
             demi_pressure press = seen[k].press[i];
             demi_pressure_scale(&press, share[k]);
             if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stop */
+            out->now = seen[k].shift[i];
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }
@@ -16913,7 +17279,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
             t->normal = demi_rotate(R, p.normal);
             t->spread = demi_rotate(R, demi_patch_spread(&p, k));
             t->point = demi_add(demi_add(v->at, demi_rotate(R, p.point)), t->spread);
-            t->shift = v->shift;
+            t->shift = f->shift[i];
         }
     }
     return count;
@@ -16957,15 +17323,17 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
 enum { DEMI_GAP_POINTS = 24 };                  /* largest number of points in a group */
 /* Points near one wall with similar normals. */
 typedef struct demi_gap_group {
-    int32_t element;                           /* of the first point */
     int count;
+    int32_t element[DEMI_GAP_POINTS];
     demi_d3 x[DEMI_GAP_POINTS], n[DEMI_GAP_POINTS];
+    dem_vec3 shift[DEMI_GAP_POINTS];           /* m, image of the body */
     double gap[DEMI_GAP_POINTS];
 } demi_gap_group;
-/* All groups of points near one wall. Points with gaps of `range` (m) or more are ignored. */
+/* All groups of points near one surface. Points with gaps of `range` (m) or more are ignored. */
 typedef struct demi_gaps {
     int count, flat;               /* flat: only normals within 60 degrees of z (plates) */
     double range;
+    dem_vec3 now;                  /* m, shift of the image that is examined */
     demi_gap_group group[DEMI_FLATS];
 } demi_gaps;
 /* Reduces a group to the four points that matter. */
@@ -16977,6 +17345,8 @@ static void demi_gap_group_pick(demi_gap_group *g) {
         g->x[i] = all.x[picked[i]];
         g->n[i] = all.n[picked[i]];
         g->gap[i] = all.gap[picked[i]];
+        g->shift[i] = all.shift[picked[i]];
+        g->element[i] = all.element[picked[i]];
     }
 }
 /* Adds a point x with its gap. n: unit, from the polyhedron into the wall. */
@@ -16991,13 +17361,14 @@ static void demi_gaps_add(demi_gaps *gaps, int32_t element, demi_d3 n, demi_d3 x
     }
     if (most < 0.95 && gaps->count < DEMI_FLATS) {
         best = gaps->count++;
-        gaps->group[best].element = element;
         gaps->group[best].count = 0;
     }
     g = &gaps->group[best];
     if (g->count == DEMI_GAP_POINTS) demi_gap_group_pick(g);
     g->x[g->count] = x;
     g->n[g->count] = n;
+    g->shift[g->count] = gaps->now;
+    g->element[g->count] = element;
     g->gap[g->count++] = gap;
 }
 /* Adds the corners above the plane z = 0 of the frame of the wall. height: of the origin above
@@ -17038,17 +17409,23 @@ static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin,
 }
 /* True if an edge or corner of a facet (own: its `owns` corners) is really the nearest point of the
    surface. It is not if another facet with the same edge or corner continues towards the body; that
-   facet then gives the gap. n: unit, from the body. */
-static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int count,
-                              const dem_vec3 *own, int owns, demi_d3 n) {
+   facet then gives the gap. n: unit, from the body; start: all facets near it; x: the body, in the
+   image of this facet. */
+static int demi_facet_nearest(const demi_view *start, dem_vec3 x, const dem_vec3 *own, int owns,
+                              demi_d3 n) {
+    const demi_wall *wall = start->wall;
+    const dem_real same = 2*wall->plane_slack;  /* m: images differ by rounding */
+    demi_view v = *start;
     int i, k, e;
-    for (i = 0; i < count; i++) {
+    while (demi_view_next(&v)) for (i = 0; i < v.count; i++) {
         dem_vec3 y[3];
-        const int corners = demi_wall_corners(wall, among[i], y);
+        const int corners = demi_wall_corners(wall, v.element[i], y);
         int has[3] = {0, 0, 0}, all = 0;
-        for (k = 0; k < corners; k++)
+        for (k = 0; k < corners; k++) {
+            y[k] = demi_add(y[k], demi_sub(x, v.x));
             for (e = 0; e < owns && !has[k]; e++)
-                all += has[k] = !(demi_length(demi_sub(y[k], own[e])) > 0);
+                all += has[k] = !(demi_length(demi_sub(y[k], own[e])) > same);
+        }
         if (all < owns) continue;
         for (k = 0; k < corners; k++) {
             dem_vec3 way = demi_sub(y[k], own[0]);
@@ -17073,17 +17450,18 @@ static int demi_facet_under(const demi_solid *s, const demi_solid *f, double ran
     out->normal = demi_d3_scale(up, -1);
     return demi_spots_take(out, x, gap, count, range, up);
 }
-/* Adds the gaps of one facet. among: all facets nearby. If the body is slightly inside, beside an
-   edge at which the surface continues, the shortest separation would lead across that edge into the
-   facet beyond. The facet is then treated as infinite. */
-static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
-                              const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
+/* Adds the gaps of one facet. start: all facets nearby; v: those of this image. If the body is
+   slightly inside, beside an edge at which the surface continues, the shortest separation would
+   lead across that edge into the facet beyond. The facet is then treated as infinite. */
+static void demi_element_gaps(const demi_view *start, const demi_view *v, int element,
+                              const demi_solid *s, double reach, demi_gaps *gaps) {
+    const demi_wall *wall = v->wall;
     demi_simplex tells;
     demi_solid f;
     demi_spots spots;
     dem_vec3 y[3], own[3];
     int i, k, owns = 0, has[3] = {0, 0, 0};
-    if (!demi_facet_solid(wall, element, x, reach, &f) ||
+    if (!demi_facet_solid(wall, element, v->x, reach, &f) ||
         !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
     if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
@@ -17096,7 +17474,7 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
             has[k] = 1;
         }
         if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(wall, among, count, own, owns, spots.normal) &&
+            !demi_facet_nearest(start, v->x, own, owns, spots.normal) &&
             (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
     }
     for (i = 0; i < spots.count; i++)
@@ -17121,7 +17499,7 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             demi_touching *t = &out[count];
             e = pressing ? nearest : k;
             memset(t, 0, sizeof *t);
-            t->element = g->element;
+            t->element = g->element[e];
             t->corner = k;
             t->corners = places;
             t->overlap = (dem_real)-g->gap[e];
@@ -17130,7 +17508,7 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             t->deep = t->overlap/demi_part_thin(part);
             t->normal = demi_rotate(R, demi_d3_real(g->n[e]));
             t->point = demi_add(v->at, demi_rotate(R, demi_d3_real(g->x[e])));
-            t->shift = v->shift;
+            t->shift = g->shift[e];
             for (e = 1; e <= pressed; e++)
                 if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
             if (e <= pressed || (pressing && !(t->overlap < 0))) break;
@@ -17139,27 +17517,12 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
     }
     return count;
 }
-/* Writes the contact points by pressure and by gaps, for one image of the body. */
+/* Writes the contact points by pressure and by gaps. */
 static int demi_wall_places(const demi_view *v, const demi_flats *flats, demi_gaps *gaps,
                             const dem_real *R, const demi_part *part, demi_touching *out) {
     const int pressed = demi_flats_places(v, flats, R, part, out);
     return pressed + demi_gaps_places(v, gaps, R, part, pressed, out + pressed);
 }
-/* Returns the sides of an element, as bits, where its sheet ends: where the element is alone or one
-   of three or more. A side with another element along part of it is not an end. */
-static int demi_facet_ends(const demi_wall *wall, int e) {
-    const int n = demi_wall_per(wall), edges = wall->element_count;
-    int k, open = 0;
-    for (k = 0; k < n; k++) {
-        const dem_real count = wall->weight[n == 3 ? edges + wall->edges[3*e + k]
-                                            : edges + wall->edge_count + wall->corners[2*e + k]];
-        open |= (!(count < 0 || count > 0) || count < DEM_R(-1.5)) << k;
-    }
-    for (k = wall->cut_start ? wall->cut_start[e] : 0;
-         wall->cut_start && k < wall->cut_start[e + 1]; k++) open &= ~(1 << wall->cuts[k].side);
-    return open;
-}
-
 /* The sheets of a surface near a body (>>sheets), and the side on which each acts: that of the
    body's centre as seen from the nearest facet or, if several are equally near (at an edge), from
    the one that it is highest above. The slope behind a ridge is thus also seen from outside where a
@@ -17168,6 +17531,7 @@ enum { DEMI_SHEETS = 16 };
 typedef struct demi_sheets {
     int count;
     int32_t sheet[DEMI_SHEETS];
+    int image[DEMI_SHEETS];        /* number of the image; 0 if the surface continues there */
     int way[DEMI_SHEETS];          /* of the normal into the wall, at the first facet */
     int ends[DEMI_SHEETS];         /* does it end near the body? */
     double near2[DEMI_SHEETS], over[DEMI_SHEETS];      /* m2, squared distance; m, height */
@@ -17176,11 +17540,19 @@ DEM_INLINE int32_t demi_sheet_of(const demi_wall *wall, int element) {
     const int32_t own = wall->sheet[element];
     return own < 0 ? -own : own;
 }
-/* Adds an element to its sheet. within: radius of the body, m. */
-static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin,
-                            double within) {
+/* The index of an element's sheet, as seen in an image; the number of sheets if it is not in the
+   list. */
+static int demi_sheets_which(const demi_sheets *s, const demi_wall *wall, int element, int image) {
     const int32_t sheet = demi_sheet_of(wall, element);
-    const int open = demi_facet_ends(wall, element);
+    int i;
+    for (i = 0; i < s->count; i++)
+        if (s->sheet[i] == sheet && (wall->wraps || s->image[i] == image)) break;
+    return i;
+}
+/* Adds an element to its sheet. within: radius of the body, m. */
+static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, int image,
+                            dem_vec3 origin, double within) {
+    const int open = wall->ends[element];
     double part[3] = {0, 0, 0}, d2, over;
     demi_d3 x[3], up;
     const int corners = demi_facet_corners(wall, element, origin, x);
@@ -17191,7 +17563,7 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
     else demi_near_segment(x[0], x[1], part);
     d2 = demi_d3_square(demi_triangle_point(part, x[0], x[1], x[2]));
     over = demi_d3_dot(demi_d3_unit(up), x[0])*(wall->sheet[element] < 0 ? -1 : 1);
-    for (i = 0; i < s->count && s->sheet[i] != sheet; i++) continue;
+    i = demi_sheets_which(s, wall, element, image);
     if (i == DEMI_SHEETS) return;
     if (i == s->count) s->ends[s->count++] = 0;
     else if (d2 > s->near2[i]*(1 + 1e-9) ||
@@ -17200,23 +17572,18 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
         s->ends[i] = open >> k & 1 &&
             demi_near_segment(x[k], x[corners == 3 ? (k + 1)%3 : k], part) < within*within;
     if (d2 < 0) return;
-    s->sheet[i] = sheet;
+    s->sheet[i] = demi_sheet_of(wall, element);
+    s->image[i] = image;
     s->near2[i] = d2;
     s->over[i] = over;
     s->way[i] = over < 0 ? -1 : 1;
 }
-/* The index of an element's sheet; -1: there was no room for it. */
-static int demi_sheets_which(const demi_sheets *s, const demi_wall *wall, int element) {
-    const int32_t sheet = demi_sheet_of(wall, element);
-    int i;
-    for (i = 0; i < s->count; i++) if (s->sheet[i] == sheet) return i;
-    return -1;
-}
 /* The direction of an element's normal; x: of the body, for sheets that are not in the list. */
-static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, dem_vec3 x) {
+static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, int image,
+                           dem_vec3 x) {
     const dem_real *plane = wall->planes + 4*element;
-    const int i = demi_sheets_which(s, wall, element);
-    if (i >= 0) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
+    const int i = demi_sheets_which(s, wall, element, image);
+    if (i < s->count) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
     return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
 }
 /* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
@@ -17234,19 +17601,20 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
 /* The elements of one sheet near a body, seen from one side. way: direction of the normal at the
-   sheet's first facet; within: radius of the body, m. */
+   sheet's first facet; within: radius of the body, m; start: all elements near the body. */
 typedef struct demi_sheet {
-    const demi_view *v;
+    const demi_view *start;
     const demi_wall *wall;
     dem_real within;
-    int way;
+    int way, image;
     int32_t sheet;
 } demi_sheet;
-/* Returns the direction of the normal of element i of the list, or 0 if it does not belong to the
+/* Returns the direction of the normal of element i of an image, or 0 if it does not belong to the
    sheet. */
-DEM_INLINE int demi_sheet_turn(const demi_sheet *t, int i) {
-    const int element = t->v->element[i];
-    if (t->v->gap[i] > t->v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+DEM_INLINE int demi_sheet_turn(const demi_sheet *t, const demi_view *v, int i, int image) {
+    const int element = v->element[i];
+    if (v->gap[i] > v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+    if (!t->wall->wraps && image != t->image) return 0;
     return t->wall->sheet[element] < 0 ? -t->way : t->way;
 }
 /* Returns the mean normals of the sheet at both corners of a side, or null if it does not end
@@ -17327,19 +17695,21 @@ static void demi_sheet_curtain(const demi_sheet *t, int32_t side, const demi_hal
 }
 /* Adds all of a sheet with its curtains. */
 static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
+    demi_view v = *t->start;
     demi_pressure press;
     demi_half sides[3];
     demi_d3 n;
     double at;
-    int i, k, count, ends, beyond;
-    for (i = 0; i < t->v->count; i++) {
-        const int element = t->v->element[i], way = demi_sheet_turn(t, i);
+    int i, k, count, ends, beyond, image = 0;
+    for (; demi_view_next(&v); image++) for (i = 0; i < v.count; i++) {
+        const int element = v.element[i], way = demi_sheet_turn(t, &v, i, image);
         const dem_real *plane = t->wall->planes + 4*element;
-        const dem_real off = demi_dot(demi_at(plane), t->v->x) - plane[3];
+        const dem_real off = demi_dot(demi_at(plane), v.x) - plane[3];
         if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
-        count = demi_facet_sides(t->wall, element, t->v->x, way, &n, &at, sides);
+        count = demi_facet_sides(t->wall, element, v.x, way, &n, &at, sides);
         if (!count) continue;
-        ends = demi_facet_ends(t->wall, element);
+        flats->now = v.shift;
+        ends = t->wall->ends[element];
         beyond = demi_d3_dot(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
         if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
@@ -17362,9 +17732,11 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
     for (i = 0; i < sheets->count; i++) {
         if (!sheets->ends[i]) continue;
         t->sheet = sheets->sheet[i];
+        t->image = sheets->image[i];
         for (k = 0; k < 2; k++) {
             t->way = k ? -sheets->way[i] : sheets->way[i];
             seen[k].count = 0;
+            seen[k].whose = flats->whose;
             if (!k || seen[0].count) demi_sheet_seen(t, s, &seen[k]);
         }
         demi_flats_sides(seen, flats);
@@ -17372,47 +17744,45 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
 }
 /* A polyhedron and any wall of flat elements. */
 static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, demi_touching *out) {
-    demi_view v = *start;
-    const demi_wall *wall = v.wall;
+    demi_view v;
+    const demi_wall *wall = start->wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const int pressing = demi_response_is(start->w, DEMI_PRESSING);
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
     demi_sheets sheets;
     demi_sheet sheet;
     demi_solid s;
-    int k, way, count = 0;
-    gaps.range = (double)demi_range(v.w, part->radius);
-    gaps.flat = 0;
-    sheet.v = &v;
+    int k, way, image;
+    demi_flats_begin(&flats, start);
+    gaps.range = (double)demi_range(start->w, part->radius);
+    gaps.flat = gaps.count = sheets.count = 0;
+    sheet.start = start;
     sheet.wall = wall;
     sheet.within = part->radius*DEM_R(1.001);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    while (demi_view_next(&v)) {
-        flats.count = gaps.count = sheets.count = 0;
-        for (k = 0; wall->sheet && pressing && k < v.count; k++)
-            if (!(v.gap[k] > v.gone) && wall->sheet[v.element[k]])
-                demi_sheets_add(&sheets, wall, v.element[k], v.x, (double)sheet.within);
-        demi_sheets_press(&sheets, &sheet, &s, &flats);
-        for (k = 0; k < v.count; k++) {
-            const int32_t element = v.element[k];
-            const int which = !pressing || !wall->sheet ? -1
-                : demi_sheets_which(&sheets, wall, element);
-            if (v.gap[k] > v.gone || (wall->sheet && !wall->sheet[element])) continue;
-            if (pressing && (which < 0 || !sheets.ends[which])) {
-                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, v.x) : 1;
-                demi_solid_on_element(wall, element, &s, v.x, way, &press);
-                demi_flats_add(&flats, element, &press);
-            }
-            if (!(gaps.range > 0)) continue;
-            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
-            else demi_element_gaps(wall, element, v.element, v.count, &s, v.x,
-                                   2*(double)part->radius + gaps.range, &gaps);
+    for (v = *start, image = 0; wall->sheet && pressing && demi_view_next(&v); image++)
+        for (k = 0; k < v.count; k++)
+            if (!(v.gap[k] > v.gone))
+                demi_sheets_add(&sheets, wall, v.element[k], image, v.x, (double)sheet.within);
+    demi_sheets_press(&sheets, &sheet, &s, &flats);
+    for (v = *start, image = 0; demi_view_next(&v); image++) for (k = 0; k < v.count; k++) {
+        const int32_t element = v.element[k];
+        const int which = !pressing || !wall->sheet ? sheets.count
+            : demi_sheets_which(&sheets, wall, element, image);
+        if (v.gap[k] > v.gone) continue;
+        flats.now = gaps.now = v.shift;
+        if (pressing && (which == sheets.count || !sheets.ends[which])) {
+            way = wall->sheet ? demi_sheets_way(&sheets, wall, element, image, v.x) : 1;
+            demi_solid_on_element(wall, element, &s, v.x, way, &press);
+            demi_flats_add(&flats, element, &press);
         }
-        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
+        if (!(gaps.range > 0)) continue;
+        if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
+        else demi_element_gaps(start, &v, element, &s, 2*(double)part->radius + gaps.range, &gaps);
     }
-    return count;
+    return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
 }
 /* A polyhedron and a wall of grains, each a sphere. */
 static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
@@ -17965,14 +18335,17 @@ static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
     while (demi_view_next(&v)) {
         const dem_vec3 x = v.x;
         const demi_d3 x0 = demi_d3_of(x);
-        flats.count = gaps.count = 0;
+        demi_flats_begin(&flats, &v);
+        gaps.count = 0;
+        flats.now = gaps.now = v.shift;
         if (*v.gap > v.gone) continue;
         side = demi_rings_side(wall, x0);
         for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
             ends |= demi_rings_end(wall, i, x0, (double)part->radius) << i;
         if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
         for (i = 0; i < 2 && pressing && ends; i++) {
-            seen[i].count = 0;
+            demi_flats_begin(&seen[i], &v);
+            seen[i].now = v.shift;
             if (!i || seen[0].count)
                 demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
         }
@@ -18344,7 +18717,9 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
                 for (e = 0; e < 3; e++) turn[3*e + i] = R[3*e + (wires ? (i + 2 - set)%3 : i)];
             local = demi_part_local(turn, part);
             demi_solid_of(&local, demi_v(0, 0, 0), &s);
-            flats.count = gaps.count = 0;
+            demi_flats_begin(&flats, &v);
+            gaps.count = 0;
+            flats.now = gaps.now = v.shift;
             if (wires) demi_wires_touch(sieve, set, &s, v.x, reach, pressing, &flats, &gaps);
             else demi_plate_touch(sieve, &s, demi_d3_of(v.x), reach,
                                   1e-3*(double)demi_part_thin(part), pressing, &flats, &gaps);
@@ -18669,6 +19044,12 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
     return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
         (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
 }
+/* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
+   are joined to one surface are the same. */
+DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_kept *b) {
+    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 && w->walls[a->wall].joined &&
+                                  w->walls[a->wall].joined == w->walls[b->wall].joined);
+}
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
    with this wall; for NEAREST only those up to c. */
 static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
@@ -18682,7 +19063,7 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
         dem_real fit = demi_dot(o->normal, c->normal);
         if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
             o->part_a != c->part_a || o->part_b != c->part_b ||
-            (o->wall != c->wall && how != DEMI_FIT_SLID) ||
+            (how != DEMI_FIT_SLID && !demi_kept_one(w, o, c)) ||
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
             (o->element != c->element && how == DEMI_FIT_TURNED)) continue;
         if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
@@ -18788,9 +19169,9 @@ static int demi_is_cluster(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return shape && shape->count;
 }
-/* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and a wall, so that together they act
-   as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets, otherwise
-   1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
+/* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and all walls, so that together they
+   act as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets,
+   otherwise 1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
    (demi_kept_along),
        A_i = d_i^2 + sum of t_ij w_j d_j^2, j not i;   s_i = w_i d_i^2/A_i;   E = sum of s_i U(d_i)
    This is a mean in which deeper contacts count more. Similar contacts together store the energy of
@@ -19094,14 +19475,14 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
    one: 2 - deep. This does not apply at the end of a surface, which repels a polyhedron on both
    sides for a while. old: contacts of the body in the step before; fresh: all its new ones with
    this wall. */
-static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *fresh, int count,
-                              demi_kept *c) {
+static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds,
+                              const demi_kept *fresh, int count, demi_kept *c) {
     int e, i;
     for (e = 0; e < olds && c->corners; e++)
-        if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == c->part_a &&
+        if (old[e].b < 0 && demi_kept_one(w, &old[e], c) && old[e].part_a == c->part_a &&
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
-        if (old[e].b >= 0 || old[e].wall != c->wall || old[e].part_a != c->part_a ||
+        if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
             old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
             continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
@@ -19123,7 +19504,7 @@ static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
 DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
                                   const demi_part *p, const demi_kept *old, int olds) {
     const demi_wall *wall = v->wall;
-    const int d = v->d, id = (int)(wall - w->walls);
+    const int d = v->d;
     const dem_vec3 at = v->at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
     demi_touching *found = w->touching + w->domains[d].touching_first;
     const int places = demi_touches[wall->kind][p->kind](v, p, found);
@@ -19136,8 +19517,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
         if (!count++) fresh = c;
         c->a = body;
         c->part_a = k;
-        c->wall = id;
         c->element = found[i].element;
+        c->wall = demi_surface_wall(w, wall, c->element);
         c->normal = found[i].normal;
         c->share = c->weight = c->lift = c->grip = found[i].share;
         c->shift = found[i].shift;
@@ -19148,6 +19529,10 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
+        /* the point of the wall, until demi_kept_cover; points of gaps are half way */
+        if (v->several)
+            c->arm_b = demi_sub(found[i].point,
+                                demi_scale(c->normal, c->corners ? c->overlap/2 : 0));
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
@@ -19158,10 +19543,10 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds)
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
-        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
+        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* stays in the hole until through */
-            if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && c->overlap > 0 &&
+            if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == k && c->overlap > 0 &&
                 !demi_kept_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
@@ -19175,15 +19560,17 @@ DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
     x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
     return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
-/* Finds all contacts of one body with one wall: candidates first .. last - 1 of work group d. */
-static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
+/* Finds all contacts of one body with one surface: candidates first .. last - 1 of work group d.
+   several: 1 if other surfaces are near the body. */
+static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, int several,
                                       const demi_kept *old, int olds) {
-    const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
+    const int body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
     demi_view v = demi_view_of(w, d, first, last);
     const dem_real *balls;
     dem_real lone[4];
     int k, count;
+    v.several = several;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
@@ -19197,7 +19584,6 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
         p = demi_part_now(w, body, k);
         demi_kept_on_wall(w, &v, body, 1, k, &p, old, olds);
     }
-    demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
 }
 /* True if two contacts of one body with walls belong to the same surface: same part, and walls at
    rest relative to each other. */
@@ -19263,6 +19649,65 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
 }
+/* The number of the surface that a wall is part of. */
+DEM_INLINE int demi_kept_surface(const dem_world *w, const demi_kept *c) {
+    const int joined = w->walls[c->wall].joined;
+    return joined ? w->wall_count + joined - 1 : c->wall;
+}
+/* True if the point of c on its wall lies on another surface too. first, last: the candidates of
+   the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
+static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
+                             int surface) {
+    const demi_wall *wall = demi_surface_of(w, surface);
+    const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
+    int k;
+    if (!demi_faceted(wall) && wall->kind != DEMI_WALL_PLANE && wall->kind != DEMI_WALL_CYLINDER)
+        return 0;
+    for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
+        const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
+            demi_unrotate(wall->pose.rotation, demi_sub(at, wall->pose.position)), close)) < close)
+            return 1;
+    }
+    return 0;
+}
+/* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
+   of polyhedra, of which a facet may have several. */
+static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
+    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+    return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
+        DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
+                          demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
+}
+/* Removes contacts at edges of surfaces that move against each other and abut, such as belts in a
+   floor: where the point of a contact lies on another surface that the body touches too, that
+   surface covers the edge. Of contacts that lie on each other's surface the first remains. walled:
+   the first contact of the body with walls. */
+static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled) {
+    demi_kept *c = w->kept_next + w->kept_first[d];
+    const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
+    int i, k, left = walled;
+    for (i = walled; i < all; i++) {
+        const int own = demi_kept_surface(w, &c[i]);
+        int covered = 0;
+        for (k = walled; k < all && !covered && !demi_kept_flush(w, &c[i]); k++) {
+            const int other = demi_kept_surface(w, &c[k]);
+            if (other == own || c[k].part_a != c[i].part_a || (pressing && c[i].corners) ||
+                c[k].share > DEM_R(1e29)) continue;
+            covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
+                (k < i || demi_kept_flush(w, &c[k]) ||
+                 !demi_kept_lies_on(w, d, first, last, &c[k], own));
+        }
+        if (covered) c[i].share = DEM_R(1e30);
+    }
+    for (i = walled; i < all; i++) {
+        if (c[i].share > DEM_R(1e29)) continue;
+        c[i].arm_b = demi_v(0, 0, 0);
+        if (i > left) c[left] = c[i];
+        left++;
+    }
+    w->domains[d].kept_next = left;
+}
 /* Completes the contacts of one body with walls once all are found: the weights of friction, and
    which springs of the step before each inherits. */
 static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
@@ -19285,7 +19730,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
-    int p = domain->near_shaped, q = own_end, k = 0, a, last, walled;
+    int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
+    int from, end_k;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     for (; !(domain->overflow & 16); old = old_end) {
@@ -19303,15 +19749,21 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         for (; q < cross_end && near_a[q] == a; q++)
             demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
         walled = domain->kept_next;
-        for (; k < walls && body[k] == a; k = last) {
+        for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
+        several = from < end_k && wall[from] != wall[end_k - 1];
+        for (; k < end_k; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;
-            while (last < walls && body[last] == a && wall[last] == wall[k]) last++;
-            demi_kept_wall(w, d, k, last, old, (int)(old_end - old));
+            while (last < end_k && wall[last] == wall[k]) last++;
+            demi_kept_wall(w, d, k, last, several, old, (int)(old_end - old));
         }
-        if (domain->kept_next > walled)
-            demi_kept_settle(w, d, old, (int)(old_end - old),
-                             w->kept_next + w->kept_first[d] + walled, domain->kept_next - walled);
+        if (several && domain->kept_next > walled) demi_kept_cover(w, d, from, end_k, walled);
+        if (domain->kept_next > walled) {
+            demi_kept *c = w->kept_next + w->kept_first[d] + walled;
+            const int n = domain->kept_next - walled;
+            if (demi_shape_of(w, a)) demi_kept_share(w, c, n);
+            demi_kept_settle(w, d, old, (int)(old_end - old), c, n);
+        }
     }
 }
 /* Enlarges the lists of work groups that overflowed. Returns 0 if memory ran out; nothing has
@@ -19336,8 +19788,9 @@ static int demi_touch(dem_world *w) {
     int d, again;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
     if (!w->wall_count && !w->bodies.shaped) return 1;
-    if ((!w->facets_valid && !demi_facets_weigh(w)) ||
+    if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
+    demi_surfaces_follow(w);
     do {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_kept_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
@@ -30731,6 +31184,7 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->fields = (demi_field *)demi_hold(t, DEMI_RUN, (size_t)w->field_count, sizeof(demi_field));
     if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
         (w->field_count && !t->fields) ||
+        !DEMI_GROW(t, t->surfaces, (size_t)w->surface_count) ||
         !DEMI_GROW(t, t->feeds, (size_t)w->feed_count) ||
         !DEMI_GROW(t, t->outlets, (size_t)w->outlet_count)) return 0;
     t->wall_count = w->wall_count;
@@ -30738,6 +31192,8 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->outlet_count = w->outlet_count;
     t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
     if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
+    for (i = 0; i < w->surface_count; i++) t->surfaces[i] = w->surfaces[i];
+    t->surface_count = w->surface_count;
     for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
     for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
     for (i = 0; i < w->field_count; i++) {
@@ -31027,9 +31483,10 @@ static int demi_lists_check(const demi_reader *r) {
         }
         for (k = d*t->wall_stride; k < d*t->wall_stride + o->walls; k++) {
             const int wall = t->wall_id[k], body = t->wall_body[k];
-            if (body < o->begin || body >= o->end || wall < 0 || wall >= t->wall_count ||
-                t->walls[wall].kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
-                t->wall_element[k] >= t->walls[wall].element_count ||
+            if (body < o->begin || body >= o->end || wall < 0 ||
+                wall >= t->wall_count + t->surface_count ||
+                demi_surface_of(t, wall)->kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
+                t->wall_element[k] >= demi_surface_of(t, wall)->element_count ||
                 !demi_finite3(demi_at(t->wall_shift + 3*(size_t)k)) ||
                 (k > d*t->wall_stride && body < t->wall_body[k - 1]))
                 return demi_lie(r, "wall candidate of domain", d);
@@ -31243,13 +31700,14 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
-    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
     demi_visit_outputs(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
         !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+    if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
+    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
 /* Reads a checkpoint of `size` bytes in memory into the world. */
@@ -31268,6 +31726,7 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     r.t = demi_twin_make(w);
     if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
     result = demi_checkpoint_scene(w, r.t, path, &r.s, head.parts);
+    w->facets_valid = 0;                        /* the twin computes the weights of shared walls */
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK) {
@@ -31309,9 +31768,9 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
                                         sizeof(demi_pair));
     if (r.t->pairs)
         memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
+    r.t->facets_valid = 1;
     result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
     demi_free(r.t, seen);
-    r.t->facets_valid = 1;
     if (result == DEM_OK) return r.t;
     demi_twin_free(w, r.t);
     return 0;
@@ -32104,7 +32563,7 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
     const double *c[3], *a, *b;
     double lo, hi, u[3], v[3], n[3];
     int k, from = 0, to = p->count;
-    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + 2 + (k < per ? k : 0)];
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[6*facet + (k < per ? k : 0)];
     lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
     hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
     for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
@@ -32131,15 +32590,11 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
 /* Finds the shells (connected surfaces) of a join, by union-find over shared sides. root[i]
    receives the first facet of the shell that contains facet i, or -1 if that shell is open. */
 static void demi_join_shells(demi_join *j, int32_t *root) {
-    demi_side *s = j->per == 3 ? j->piece : j->side;
-    const int sides = j->per == 3 ? j->sides : 2*j->facets;
-    int i, end;
+    const demi_side *s = j->side;
+    int i, end, sides;
+    demi_join_sides(j);
+    sides = j->sides;
     for (i = 0; i < j->facets; i++) root[i] = i;
-    for (i = 0; i < sides && j->per == 2; i++) {
-        const int32_t at = j->facet[5*(i/2) + 2 + i%2];
-        s[i] = demi_side_of(at, at, i/2, i%2);
-    }
-    if (j->per == 2) qsort(s, (size_t)sides, sizeof *s, demi_side_compare);
     for (i = 1; i < sides; i++) {
         int32_t a = s[i - 1].facet, b = s[i].facet;
         if (s[i].lo != s[i - 1].lo || s[i].hi != s[i - 1].hi) continue;
@@ -32150,19 +32605,19 @@ static void demi_join_shells(demi_join *j, int32_t *root) {
     for (i = 0; i < j->facets; i++) root[i] = root[root[i]];
     for (i = 0; i < sides; i = end) {
         const int32_t of = s[i].facet;
-        for (end = i; end < sides && s[end].lo == s[i].lo && s[end].hi == s[i].hi;) end++;
+        end = demi_sides_end(s, sides, i);
         if ((end - i)%2) root[root[of] >= 0 ? root[of] : of] = -1;
     }
     for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
 }
-/* Checks all closed shells of the group of walls that do not move against this one. per: corners of
-   a facet, 3 for meshes, 2 for profiles. Does nothing if memory runs out. */
+/* Checks all closed shells of the surface whose first wall this is. per: corners of a facet, 3 for
+   meshes, 2 for profiles. Does nothing if memory runs out. */
 static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
     double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
     int32_t *root = 0, *next = 0;
     demi_probes p;
     demi_join j;
-    int i, k, ok = demi_join_begin(w, &j, w->walls[wall].group, per);
+    int i, k, ok = demi_join_begin(w, &j, wall, per);
     memset(&p, 0, sizeof p);
     for (i = 0; i < 3*j.points && ok; i++) {
         box[i%3] = DEMI_MIN(box[i%3], j.x[i]);
@@ -32171,8 +32626,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
     if (per == 2) { box[2] = -1e300; box[5] = 1e300; }
     if (ok) ok = demi_probes_make(w, &p, &w->walls[wall], box);
     if (ok && p.count) {
-        demi_join_double(&j);                   /* which points are corners */
-        ok = per == 2 || demi_join_cut(w, &j);
+        ok = demi_join_resolve(w, &j);
         root = (int32_t *)demi_alloc(w, 2*(size_t)j.facets + 1, sizeof *root);
     }
     if (ok && root) {
@@ -32188,7 +32642,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
             if (root[i] != i) continue;
             for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
             for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
-            if (j.facet[5*i] >= 0) demi_probes_judge(w, f, &p, j.facet[5*i], per == 3);
+            demi_probes_judge(w, f, &p, j.facet[6*i + 3], per == 3);
         }
     }
     demi_free(w, root);
@@ -32227,19 +32681,18 @@ static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
     }
     demi_probes_free(w, &p);
 }
-/* Checks all closed surfaces: each surface of revolution, and each group of meshes or of profiles
-   once, for the first wall of the group. */
+/* Checks all closed surfaces: each surface of revolution, and each surface of meshes or profiles
+   once, for its first wall. */
 static void demi_check_enclosed(dem_world *w, demi_findings *f) {
-    int i, k, per;
-    if (!w->facets_valid && !demi_facets_weigh(w)) return;  /* no memory: the run will report it */
+    int i, k;
+    if (!w->facets_valid && !demi_surfaces_make(w)) return;  /* no memory: the run will report it */
     for (i = 0; i < w->wall_count; i++) {
-        const int kind = w->walls[i].kind;
-        if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
-        for (per = 2; per <= 3; per++) {
-            for (k = 0; k < i && !demi_join_member(w, k, w->walls[i].group, per);) k++;
-            if (k == i && kind != DEMI_WALL_NONE && demi_join_member(w, i, w->walls[i].group, per))
-                demi_check_shells(w, f, i, per);
-        }
+        const demi_wall *wall = &w->walls[i];
+        const int per = demi_wall_per(wall);
+        if (wall->kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
+        if (!demi_faceted(wall)) continue;
+        for (k = 0; k < i && !(demi_faceted(&w->walls[k]) && demi_join_member(w, i, k, per));) k++;
+        if (k == i) demi_check_shells(w, f, i, per);
     }
 }
 
@@ -32738,7 +33191,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     memcpy(out->observables, d->observable_count ? d->observables : usual,
            (size_t)out->observable_count*sizeof *usual);
     if (!d->observable_count) demi_usual_scales(w, out);
-    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_trials_run");
+    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, "dem_trials_run");
     result = demi_dt_settle(w);                 /* fails as a run would */
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);
@@ -33267,7 +33720,7 @@ static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFE
     size_t size;
     char *state;
     if (budget > 0 && w->bodies.count) {
-        if (!w->facets_valid && !demi_facets_weigh(w))
+        if (!w->facets_valid && !demi_surfaces_make(w))
             result = demi_no_memory(w, "dem_effects_get");
         else result = demi_dt_settle(w);        /* fails as a run would */
         if (result != DEM_OK) return -1;
@@ -34774,8 +35227,11 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
         if (first) b->motion.kind = DEM_MOTION_FIXED;
         to->wall_count = i + 1;
     }
-    to->facets_valid = first || from->facets_valid;
-    return to->facets_valid || demi_facets_weigh(to);
+    if (!first) return demi_surfaces_make(to);
+    if (!DEMI_GROW(to, to->surfaces, (size_t)first->surface_count)) return 0;
+    for (i = 0; i < first->surface_count; i++) to->surfaces[i] = first->surfaces[i];
+    to->surface_count = first->surface_count;
+    return to->facets_valid = 1;
 }
 /* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
    ran out. */

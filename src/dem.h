@@ -39,6 +39,8 @@
        >>sheets            connected facets of a surface, their orientation and open edges
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+       >>joins             facets of walls that move together: doubles, covers, dividing
+       >>surfaces          one surface per rigid motion: weights of its edges and corners
        >>distances         distance of a point from an element of a wall
      search/ - which bodies may touch: from candidates to the pruned neighbour list
        >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
@@ -182,6 +184,8 @@
 #include "surface/sheets.h"
 #include "surface/motions.h"
 #include "surface/walls.h"
+#include "surface/joins.h"
+#include "surface/surfaces.h"
 #include "surface/distances.h"
 #include "search/search.h"
 #include "search/lists.h"

@@ -607,3 +607,25 @@ static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_v
     if (!(d > 0)) return -enough;
     return DEMI_MAX(most, d - p->radius - q->radius);
 }
+
+enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };     /* largest number of corners of a polygon */
+/* Clips a convex polygon to n.(x - o) >= 0. Returns its number of corners. */
+static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
+    demi_d3 out[DEMI_SECTION];
+    double d[DEMI_SECTION];
+    int i, less = 0, left = 0;
+    for (i = 0; i < count; i++) {
+        d[i] = demi_d3_dot(n, demi_d3_sub(x[i], o));
+        less += d[i] < 0;
+    }
+    if (!less) return count;
+    if (less == count) return 0;
+    for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
+        const int next = i + 1 < count ? i + 1 : 0;
+        if (!(d[i] < 0)) out[left++] = x[i];
+        if ((d[i] < 0) != (d[next] < 0))
+            out[left++] = demi_d3_between(x[i], x[next], d[i]/(d[i] - d[next]));
+    }
+    memcpy(x, out, (size_t)left*sizeof *out);
+    return left;
+}

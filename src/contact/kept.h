@@ -91,6 +91,12 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
     return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
         (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
 }
+/* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
+   are joined to one surface are the same. */
+DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_kept *b) {
+    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 && w->walls[a->wall].joined &&
+                                  w->walls[a->wall].joined == w->walls[b->wall].joined);
+}
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
    with this wall; for NEAREST only those up to c. */
 static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
@@ -104,7 +110,7 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
         dem_real fit = demi_dot(o->normal, c->normal);
         if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
             o->part_a != c->part_a || o->part_b != c->part_b ||
-            (o->wall != c->wall && how != DEMI_FIT_SLID) ||
+            (how != DEMI_FIT_SLID && !demi_kept_one(w, o, c)) ||
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
             (o->element != c->element && how == DEMI_FIT_TURNED)) continue;
         if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
@@ -210,9 +216,9 @@ static int demi_is_cluster(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return shape && shape->count;
 }
-/* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and a wall, so that together they act
-   as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets, otherwise
-   1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
+/* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and all walls, so that together they
+   act as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets,
+   otherwise 1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
    (demi_kept_along),
        A_i = d_i^2 + sum of t_ij w_j d_j^2, j not i;   s_i = w_i d_i^2/A_i;   E = sum of s_i U(d_i)
    This is a mean in which deeper contacts count more. Similar contacts together store the energy of
@@ -516,14 +522,14 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
    one: 2 - deep. This does not apply at the end of a surface, which repels a polyhedron on both
    sides for a while. old: contacts of the body in the step before; fresh: all its new ones with
    this wall. */
-static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *fresh, int count,
-                              demi_kept *c) {
+static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds,
+                              const demi_kept *fresh, int count, demi_kept *c) {
     int e, i;
     for (e = 0; e < olds && c->corners; e++)
-        if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == c->part_a &&
+        if (old[e].b < 0 && demi_kept_one(w, &old[e], c) && old[e].part_a == c->part_a &&
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
-        if (old[e].b >= 0 || old[e].wall != c->wall || old[e].part_a != c->part_a ||
+        if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
             old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
             continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
@@ -545,7 +551,7 @@ static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
 DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
                                   const demi_part *p, const demi_kept *old, int olds) {
     const demi_wall *wall = v->wall;
-    const int d = v->d, id = (int)(wall - w->walls);
+    const int d = v->d;
     const dem_vec3 at = v->at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
     demi_touching *found = w->touching + w->domains[d].touching_first;
     const int places = demi_touches[wall->kind][p->kind](v, p, found);
@@ -558,8 +564,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
         if (!count++) fresh = c;
         c->a = body;
         c->part_a = k;
-        c->wall = id;
         c->element = found[i].element;
+        c->wall = demi_surface_wall(w, wall, c->element);
         c->normal = found[i].normal;
         c->share = c->weight = c->lift = c->grip = found[i].share;
         c->shift = found[i].shift;
@@ -570,6 +576,10 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
+        /* the point of the wall, until demi_kept_cover; points of gaps are half way */
+        if (v->several)
+            c->arm_b = demi_sub(found[i].point,
+                                demi_scale(c->normal, c->corners ? c->overlap/2 : 0));
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
@@ -580,10 +590,10 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds)
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
-        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
+        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* stays in the hole until through */
-            if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && c->overlap > 0 &&
+            if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == k && c->overlap > 0 &&
                 !demi_kept_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
@@ -597,15 +607,17 @@ DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
     x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
     return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
-/* Finds all contacts of one body with one wall: candidates first .. last - 1 of work group d. */
-static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
+/* Finds all contacts of one body with one surface: candidates first .. last - 1 of work group d.
+   several: 1 if other surfaces are near the body. */
+static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, int several,
                                       const demi_kept *old, int olds) {
-    const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
+    const int body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
     demi_view v = demi_view_of(w, d, first, last);
     const dem_real *balls;
     dem_real lone[4];
     int k, count;
+    v.several = several;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
@@ -619,7 +631,6 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
         p = demi_part_now(w, body, k);
         demi_kept_on_wall(w, &v, body, 1, k, &p, old, olds);
     }
-    demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
 }
 /* True if two contacts of one body with walls belong to the same surface: same part, and walls at
    rest relative to each other. */
@@ -685,6 +696,65 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
 }
+/* The number of the surface that a wall is part of. */
+DEM_INLINE int demi_kept_surface(const dem_world *w, const demi_kept *c) {
+    const int joined = w->walls[c->wall].joined;
+    return joined ? w->wall_count + joined - 1 : c->wall;
+}
+/* True if the point of c on its wall lies on another surface too. first, last: the candidates of
+   the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
+static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
+                             int surface) {
+    const demi_wall *wall = demi_surface_of(w, surface);
+    const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
+    int k;
+    if (!demi_faceted(wall) && wall->kind != DEMI_WALL_PLANE && wall->kind != DEMI_WALL_CYLINDER)
+        return 0;
+    for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
+        const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
+            demi_unrotate(wall->pose.rotation, demi_sub(at, wall->pose.position)), close)) < close)
+            return 1;
+    }
+    return 0;
+}
+/* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
+   of polyhedra, of which a facet may have several. */
+static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
+    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+    return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
+        DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
+                          demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
+}
+/* Removes contacts at edges of surfaces that move against each other and abut, such as belts in a
+   floor: where the point of a contact lies on another surface that the body touches too, that
+   surface covers the edge. Of contacts that lie on each other's surface the first remains. walled:
+   the first contact of the body with walls. */
+static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled) {
+    demi_kept *c = w->kept_next + w->kept_first[d];
+    const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
+    int i, k, left = walled;
+    for (i = walled; i < all; i++) {
+        const int own = demi_kept_surface(w, &c[i]);
+        int covered = 0;
+        for (k = walled; k < all && !covered && !demi_kept_flush(w, &c[i]); k++) {
+            const int other = demi_kept_surface(w, &c[k]);
+            if (other == own || c[k].part_a != c[i].part_a || (pressing && c[i].corners) ||
+                c[k].share > DEM_R(1e29)) continue;
+            covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
+                (k < i || demi_kept_flush(w, &c[k]) ||
+                 !demi_kept_lies_on(w, d, first, last, &c[k], own));
+        }
+        if (covered) c[i].share = DEM_R(1e30);
+    }
+    for (i = walled; i < all; i++) {
+        if (c[i].share > DEM_R(1e29)) continue;
+        c[i].arm_b = demi_v(0, 0, 0);
+        if (i > left) c[left] = c[i];
+        left++;
+    }
+    w->domains[d].kept_next = left;
+}
 /* Completes the contacts of one body with walls once all are found: the weights of friction, and
    which springs of the step before each inherits. */
 static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
@@ -707,7 +777,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
-    int p = domain->near_shaped, q = own_end, k = 0, a, last, walled;
+    int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
+    int from, end_k;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     for (; !(domain->overflow & 16); old = old_end) {
@@ -725,15 +796,21 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         for (; q < cross_end && near_a[q] == a; q++)
             demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
         walled = domain->kept_next;
-        for (; k < walls && body[k] == a; k = last) {
+        for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
+        several = from < end_k && wall[from] != wall[end_k - 1];
+        for (; k < end_k; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;
-            while (last < walls && body[last] == a && wall[last] == wall[k]) last++;
-            demi_kept_wall(w, d, k, last, old, (int)(old_end - old));
+            while (last < end_k && wall[last] == wall[k]) last++;
+            demi_kept_wall(w, d, k, last, several, old, (int)(old_end - old));
         }
-        if (domain->kept_next > walled)
-            demi_kept_settle(w, d, old, (int)(old_end - old),
-                             w->kept_next + w->kept_first[d] + walled, domain->kept_next - walled);
+        if (several && domain->kept_next > walled) demi_kept_cover(w, d, from, end_k, walled);
+        if (domain->kept_next > walled) {
+            demi_kept *c = w->kept_next + w->kept_first[d] + walled;
+            const int n = domain->kept_next - walled;
+            if (demi_shape_of(w, a)) demi_kept_share(w, c, n);
+            demi_kept_settle(w, d, old, (int)(old_end - old), c, n);
+        }
     }
 }
 /* Enlarges the lists of work groups that overflowed. Returns 0 if memory ran out; nothing has
@@ -758,8 +835,9 @@ static int demi_touch(dem_world *w) {
     int d, again;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
     if (!w->wall_count && !w->bodies.shaped) return 1;
-    if ((!w->facets_valid && !demi_facets_weigh(w)) ||
+    if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
+    demi_surfaces_follow(w);
     do {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_kept_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;

@@ -21,6 +21,7 @@ typedef struct demi_view {
     const int32_t *element;        /* of the candidates of this image; `count` of them */
     const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
     int count, left;               /* left: count, plus those of later images */
+    int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
 /* Returns the view of candidates first .. last - 1 of work group d, before its first image. The
@@ -29,13 +30,13 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     const int k = d*w->wall_stride + first;
     demi_view v;
     v.w = w;
-    v.wall = &w->walls[w->wall_id[k]];
+    v.wall = demi_surface_of(w, w->wall_id[k]);
     v.d = d;
     v.gone = demi_walls_gone(w);
     v.element = w->wall_element + k;
     v.gap = w->wall_gap + k;
     v.from = w->wall_shift + 3*(size_t)k;
-    v.count = 0;
+    v.count = v.several = 0;
     v.left = last - first;
     return v;
 }
@@ -464,18 +465,13 @@ static void demi_mesh_bend(const demi_wall *wall, const int32_t *among, int coun
     int k, q, found = 0;
     if (number < edges) return;
     b->turn = -1/b->dist;
-    for (k = 0; k < count && !found && (number < corners ||
-         number >= corners + wall->vertex_count); k++) {
+    for (k = 0; k < count && !found && number < corners; k++) {
         const int e = among[k];
         dem_vec3 y[3];
         demi_wall_corners(wall, e, y);
         for (q = 0; q < 3 && !found; q++)
             if ((found = edges + wall->edges[3*e + q] == number) != 0)
                 b->axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
-        for (q = wall->cut_start ? wall->cut_start[e] : 0;
-             wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
-            if ((found = wall->cuts[q].number == number) != 0)
-                b->axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
     }
 }
 /* At a curve the normal n rotates by -1/dist for displacements across it. Along it, with K the

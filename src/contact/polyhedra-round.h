@@ -514,14 +514,17 @@ static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
     while (demi_view_next(&v)) {
         const dem_vec3 x = v.x;
         const demi_d3 x0 = demi_d3_of(x);
-        flats.count = gaps.count = 0;
+        demi_flats_begin(&flats, &v);
+        gaps.count = 0;
+        flats.now = gaps.now = v.shift;
         if (*v.gap > v.gone) continue;
         side = demi_rings_side(wall, x0);
         for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
             ends |= demi_rings_end(wall, i, x0, (double)part->radius) << i;
         if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
         for (i = 0; i < 2 && pressing && ends; i++) {
-            seen[i].count = 0;
+            demi_flats_begin(&seen[i], &v);
+            seen[i].now = v.shift;
             if (!i || seen[0].count)
                 demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
         }

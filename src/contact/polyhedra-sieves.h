@@ -352,7 +352,9 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
                 for (e = 0; e < 3; e++) turn[3*e + i] = R[3*e + (wires ? (i + 2 - set)%3 : i)];
             local = demi_part_local(turn, part);
             demi_solid_of(&local, demi_v(0, 0, 0), &s);
-            flats.count = gaps.count = 0;
+            demi_flats_begin(&flats, &v);
+            gaps.count = 0;
+            flats.now = gaps.now = v.shift;
             if (wires) demi_wires_touch(sieve, set, &s, v.x, reach, pressing, &flats, &gaps);
             else demi_plate_touch(sieve, &s, demi_d3_of(v.x), reach,
                                   1e-3*(double)demi_part_thin(part), pressing, &flats, &gaps);

@@ -12,12 +12,20 @@
    contact points per direction.
    --------------------------------------------------------------------------------------------- */
 
-/* Pressures on one wall, grouped by the direction of the surface. */
+/* Pressures on one surface, grouped by the direction of the surface and, if it is joined, by
+   walls. */
 typedef struct demi_flats {
     int count;
+    const int32_t *whose;                      /* as in demi_wall; may be null */
+    dem_vec3 now;                              /* m, shift of the image that is examined */
     int32_t element[DEMI_FLATS];               /* the first of each group */
+    dem_vec3 shift[DEMI_FLATS];                /* m, its image */
     demi_pressure press[DEMI_FLATS];
 } demi_flats;
+static void demi_flats_begin(demi_flats *f, const demi_view *v) {
+    f->count = 0;
+    f->whose = v->wall->whose;
+}
 /* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
     const double size = demi_d3_length(s->force);
@@ -27,9 +35,12 @@ static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *
     for (i = 0; i < f->count; i++) {
         const demi_d3 F = f->press[i].force;
         const double along = demi_d3_dot(F, s->force)/(size*demi_d3_length(F));
+        if (f->whose && f->whose[f->element[i]] != f->whose[element] && f->count < DEMI_FLATS)
+            continue;
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && f->count < DEMI_FLATS) {
+        f->shift[f->count] = f->now;
         f->element[f->count] = element;
         f->press[f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
@@ -65,6 +76,7 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
             demi_pressure press = seen[k].press[i];
             demi_pressure_scale(&press, share[k]);
             if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stop */
+            out->now = seen[k].shift[i];
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }
@@ -95,7 +107,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
             t->normal = demi_rotate(R, p.normal);
             t->spread = demi_rotate(R, demi_patch_spread(&p, k));
             t->point = demi_add(demi_add(v->at, demi_rotate(R, p.point)), t->spread);
-            t->shift = v->shift;
+            t->shift = f->shift[i];
         }
     }
     return count;
@@ -139,15 +151,17 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
 enum { DEMI_GAP_POINTS = 24 };                  /* largest number of points in a group */
 /* Points near one wall with similar normals. */
 typedef struct demi_gap_group {
-    int32_t element;                           /* of the first point */
     int count;
+    int32_t element[DEMI_GAP_POINTS];
     demi_d3 x[DEMI_GAP_POINTS], n[DEMI_GAP_POINTS];
+    dem_vec3 shift[DEMI_GAP_POINTS];           /* m, image of the body */
     double gap[DEMI_GAP_POINTS];
 } demi_gap_group;
-/* All groups of points near one wall. Points with gaps of `range` (m) or more are ignored. */
+/* All groups of points near one surface. Points with gaps of `range` (m) or more are ignored. */
 typedef struct demi_gaps {
     int count, flat;               /* flat: only normals within 60 degrees of z (plates) */
     double range;
+    dem_vec3 now;                  /* m, shift of the image that is examined */
     demi_gap_group group[DEMI_FLATS];
 } demi_gaps;
 /* Reduces a group to the four points that matter. */
@@ -159,6 +173,8 @@ static void demi_gap_group_pick(demi_gap_group *g) {
         g->x[i] = all.x[picked[i]];
         g->n[i] = all.n[picked[i]];
         g->gap[i] = all.gap[picked[i]];
+        g->shift[i] = all.shift[picked[i]];
+        g->element[i] = all.element[picked[i]];
     }
 }
 /* Adds a point x with its gap. n: unit, from the polyhedron into the wall. */
@@ -173,13 +189,14 @@ static void demi_gaps_add(demi_gaps *gaps, int32_t element, demi_d3 n, demi_d3 x
     }
     if (most < 0.95 && gaps->count < DEMI_FLATS) {
         best = gaps->count++;
-        gaps->group[best].element = element;
         gaps->group[best].count = 0;
     }
     g = &gaps->group[best];
     if (g->count == DEMI_GAP_POINTS) demi_gap_group_pick(g);
     g->x[g->count] = x;
     g->n[g->count] = n;
+    g->shift[g->count] = gaps->now;
+    g->element[g->count] = element;
     g->gap[g->count++] = gap;
 }
 /* Adds the corners above the plane z = 0 of the frame of the wall. height: of the origin above
@@ -220,17 +237,23 @@ static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin,
 }
 /* True if an edge or corner of a facet (own: its `owns` corners) is really the nearest point of the
    surface. It is not if another facet with the same edge or corner continues towards the body; that
-   facet then gives the gap. n: unit, from the body. */
-static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int count,
-                              const dem_vec3 *own, int owns, demi_d3 n) {
+   facet then gives the gap. n: unit, from the body; start: all facets near it; x: the body, in the
+   image of this facet. */
+static int demi_facet_nearest(const demi_view *start, dem_vec3 x, const dem_vec3 *own, int owns,
+                              demi_d3 n) {
+    const demi_wall *wall = start->wall;
+    const dem_real same = 2*wall->plane_slack;  /* m: images differ by rounding */
+    demi_view v = *start;
     int i, k, e;
-    for (i = 0; i < count; i++) {
+    while (demi_view_next(&v)) for (i = 0; i < v.count; i++) {
         dem_vec3 y[3];
-        const int corners = demi_wall_corners(wall, among[i], y);
+        const int corners = demi_wall_corners(wall, v.element[i], y);
         int has[3] = {0, 0, 0}, all = 0;
-        for (k = 0; k < corners; k++)
+        for (k = 0; k < corners; k++) {
+            y[k] = demi_add(y[k], demi_sub(x, v.x));
             for (e = 0; e < owns && !has[k]; e++)
-                all += has[k] = !(demi_length(demi_sub(y[k], own[e])) > 0);
+                all += has[k] = !(demi_length(demi_sub(y[k], own[e])) > same);
+        }
         if (all < owns) continue;
         for (k = 0; k < corners; k++) {
             dem_vec3 way = demi_sub(y[k], own[0]);
@@ -255,17 +278,18 @@ static int demi_facet_under(const demi_solid *s, const demi_solid *f, double ran
     out->normal = demi_d3_scale(up, -1);
     return demi_spots_take(out, x, gap, count, range, up);
 }
-/* Adds the gaps of one facet. among: all facets nearby. If the body is slightly inside, beside an
-   edge at which the surface continues, the shortest separation would lead across that edge into the
-   facet beyond. The facet is then treated as infinite. */
-static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
-                              const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
+/* Adds the gaps of one facet. start: all facets nearby; v: those of this image. If the body is
+   slightly inside, beside an edge at which the surface continues, the shortest separation would
+   lead across that edge into the facet beyond. The facet is then treated as infinite. */
+static void demi_element_gaps(const demi_view *start, const demi_view *v, int element,
+                              const demi_solid *s, double reach, demi_gaps *gaps) {
+    const demi_wall *wall = v->wall;
     demi_simplex tells;
     demi_solid f;
     demi_spots spots;
     dem_vec3 y[3], own[3];
     int i, k, owns = 0, has[3] = {0, 0, 0};
-    if (!demi_facet_solid(wall, element, x, reach, &f) ||
+    if (!demi_facet_solid(wall, element, v->x, reach, &f) ||
         !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
     if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
@@ -278,7 +302,7 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
             has[k] = 1;
         }
         if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(wall, among, count, own, owns, spots.normal) &&
+            !demi_facet_nearest(start, v->x, own, owns, spots.normal) &&
             (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
     }
     for (i = 0; i < spots.count; i++)
@@ -303,7 +327,7 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             demi_touching *t = &out[count];
             e = pressing ? nearest : k;
             memset(t, 0, sizeof *t);
-            t->element = g->element;
+            t->element = g->element[e];
             t->corner = k;
             t->corners = places;
             t->overlap = (dem_real)-g->gap[e];
@@ -312,7 +336,7 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             t->deep = t->overlap/demi_part_thin(part);
             t->normal = demi_rotate(R, demi_d3_real(g->n[e]));
             t->point = demi_add(v->at, demi_rotate(R, demi_d3_real(g->x[e])));
-            t->shift = v->shift;
+            t->shift = g->shift[e];
             for (e = 1; e <= pressed; e++)
                 if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
             if (e <= pressed || (pressing && !(t->overlap < 0))) break;
@@ -321,27 +345,12 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
     }
     return count;
 }
-/* Writes the contact points by pressure and by gaps, for one image of the body. */
+/* Writes the contact points by pressure and by gaps. */
 static int demi_wall_places(const demi_view *v, const demi_flats *flats, demi_gaps *gaps,
                             const dem_real *R, const demi_part *part, demi_touching *out) {
     const int pressed = demi_flats_places(v, flats, R, part, out);
     return pressed + demi_gaps_places(v, gaps, R, part, pressed, out + pressed);
 }
-/* Returns the sides of an element, as bits, where its sheet ends: where the element is alone or one
-   of three or more. A side with another element along part of it is not an end. */
-static int demi_facet_ends(const demi_wall *wall, int e) {
-    const int n = demi_wall_per(wall), edges = wall->element_count;
-    int k, open = 0;
-    for (k = 0; k < n; k++) {
-        const dem_real count = wall->weight[n == 3 ? edges + wall->edges[3*e + k]
-                                            : edges + wall->edge_count + wall->corners[2*e + k]];
-        open |= (!(count < 0 || count > 0) || count < DEM_R(-1.5)) << k;
-    }
-    for (k = wall->cut_start ? wall->cut_start[e] : 0;
-         wall->cut_start && k < wall->cut_start[e + 1]; k++) open &= ~(1 << wall->cuts[k].side);
-    return open;
-}
-
 /* The sheets of a surface near a body (>>sheets), and the side on which each acts: that of the
    body's centre as seen from the nearest facet or, if several are equally near (at an edge), from
    the one that it is highest above. The slope behind a ridge is thus also seen from outside where a
@@ -350,6 +359,7 @@ enum { DEMI_SHEETS = 16 };
 typedef struct demi_sheets {
     int count;
     int32_t sheet[DEMI_SHEETS];
+    int image[DEMI_SHEETS];        /* number of the image; 0 if the surface continues there */
     int way[DEMI_SHEETS];          /* of the normal into the wall, at the first facet */
     int ends[DEMI_SHEETS];         /* does it end near the body? */
     double near2[DEMI_SHEETS], over[DEMI_SHEETS];      /* m2, squared distance; m, height */
@@ -358,11 +368,19 @@ DEM_INLINE int32_t demi_sheet_of(const demi_wall *wall, int element) {
     const int32_t own = wall->sheet[element];
     return own < 0 ? -own : own;
 }
-/* Adds an element to its sheet. within: radius of the body, m. */
-static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin,
-                            double within) {
+/* The index of an element's sheet, as seen in an image; the number of sheets if it is not in the
+   list. */
+static int demi_sheets_which(const demi_sheets *s, const demi_wall *wall, int element, int image) {
     const int32_t sheet = demi_sheet_of(wall, element);
-    const int open = demi_facet_ends(wall, element);
+    int i;
+    for (i = 0; i < s->count; i++)
+        if (s->sheet[i] == sheet && (wall->wraps || s->image[i] == image)) break;
+    return i;
+}
+/* Adds an element to its sheet. within: radius of the body, m. */
+static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, int image,
+                            dem_vec3 origin, double within) {
+    const int open = wall->ends[element];
     double part[3] = {0, 0, 0}, d2, over;
     demi_d3 x[3], up;
     const int corners = demi_facet_corners(wall, element, origin, x);
@@ -373,7 +391,7 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
     else demi_near_segment(x[0], x[1], part);
     d2 = demi_d3_square(demi_triangle_point(part, x[0], x[1], x[2]));
     over = demi_d3_dot(demi_d3_unit(up), x[0])*(wall->sheet[element] < 0 ? -1 : 1);
-    for (i = 0; i < s->count && s->sheet[i] != sheet; i++) continue;
+    i = demi_sheets_which(s, wall, element, image);
     if (i == DEMI_SHEETS) return;
     if (i == s->count) s->ends[s->count++] = 0;
     else if (d2 > s->near2[i]*(1 + 1e-9) ||
@@ -382,23 +400,18 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
         s->ends[i] = open >> k & 1 &&
             demi_near_segment(x[k], x[corners == 3 ? (k + 1)%3 : k], part) < within*within;
     if (d2 < 0) return;
-    s->sheet[i] = sheet;
+    s->sheet[i] = demi_sheet_of(wall, element);
+    s->image[i] = image;
     s->near2[i] = d2;
     s->over[i] = over;
     s->way[i] = over < 0 ? -1 : 1;
 }
-/* The index of an element's sheet; -1: there was no room for it. */
-static int demi_sheets_which(const demi_sheets *s, const demi_wall *wall, int element) {
-    const int32_t sheet = demi_sheet_of(wall, element);
-    int i;
-    for (i = 0; i < s->count; i++) if (s->sheet[i] == sheet) return i;
-    return -1;
-}
 /* The direction of an element's normal; x: of the body, for sheets that are not in the list. */
-static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, dem_vec3 x) {
+static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, int image,
+                           dem_vec3 x) {
     const dem_real *plane = wall->planes + 4*element;
-    const int i = demi_sheets_which(s, wall, element);
-    if (i >= 0) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
+    const int i = demi_sheets_which(s, wall, element, image);
+    if (i < s->count) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
     return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
 }
 /* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
@@ -416,19 +429,20 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
 /* The elements of one sheet near a body, seen from one side. way: direction of the normal at the
-   sheet's first facet; within: radius of the body, m. */
+   sheet's first facet; within: radius of the body, m; start: all elements near the body. */
 typedef struct demi_sheet {
-    const demi_view *v;
+    const demi_view *start;
     const demi_wall *wall;
     dem_real within;
-    int way;
+    int way, image;
     int32_t sheet;
 } demi_sheet;
-/* Returns the direction of the normal of element i of the list, or 0 if it does not belong to the
+/* Returns the direction of the normal of element i of an image, or 0 if it does not belong to the
    sheet. */
-DEM_INLINE int demi_sheet_turn(const demi_sheet *t, int i) {
-    const int element = t->v->element[i];
-    if (t->v->gap[i] > t->v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+DEM_INLINE int demi_sheet_turn(const demi_sheet *t, const demi_view *v, int i, int image) {
+    const int element = v->element[i];
+    if (v->gap[i] > v->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+    if (!t->wall->wraps && image != t->image) return 0;
     return t->wall->sheet[element] < 0 ? -t->way : t->way;
 }
 /* Returns the mean normals of the sheet at both corners of a side, or null if it does not end
@@ -509,19 +523,21 @@ static void demi_sheet_curtain(const demi_sheet *t, int32_t side, const demi_hal
 }
 /* Adds all of a sheet with its curtains. */
 static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
+    demi_view v = *t->start;
     demi_pressure press;
     demi_half sides[3];
     demi_d3 n;
     double at;
-    int i, k, count, ends, beyond;
-    for (i = 0; i < t->v->count; i++) {
-        const int element = t->v->element[i], way = demi_sheet_turn(t, i);
+    int i, k, count, ends, beyond, image = 0;
+    for (; demi_view_next(&v); image++) for (i = 0; i < v.count; i++) {
+        const int element = v.element[i], way = demi_sheet_turn(t, &v, i, image);
         const dem_real *plane = t->wall->planes + 4*element;
-        const dem_real off = demi_dot(demi_at(plane), t->v->x) - plane[3];
+        const dem_real off = demi_dot(demi_at(plane), v.x) - plane[3];
         if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
-        count = demi_facet_sides(t->wall, element, t->v->x, way, &n, &at, sides);
+        count = demi_facet_sides(t->wall, element, v.x, way, &n, &at, sides);
         if (!count) continue;
-        ends = demi_facet_ends(t->wall, element);
+        flats->now = v.shift;
+        ends = t->wall->ends[element];
         beyond = demi_d3_dot(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
         if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
@@ -544,9 +560,11 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
     for (i = 0; i < sheets->count; i++) {
         if (!sheets->ends[i]) continue;
         t->sheet = sheets->sheet[i];
+        t->image = sheets->image[i];
         for (k = 0; k < 2; k++) {
             t->way = k ? -sheets->way[i] : sheets->way[i];
             seen[k].count = 0;
+            seen[k].whose = flats->whose;
             if (!k || seen[0].count) demi_sheet_seen(t, s, &seen[k]);
         }
         demi_flats_sides(seen, flats);
@@ -554,47 +572,45 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
 }
 /* A polyhedron and any wall of flat elements. */
 static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, demi_touching *out) {
-    demi_view v = *start;
-    const demi_wall *wall = v.wall;
+    demi_view v;
+    const demi_wall *wall = start->wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
+    const int pressing = demi_response_is(start->w, DEMI_PRESSING);
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
     demi_sheets sheets;
     demi_sheet sheet;
     demi_solid s;
-    int k, way, count = 0;
-    gaps.range = (double)demi_range(v.w, part->radius);
-    gaps.flat = 0;
-    sheet.v = &v;
+    int k, way, image;
+    demi_flats_begin(&flats, start);
+    gaps.range = (double)demi_range(start->w, part->radius);
+    gaps.flat = gaps.count = sheets.count = 0;
+    sheet.start = start;
     sheet.wall = wall;
     sheet.within = part->radius*DEM_R(1.001);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
-    while (demi_view_next(&v)) {
-        flats.count = gaps.count = sheets.count = 0;
-        for (k = 0; wall->sheet && pressing && k < v.count; k++)
-            if (!(v.gap[k] > v.gone) && wall->sheet[v.element[k]])
-                demi_sheets_add(&sheets, wall, v.element[k], v.x, (double)sheet.within);
-        demi_sheets_press(&sheets, &sheet, &s, &flats);
-        for (k = 0; k < v.count; k++) {
-            const int32_t element = v.element[k];
-            const int which = !pressing || !wall->sheet ? -1
-                : demi_sheets_which(&sheets, wall, element);
-            if (v.gap[k] > v.gone || (wall->sheet && !wall->sheet[element])) continue;
-            if (pressing && (which < 0 || !sheets.ends[which])) {
-                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, v.x) : 1;
-                demi_solid_on_element(wall, element, &s, v.x, way, &press);
-                demi_flats_add(&flats, element, &press);
-            }
-            if (!(gaps.range > 0)) continue;
-            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
-            else demi_element_gaps(wall, element, v.element, v.count, &s, v.x,
-                                   2*(double)part->radius + gaps.range, &gaps);
+    for (v = *start, image = 0; wall->sheet && pressing && demi_view_next(&v); image++)
+        for (k = 0; k < v.count; k++)
+            if (!(v.gap[k] > v.gone))
+                demi_sheets_add(&sheets, wall, v.element[k], image, v.x, (double)sheet.within);
+    demi_sheets_press(&sheets, &sheet, &s, &flats);
+    for (v = *start, image = 0; demi_view_next(&v); image++) for (k = 0; k < v.count; k++) {
+        const int32_t element = v.element[k];
+        const int which = !pressing || !wall->sheet ? sheets.count
+            : demi_sheets_which(&sheets, wall, element, image);
+        if (v.gap[k] > v.gone) continue;
+        flats.now = gaps.now = v.shift;
+        if (pressing && (which == sheets.count || !sheets.ends[which])) {
+            way = wall->sheet ? demi_sheets_way(&sheets, wall, element, image, v.x) : 1;
+            demi_solid_on_element(wall, element, &s, v.x, way, &press);
+            demi_flats_add(&flats, element, &press);
         }
-        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
+        if (!(gaps.range > 0)) continue;
+        if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
+        else demi_element_gaps(start, &v, element, &s, 2*(double)part->radius + gaps.range, &gaps);
     }
-    return count;
+    return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
 }
 /* A polyhedron and a wall of grains, each a sphere. */
 static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,

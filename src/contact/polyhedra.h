@@ -69,7 +69,6 @@ typedef struct demi_pressure {
     demi_d3 at, force, torque;     /* integrals over S of u x, u n, u x cross n */
     double deep;                   /* largest u */
 } demi_pressure;
-enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 }; /* corners of a polygon */
 /* Adds a polygon of `count` corners x in the pyramid of face f. unit: normal of S; height: m, of
    the polygon above the centre, for a pair the sum of both. */
 static void demi_pressure_polygon(demi_pressure *s, const demi_solid *body, int f, const demi_d3 *x,
@@ -159,27 +158,7 @@ static int demi_pyramid_section(const demi_solid *s, int f, double centre, const
     }
     return count;
 }
-/* Clips a convex polygon to n.(x - o) >= 0. Returns its number of corners. */
-static int demi_polygon_clip(demi_d3 *x, int count, demi_d3 n, demi_d3 o) {
-    demi_d3 out[DEMI_SECTION];
-    double d[DEMI_SECTION];
-    int i, less = 0, left = 0;
-    for (i = 0; i < count; i++) {
-        d[i] = demi_d3_dot(n, demi_d3_sub(x[i], o));
-        less += d[i] < 0;
-    }
-    if (!less) return count;
-    if (less == count) return 0;
-    for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
-        const int next = i + 1 < count ? i + 1 : 0;
-        if (!(d[i] < 0)) out[left++] = x[i];
-        if ((d[i] < 0) != (d[next] < 0))
-            out[left++] = demi_d3_between(x[i], x[next], d[i]/(d[i] - d[next]));
-    }
-    memcpy(x, out, (size_t)left*sizeof *out);
-    return left;
-}
-/* Clips it to the pyramid over face f. */
+/* Clips a polygon to the pyramid over face f. */
 static int demi_pyramid_clip(const demi_solid *s, int f, demi_d3 *x, int count) {
     int i;
     for (i = s->rim[f]; i < s->rim[f + 1] && count > 2; i++) {

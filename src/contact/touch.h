@@ -39,8 +39,8 @@ static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem
     p->at[i].overlap = DEMI_SQRT(d2);
     p->count++;
 }
-/* Removes contact points whose weights cancel, and merges those that coincide to rounding (a side
-   and a cut of it). */
+/* Removes contact points whose weights cancel, and merges those that coincide to rounding (of a
+   corner and its periodic image). */
 static void demi_places_merge(demi_places *p, dem_real near_by) {
     int i, k, count = 0;
     for (i = 0; i < p->count; i++) {
@@ -76,8 +76,8 @@ DEM_INLINE void demi_facet_alone(const demi_wall *wall, int e, dem_vec3 x, dem_r
     if (d2 < within*within && wall->weight[e] > 0)
         demi_places_add(p, demi_facet_number(wall, e, n, where), wall->weight[e], d, d2);
 }
-/* Adds the contact points nearer than `within` of element e and of the edges, corners and cuts that
-   it owns. */
+/* Adds the contact points nearer than `within` of element e and of the edges and corners that it
+   owns. */
 DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                                   dem_real within, demi_places *p) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
@@ -111,16 +111,6 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
         d2 = demi_dot(y[k], y[k]);
         if (d2 < most) demi_places_add(p, number, weight[number], y[k], d2);
     }
-    if (!wall->cut_start) return;
-    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
-        const demi_cut *c = &wall->cuts[k];
-        dem_vec3 a = demi_sub(c->a, x), b = demi_sub(c->b, x);
-        if (!(c->weight < 0 || c->weight > 0)) continue;
-        if (part) { a = demi_in_measure(part, a); b = demi_in_measure(part, b); }
-        d = demi_side_point(a, b, 0, 1, &at);
-        d2 = demi_dot(d, d);
-        if (d2 < most) demi_places_add(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
-    }
 }
 /* --- rings. If the part of a surface within reach of a sphere closes to a ring, at the rim of a
    hole or in a funnel, its Euler characteristic is 0 and there would be no force. A ring counts as
@@ -134,7 +124,7 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
    A dimple that is reached down to its tip is an almost closed ring: D is small, and E is X, which
    is smooth. An open ring counts as one piece; which of its sides are nearest may change at any
    moment, as on the medial line of a single wall. Energy is conserved in both cases. Rings across a
-   seam of two walls are not detected. --- */
+   periodic face are not detected. --- */
 /* Orders links: sides before corners, then by number and facet. */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
@@ -178,43 +168,6 @@ static int demi_link_add(demi_link *link, int count, int facet, dem_real within,
     to->sides[0] = to->sides[1] = -1;
     return count + 1;
 }
-/* Returns the number of the side of element e that ends at `corner`, or of the piece that ends
-   there if the side is cut. */
-static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t corner) {
-    int k = wall->cut_start ? wall->cut_start[e] : 0;
-    for (; wall->cut_start && k < wall->cut_start[e + 1]; k++) {
-        const demi_cut *c = &wall->cuts[k];
-        if (c->side == side && (c->end[0] == corner || c->end[1] == corner)) return c->number;
-    }
-    return wall->element_count + wall->edges[3*e + side];
-}
-/* Adds the pieces of the cut sides of element e, and the corners of other elements between them.
-   *sides receives one bit per cut side. Returns the new number of links. */
-static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
-                          dem_real within, demi_link *link, int count, int facet, int *sides) {
-    int k, m, q;
-    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
-        const demi_cut *c = &wall->cuts[k];
-        dem_vec3 end[2];
-        end[0] = demi_sub(c->a, x);
-        end[1] = demi_sub(c->b, x);
-        for (q = 0; q < 2 && part; q++) end[q] = demi_in_measure(part, end[q]);
-        *sides |= 1 << c->side;
-        count = demi_link_add(link, count, facet, within, c->number, end, end + 1, c->end);
-        for (q = 0; q < 2; q++)                 /* the corner to the next piece */
-            for (m = k + 1; m < wall->cut_start[e + 1]; m++) {
-                const demi_cut *o = &wall->cuts[m];
-                const int before = count;
-                if (o->side != c->side || (o->end[0] != c->end[q] && o->end[1] != c->end[q]))
-                    continue;
-                count = demi_link_add(link, count, facet, within, c->end[q], end + q, 0, 0);
-                if (count == before) continue;
-                link[before].sides[0] = c->number;
-                link[before].sides[1] = o->number;
-            }
-    }
-    return count;
-}
 /* Adds the sides and corners of element e, if it is within reach. Returns the new number of
    links. */
 static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
@@ -222,7 +175,7 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
     const int edges = wall->element_count, corners = edges + wall->edge_count;
     const int32_t *v;
     dem_vec3 y[3], d;
-    int k, n, where, cut = 0;
+    int k, n, where;
     dem_real l;
     if (!(wall->weight[e] > 0)) return count;
     n = demi_facet_seen(wall, e, x, part, y);
@@ -236,8 +189,6 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
         ring->distance = l;
         ring->point = d;
     }
-    if (wall->cut_start)
-        count = demi_links_cut(wall, e, x, part, within, link, count, ring->facets, &cut);
     for (k = 0; k < n; k++) {
         const int b = (k + 1)%n, before = count;
         int32_t ends[2];
@@ -245,10 +196,10 @@ static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_p
         ends[1] = corners + v[b];
         count = demi_link_add(link, count, ring->facets, within, corners + v[k], y + k, 0, 0);
         if (count > before && n == 3) {
-            link[before].sides[0] = demi_link_side(wall, e, k, corners + v[k]);
-            link[before].sides[1] = demi_link_side(wall, e, (k + 2)%3, corners + v[k]);
+            link[before].sides[0] = edges + wall->edges[3*e + k];
+            link[before].sides[1] = edges + wall->edges[3*e + (k + 2)%3];
         }
-        if (n == 3 && !(cut >> k & 1))
+        if (n == 3)
             count = demi_link_add(link, count, ring->facets, within, edges + wall->edges[3*e + k],
                                   y + k, y + b, ends);
     }

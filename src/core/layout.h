@@ -341,20 +341,12 @@ typedef struct demi_response_kind {
 #define DEMI_RESPONSE_KIND(NAME, MEMORY, VECTORS, TRAITS, ...) {NAME, MEMORY, VECTORS, TRAITS},
 static const demi_response_kind demi_response_kinds[] = {DEMI_RESPONSES(DEMI_RESPONSE_KIND)};
 
-/* A segment of a triangle's side between points where corners of other triangles lie on it. */
-typedef struct demi_cut {
-    dem_vec3 a, b;                 /* its ends, local frame, m */
-    dem_real weight;               /* 0: another facet accounts for it */
-    int32_t number, end[2];        /* of the segment (of the edge, if it is a whole edge); of its
-                                      ends */
-    int32_t side;                  /* of the element */
-} demi_cut;
 /* A side of a triangle at which its sheet (>>sheets: connected facets) may end, because no single
    triangle continues there. side: 3*element + side. normal: mean normals of the sheet at both ends,
    unit, oriented as the sheet's first facet. */
 typedef struct demi_border { int32_t side; dem_vec3 normal[2]; } demi_border;
 
-/* A wall. */
+/* A wall, or a surface that several walls are joined to (>>surfaces). */
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
     int32_t id;                    /* dem_wall id; of a removed wall: its old id */
@@ -368,23 +360,28 @@ typedef struct demi_wall {
     dem_real *vertices;            /* vertex_count x 3, m, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
     /* surfaces of facets (mesh, profile), see >>facets */
-    int edge_count, cut_count, number_count;   /* number_count: faces, edges, corners, cuts */
+    int edge_count, number_count;  /* number_count: faces, edges and corners */
     int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to k + 1 */
     dem_real *weight;              /* weights of faces, edges and corners, in this order */
     unsigned char *owns;           /* element_count: bit k: this facet accounts for edge k;
                                       bit 3 + k: for corner k */
+    unsigned char *ends;           /* element_count: bit k: the surface ends at side k (profile:
+                                      corner k), where no single other facet continues it */
     int32_t *sheet;                /* element_count: number of its sheet, from 1; < 0: oriented
-                                      against the sheet's first facet; 0: a duplicate facet */
+                                      against the sheet's first facet */
     dem_real *planes;              /* element_count x 4: unit normal and n.x of its plane, m; zeros:
                                       too thin to have a plane */
     dem_real plane_slack;          /* m, bound on the rounding error of a distance from a plane */
     demi_border *borders;          /* border_count: of sheets, by side (mesh) */
     int border_count;
-    int32_t *cut_start;            /* element_count + 1: first segment of each in `cuts`; null: no
-                                      cuts */
-    demi_cut *cuts;
+    int chain;                     /* list of its arrays: DEMI_SCENE; DEMI_RUN if it is joined */
+    int32_t *whose;                /* number_count, of a joined surface: the wall of each face, edge
+                                      and corner */
+    int lead;                      /* of a joined surface: the wall that it moves with */
+    int joined;                    /* wall: 1 + index of its joined surface; 0: it is its own */
+    int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other */
-    int lone;                      /* 1: no facet has neighbours in other walls or images */
+    int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
     int repeats[3];                /* 1: repeats along a periodic axis, since it is not longer than
                                       the period */
@@ -786,7 +783,9 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
-    int facets_valid;              /* weights of facets fit the walls and their motions */
+    int facets_valid;              /* surfaces fit the walls and their motions */
+    int surface_count;             /* >>surfaces: joined surfaces */
+    demi_wall *surfaces;
     /* >>measure, >>feed, >>placing, >>advice */
     int field_count;
     demi_field *fields;

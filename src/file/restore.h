@@ -19,6 +19,7 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->fields = (demi_field *)demi_hold(t, DEMI_RUN, (size_t)w->field_count, sizeof(demi_field));
     if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
         (w->field_count && !t->fields) ||
+        !DEMI_GROW(t, t->surfaces, (size_t)w->surface_count) ||
         !DEMI_GROW(t, t->feeds, (size_t)w->feed_count) ||
         !DEMI_GROW(t, t->outlets, (size_t)w->outlet_count)) return 0;
     t->wall_count = w->wall_count;
@@ -26,6 +27,8 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->outlet_count = w->outlet_count;
     t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
     if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
+    for (i = 0; i < w->surface_count; i++) t->surfaces[i] = w->surfaces[i];
+    t->surface_count = w->surface_count;
     for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
     for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
     for (i = 0; i < w->field_count; i++) {
@@ -315,9 +318,10 @@ static int demi_lists_check(const demi_reader *r) {
         }
         for (k = d*t->wall_stride; k < d*t->wall_stride + o->walls; k++) {
             const int wall = t->wall_id[k], body = t->wall_body[k];
-            if (body < o->begin || body >= o->end || wall < 0 || wall >= t->wall_count ||
-                t->walls[wall].kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
-                t->wall_element[k] >= t->walls[wall].element_count ||
+            if (body < o->begin || body >= o->end || wall < 0 ||
+                wall >= t->wall_count + t->surface_count ||
+                demi_surface_of(t, wall)->kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
+                t->wall_element[k] >= demi_surface_of(t, wall)->element_count ||
                 !demi_finite3(demi_at(t->wall_shift + 3*(size_t)k)) ||
                 (k > d*t->wall_stride && body < t->wall_body[k - 1]))
                 return demi_lie(r, "wall candidate of domain", d);
@@ -531,13 +535,14 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
-    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
     demi_visit_outputs(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
         !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+    if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
+    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
 /* Reads a checkpoint of `size` bytes in memory into the world. */
@@ -556,6 +561,7 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     r.t = demi_twin_make(w);
     if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
     result = demi_checkpoint_scene(w, r.t, path, &r.s, head.parts);
+    w->facets_valid = 0;                        /* the twin computes the weights of shared walls */
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK) {
@@ -597,9 +603,9 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
                                         sizeof(demi_pair));
     if (r.t->pairs)
         memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
+    r.t->facets_valid = 1;
     result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
     demi_free(r.t, seen);
-    r.t->facets_valid = 1;
     if (result == DEM_OK) return r.t;
     demi_twin_free(w, r.t);
     return 0;

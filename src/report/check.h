@@ -448,7 +448,7 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
     const double *c[3], *a, *b;
     double lo, hi, u[3], v[3], n[3];
     int k, from = 0, to = p->count;
-    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + 2 + (k < per ? k : 0)];
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[6*facet + (k < per ? k : 0)];
     lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
     hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
     for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
@@ -475,15 +475,11 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
 /* Finds the shells (connected surfaces) of a join, by union-find over shared sides. root[i]
    receives the first facet of the shell that contains facet i, or -1 if that shell is open. */
 static void demi_join_shells(demi_join *j, int32_t *root) {
-    demi_side *s = j->per == 3 ? j->piece : j->side;
-    const int sides = j->per == 3 ? j->sides : 2*j->facets;
-    int i, end;
+    const demi_side *s = j->side;
+    int i, end, sides;
+    demi_join_sides(j);
+    sides = j->sides;
     for (i = 0; i < j->facets; i++) root[i] = i;
-    for (i = 0; i < sides && j->per == 2; i++) {
-        const int32_t at = j->facet[5*(i/2) + 2 + i%2];
-        s[i] = demi_side_of(at, at, i/2, i%2);
-    }
-    if (j->per == 2) qsort(s, (size_t)sides, sizeof *s, demi_side_compare);
     for (i = 1; i < sides; i++) {
         int32_t a = s[i - 1].facet, b = s[i].facet;
         if (s[i].lo != s[i - 1].lo || s[i].hi != s[i - 1].hi) continue;
@@ -494,19 +490,19 @@ static void demi_join_shells(demi_join *j, int32_t *root) {
     for (i = 0; i < j->facets; i++) root[i] = root[root[i]];
     for (i = 0; i < sides; i = end) {
         const int32_t of = s[i].facet;
-        for (end = i; end < sides && s[end].lo == s[i].lo && s[end].hi == s[i].hi;) end++;
+        end = demi_sides_end(s, sides, i);
         if ((end - i)%2) root[root[of] >= 0 ? root[of] : of] = -1;
     }
     for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
 }
-/* Checks all closed shells of the group of walls that do not move against this one. per: corners of
-   a facet, 3 for meshes, 2 for profiles. Does nothing if memory runs out. */
+/* Checks all closed shells of the surface whose first wall this is. per: corners of a facet, 3 for
+   meshes, 2 for profiles. Does nothing if memory runs out. */
 static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
     double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
     int32_t *root = 0, *next = 0;
     demi_probes p;
     demi_join j;
-    int i, k, ok = demi_join_begin(w, &j, w->walls[wall].group, per);
+    int i, k, ok = demi_join_begin(w, &j, wall, per);
     memset(&p, 0, sizeof p);
     for (i = 0; i < 3*j.points && ok; i++) {
         box[i%3] = DEMI_MIN(box[i%3], j.x[i]);
@@ -515,8 +511,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
     if (per == 2) { box[2] = -1e300; box[5] = 1e300; }
     if (ok) ok = demi_probes_make(w, &p, &w->walls[wall], box);
     if (ok && p.count) {
-        demi_join_double(&j);                   /* which points are corners */
-        ok = per == 2 || demi_join_cut(w, &j);
+        ok = demi_join_resolve(w, &j);
         root = (int32_t *)demi_alloc(w, 2*(size_t)j.facets + 1, sizeof *root);
     }
     if (ok && root) {
@@ -532,7 +527,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
             if (root[i] != i) continue;
             for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
             for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
-            if (j.facet[5*i] >= 0) demi_probes_judge(w, f, &p, j.facet[5*i], per == 3);
+            demi_probes_judge(w, f, &p, j.facet[6*i + 3], per == 3);
         }
     }
     demi_free(w, root);
@@ -571,19 +566,18 @@ static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
     }
     demi_probes_free(w, &p);
 }
-/* Checks all closed surfaces: each surface of revolution, and each group of meshes or of profiles
-   once, for the first wall of the group. */
+/* Checks all closed surfaces: each surface of revolution, and each surface of meshes or profiles
+   once, for its first wall. */
 static void demi_check_enclosed(dem_world *w, demi_findings *f) {
-    int i, k, per;
-    if (!w->facets_valid && !demi_facets_weigh(w)) return;  /* no memory: the run will report it */
+    int i, k;
+    if (!w->facets_valid && !demi_surfaces_make(w)) return;  /* no memory: the run will report it */
     for (i = 0; i < w->wall_count; i++) {
-        const int kind = w->walls[i].kind;
-        if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
-        for (per = 2; per <= 3; per++) {
-            for (k = 0; k < i && !demi_join_member(w, k, w->walls[i].group, per);) k++;
-            if (k == i && kind != DEMI_WALL_NONE && demi_join_member(w, i, w->walls[i].group, per))
-                demi_check_shells(w, f, i, per);
-        }
+        const demi_wall *wall = &w->walls[i];
+        const int per = demi_wall_per(wall);
+        if (wall->kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
+        if (!demi_faceted(wall)) continue;
+        for (k = 0; k < i && !(demi_faceted(&w->walls[k]) && demi_join_member(w, i, k, per));) k++;
+        if (k == i) demi_check_shells(w, f, i, per);
     }
 }
 

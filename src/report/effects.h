@@ -467,7 +467,7 @@ static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFE
     size_t size;
     char *state;
     if (budget > 0 && w->bodies.count) {
-        if (!w->facets_valid && !demi_facets_weigh(w))
+        if (!w->facets_valid && !demi_surfaces_make(w))
             result = demi_no_memory(w, "dem_effects_get");
         else result = demi_dt_settle(w);        /* fails as a run would */
         if (result != DEM_OK) return -1;

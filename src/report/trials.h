@@ -375,7 +375,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     memcpy(out->observables, d->observable_count ? d->observables : usual,
            (size_t)out->observable_count*sizeof *usual);
     if (!d->observable_count) demi_usual_scales(w, out);
-    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_trials_run");
+    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, "dem_trials_run");
     result = demi_dt_settle(w);                 /* fails as a run would */
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);

@@ -47,9 +47,10 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
     }
     domain->walls = n;
 }
-/* Lists the elements of wall j near body i, displaced by `shift` (m) to one of its images. */
+/* Lists the elements of surface j (demi_surface_of) near body i, displaced by `shift` (m) to one of
+   its images. */
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
-    const demi_wall *wall = &w->walls[j];
+    const demi_wall *wall = demi_surface_of(w, j);
     const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
@@ -104,15 +105,16 @@ static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 p
     *shift = demi_at(x);
     return !n;
 }
-/* Lists the elements of all walls near body i, unless it is fixed or a ghost. */
+/* Lists the elements of all surfaces near body i, unless it is fixed or a ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, n;
     if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
-    for (j = 0; j < w->wall_count; j++) {
+    for (j = 0; j < w->wall_count + w->surface_count; j++) {
+        const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
-        if (w->walls[j].kind == DEMI_WALL_NONE) continue;
-        for (n = 0; demi_wall_image(w, &w->walls[j], demi_at(w->bodies.pos + 4*i),
+        if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered) continue;
+        for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
             demi_wall_look(w, domain, d, i, j, shift);
     }
@@ -222,14 +224,13 @@ static void demi_cross_index(dem_world *w) {
    edges), and four more by gaps. */
 static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
-    const demi_wall *wall = &w->walls[id];
+    const demi_wall *wall = demi_surface_of(w, id);
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
     const int sets = wall->kind == DEMI_WALL_SIEVE ? 2 : 1, ways = sets*DEMI_FLATS;    /* wires */
     int n = 0, flats = 0;
     for (; k < w->domains[d].walls && w->wall_body[base + k] == body &&
            w->wall_id[base + k] == id; k++) {
-        const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[base + k] : 0;
-        n += kind->most + (cut ? 2*(cut[1] - cut[0]) : 0);
+        n += kind->most;
         flats += kind->corners ? 4*ways + 4 : 8*ways;
     }
     if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);

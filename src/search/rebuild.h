@@ -432,7 +432,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after checks, which must not move bodies */
-    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
+    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
         (double)demi_cover(w);

@@ -41,8 +41,11 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
         if (first) b->motion.kind = DEM_MOTION_FIXED;
         to->wall_count = i + 1;
     }
-    to->facets_valid = first || from->facets_valid;
-    return to->facets_valid || demi_facets_weigh(to);
+    if (!first) return demi_surfaces_make(to);
+    if (!DEMI_GROW(to, to->surfaces, (size_t)first->surface_count)) return 0;
+    for (i = 0; i < first->surface_count; i++) to->surfaces[i] = first->surfaces[i];
+    to->surface_count = first->surface_count;
+    return to->facets_valid = 1;
 }
 /* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
    ran out. */

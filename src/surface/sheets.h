@@ -21,7 +21,7 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     int i, k, c, count = 0;
     for (i = 0; i < 3*all; i++) count += demi_side_ends(wall, beside, i);
     wall->border_count = count;
-    wall->borders = (demi_border *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MAX(count, 1),
+    wall->borders = (demi_border *)demi_hold(w, wall->chain, (size_t)DEMI_MAX(count, 1),
                                              sizeof *wall->borders);
     if (!first || !wall->borders) { demi_free(w, first); return 0; }
     memset(first, 0, (size_t)(points + 2)*sizeof *first);
@@ -53,26 +53,9 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     demi_free(w, first);
     return 1;
 }
-/* Marks triangles with the same corners as an earlier one: their sheet is INT_MAX. s: room for all
-   elements. */
-static void demi_facets_copies(demi_wall *wall, demi_side *s) {
-    const int all = wall->element_count;
-    int i;
-    for (i = 0; i < all; i++) {
-        const int32_t *c = wall->corners + 3*i;
-        const int32_t lo = DEMI_MIN(c[0], DEMI_MIN(c[1], c[2]));
-        const int32_t hi = DEMI_MAX(c[0], DEMI_MAX(c[1], c[2]));
-        s[i] = demi_side_of(lo, hi, c[0] + c[1] + c[2] - lo - hi, i);
-    }
-    qsort(s, (size_t)all, sizeof *s, demi_side_compare);
-    for (i = 1; i < all; i++)
-        if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi && s[i].facet == s[i - 1].facet)
-            wall->sheet[s[i].side] = INT_MAX;
-}
 /* Assigns facets to sheets: those connected by edges (for segments: ends) that exactly two facets
    share. wall->sheet is negative for facets that are oriented opposite to the first of their sheet.
-   A triangle with the corners of an earlier one belongs to no sheet, since that one represents
-   both. beside: for each side the neighbour's (3*element + side), or -1. Returns 0 if memory ran
+   beside: for each side the neighbour's (3*element + side), or -1. Returns 0 if memory ran
    out. */
 static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     const int n = demi_wall_per(wall), all = wall->element_count;
@@ -80,10 +63,9 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     int32_t *beside = (int32_t *)demi_alloc(w, (size_t)all*4, sizeof *beside);
     int32_t *row = beside ? beside + 3*all : 0;
     int i, k, count = 0, rows, sheets = 0;
-    wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
-    if (n == 3 && sides && wall->sheet) demi_facets_copies(wall, sides);
+    wall->sheet = (int32_t *)demi_hold(w, wall->chain, (size_t)all, sizeof(int32_t));
     for (i = 0; i < all && sides && beside && wall->sheet; i++)
-        for (k = 0; k < n && !wall->sheet[i]; k++) {
+        for (k = 0; k < n; k++) {
             const int32_t *c = wall->corners + n*i;
             sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
         }
@@ -117,7 +99,6 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
             }
         }
     }
-    for (i = 0; i < all && count; i++) if (wall->sheet[i] == INT_MAX) wall->sheet[i] = 0;
     demi_free(w, sides);
     i = count && (n != 3 || demi_wall_borders(w, wall, beside));
     demi_free(w, beside);

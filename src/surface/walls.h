@@ -7,8 +7,8 @@
    --------------------------------------------------------------------------------------------- */
 /* Pointers to the arrays that a wall owns. These are freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
-    &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->borders, &(wall)->planes, \
-    &(wall)->cut_start, &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, \
+    &(wall)->weight, &(wall)->owns, &(wall)->ends, &(wall)->sheet, &(wall)->borders, \
+    &(wall)->planes, &(wall)->whose, &(wall)->cell_start, &(wall)->cell_items, \
     &(wall)->motion.table}
 /* Frees the arrays of a wall and clears it: it is then a removed wall. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
@@ -16,8 +16,8 @@ static void demi_wall_free(dem_world *w, demi_wall *wall) {
     size_t k;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a trial copy does not own
-                                                                      it */
+        if (demi_owns(w, wall->chain, data)) demi_free(w, data);    /* a trial copy does not own
+                                                                       it */
     }
     memset(wall, 0, sizeof *wall);
 }
@@ -29,7 +29,7 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     int ok = 1;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        copy = data ? demi_hold(w, DEMI_SCENE, demi_room(data, 1), 1) : 0;
+        copy = data ? demi_hold(w, wall->chain, demi_room(data, 1), 1) : 0;
         ok = ok && !copy == !data;
         if (copy) memcpy(copy, data, demi_room(data, 1));
         memcpy(places[k], &copy, sizeof copy);
@@ -38,6 +38,44 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     return ok;
 }
 
+/* True if two walls are at rest relative to each other: both fixed, or moved alike. */
+static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    if (a == b) return 1;
+    if (m->kind != o->kind || m->kind == DEM_MOTION_USER || m->kind == DEM_MOTION_TABLE) return 0;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (memcmp(&m->start, &o->start, sizeof m->start) ||
+        memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
+        memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
+    return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
+        ? !memcmp(&m->point, &o->point, sizeof m->point) &&
+          !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
+          !memcmp(&m->speed, &o->speed, sizeof m->speed)
+        : !memcmp(&m->amplitude, &o->amplitude, sizeof m->amplitude) &&
+          !memcmp(&m->frequency, &o->frequency, sizeof m->frequency) &&
+          !memcmp(&m->phase, &o->phase, sizeof m->phase);
+}
+
+/* True if no other wall moves with this one. */
+static int demi_wall_alone(const dem_world *w, const demi_wall *wall, int place) {
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (i != place && w->walls[i].kind != DEMI_WALL_NONE &&
+            demi_walls_together(&w->walls[i], wall)) return 0;
+    return 1;
+}
+/* Called when a wall is added, removed or moved otherwise. Surfaces are made again (>>surfaces),
+   and the numbers of their features change: contacts are followed by direction once. */
+static void demi_surfaces_outdated(dem_world *w) {
+    int d, k;
+    w->facets_valid = 0;
+    for (d = 0; d < DEMI_DOMAINS; d++)
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (c->b < 0 && (demi_faceted(&w->walls[c->wall])))
+                c->element = -1;
+        }
+}
 /* Returns the number of corners of an element and writes their coordinates. */
 static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) {
     const int n = demi_wall_per(wall);
@@ -137,7 +175,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
     if (wall->element_count <= 4) return 1;     /* a few: all are examined */
     demi_wall_cells_choose(wall);
     n = wall->cells[0]*wall->cells[1]*wall->cells[2];
-    wall->cell_start = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)n + 1, sizeof(int32_t));
+    wall->cell_start = (int32_t *)demi_hold(w, wall->chain, (size_t)n + 1, sizeof(int32_t));
     if (!wall->cell_start) return 0;
     for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back */
         for (i = wall->element_count - 1; i >= 0; i--) {
@@ -154,7 +192,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
         if (pass == 0) {
             for (i = 1; i <= n; i++) wall->cell_start[i] += wall->cell_start[i - 1];
             wall->cell_item_count = wall->cell_start[n];
-            wall->cell_items = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)wall->cell_item_count,
+            wall->cell_items = (int32_t *)demi_hold(w, wall->chain, (size_t)wall->cell_item_count,
                                                      sizeof(int32_t));
             if (!wall->cell_items) return 0;
         }
@@ -213,7 +251,7 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
     w->walls[i] = *wall;
     w->walls[i].id = id.id;
     w->wall_count = DEMI_MAX(w->wall_count, i + 1);
-    w->facets_valid = 0;
+    demi_surfaces_outdated(w);
     demi_built(w, call);
     demi_scene_changed(w);
     return id;
@@ -239,6 +277,7 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
     demi_pose_identity(&wall->home);
     wall->kind = kind;
     wall->share = 1;
+    wall->chain = DEMI_SCENE;
     wall->symmetric = 1;                        /* until it moves */
     return demi_material_index(w, call, material, &wall->material) == DEM_OK;
 }
@@ -679,8 +718,9 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    if (w->repeating || !demi_wall_alone(w, &w->walls[i], i) || !demi_wall_alone(w, &next, i))
+        demi_surfaces_outdated(w);
     w->walls[i] = next;
-    w->facets_valid = 0;
     demi_built(w, "dem_wall_motion_set");
     demi_scene_changed(w);
     return DEM_OK;
@@ -719,7 +759,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     demi_wall_forget(w, i);
     demi_wall_free(w, &w->walls[i]);            /* other walls keep their indices */
     w->walls[i].id = id.id;
-    w->facets_valid = 0;
+    demi_surfaces_outdated(w);
     demi_scene_changed(w);
     return DEM_OK;
 }

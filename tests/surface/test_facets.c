@@ -1010,7 +1010,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("across the seam of two walls a ball feels the plane's force, split between them; not if one wall moves") {
+    TEST("across the seam of two walls a ball feels the plane's force, also if one of them moves along the seam") {
         int kind, o, i;
         for (kind = 0; kind < 7; kind++) {      /* same size, other diagonals, other sizes, cut; profiles */
             soup a = kind == 5 || kind == 6 ? soup_of(2) : box_of_facets(-3, -3, -2, 0, 3, 0, 0), b = soup_of(3);
@@ -1054,7 +1054,7 @@ int main(int argc, char **argv) {
                 m.kind = DEM_MOTION_TRANSLATING;
                 m.velocity = at(0, DEM_R(1e-3), 0);
                 dem_wall_motion_set(q.world, right, &m);
-                CHECK_NEAR(rail_at(&q, at(0, 0.1, 0.99)).z, 0.02, 1e-6);        /* two surfaces, two contacts */
+                CHECK_NEAR(rail_at(&q, at(0, 0.1, 0.99)).z, 0.01, 1e-6);        /* the first one covers the edge */
                 dem_wall_motion_set(q.world, right, &m);
                 dem_wall_motion_set(q.world, left, &m);
                 CHECK_NEAR(rail_at(&q, at(0, 0.1, 0.99)).z, 0.01, 1e-6);        /* they go together: one */

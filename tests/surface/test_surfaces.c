@@ -1,0 +1,347 @@
+/* One surface: bodies slide over floors that are made of several walls, triangles, images and bodies, as over one plane.
+   Every cell of a table body x floor x response. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+static const int fine = sizeof(dem_real) == 8;       /* double precision */
+static const double R = 2e-3;
+enum { BALL, CLUMP, ELLIPSOID, CUBE, ROCK, UNION, POLYGON, BODIES };
+static const char *const bodies[] = {"ball", "clump", "ellipsoid", "cube", "rock", "union", "polygon"};
+enum { PLANE, MESH, MESHES, PLANES, PLANE_AND_MESH, PROFILES, BOXES, BOXES_IN_MESH, STACKED, JUNCTIONS, FOLDS, OVERLAPS, SLIVERS,
+       DOUBLED, PERIODIC, BELTS, FLOORS };
+static const char *const floors[] = {"plane", "one mesh", "two meshes", "two planes", "plane and mesh", "two profiles", "ten boxes",
+    "ten boxes in a mesh", "boxes on a box", "T-junctions", "folded triangles", "meshes that overlap", "slivers", "doubled triangles",
+    "periodic seam", "belts"};
+
+/* Rectangles x0 z0 x1 z1 (count x 4, m) at y = 0, two triangles each. */
+static dem_wall floor_of(dem_world *w, dem_material m, int count, const double *q) {
+    dem_real v[12*24];
+    int32_t t[6*24];
+    dem_mesh mesh;
+    int i, k;
+    for (i = 0; i < count; i++) {
+        static const int32_t two[6] = {0, 2, 1, 0, 3, 2};
+        for (k = 0; k < 4; k++) {
+            v[12*i + 3*k] = (dem_real)q[4*i + (k == 1 || k == 2 ? 2 : 0)];
+            v[12*i + 3*k + 1] = 0;
+            v[12*i + 3*k + 2] = (dem_real)q[4*i + (k > 1 ? 3 : 1)];
+        }
+        for (k = 0; k < 6; k++) t[6*i + k] = 4*i + two[k];
+    }
+    mesh.vertex_count = 4*count;
+    mesh.triangle_count = 2*count;
+    mesh.vertices = v;
+    mesh.triangles = t;
+    return dem_wall_mesh_add(w, m, &mesh);
+}
+/* Boxes from x = -6.5 R on, `count` of width 1.3 R, closed, their tops at y = 0; in one mesh or in one each. */
+static dem_wall boxes_of(dem_world *w, dem_material m, int count, int one, double width, double y0, double y1, double depth) {
+    static const int32_t side[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3,
+                                     7, 1, 7, 5};
+    dem_real v[24*10];
+    int32_t t[36*10];
+    dem_wall wall;
+    dem_mesh mesh;
+    int i, k;
+    wall.id = 0;
+    for (i = 0; i < count; i++) {
+        const int at = one ? i : 0;
+        for (k = 0; k < 8; k++) {
+            v[24*at + 3*k] = (dem_real)(-6.5*R + width*(i + (k & 1)));
+            v[24*at + 3*k + 1] = (dem_real)(k & 2 ? y1 : y0);
+            v[24*at + 3*k + 2] = (dem_real)(k & 4 ? depth : -depth);
+        }
+        for (k = 0; k < 36; k++) t[36*at + k] = 8*at + side[k];
+        mesh.vertex_count = 8*(at + 1);
+        mesh.triangle_count = 12*(at + 1);
+        mesh.vertices = v;
+        mesh.triangles = t;
+        if (!one || i == count - 1) wall = dem_wall_mesh_add(w, m, &mesh);
+    }
+    return wall;
+}
+/* A floor at y = 0 about x = 0; answers its last wall. */
+static dem_wall floor_add(dem_world *w, dem_material m, int kind) {
+    const double L = 30*R;
+    dem_motion motion = DEM_MOTION;
+    dem_wall last;
+    int i;
+    last.id = 0;
+    switch (kind) {
+    case PLANES: dem_wall_plane_add(w, m, at(0.1, 0, 0), at(0, 1, 0)); /* fall through */
+    case PLANE: return dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 1, 0));
+    case PLANE_AND_MESH: {
+        const double q[4] = {0, -L, L, L};
+        dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 1, 0));
+        return floor_of(w, m, 1, q);
+    }
+    case MESH: { const double q[4] = {-L, -L, L, L}; return floor_of(w, m, 1, q); }
+    case PERIODIC: { const double q[4] = {-10*R, -10*R, 10*R, 10*R}; return floor_of(w, m, 1, q); }
+    case MESHES: case BELTS: {
+        const double a[4] = {-L, -L, 0, L}, b[4] = {0, -L, L, L};
+        floor_of(w, m, 1, a);
+        last = floor_of(w, m, 1, b);
+        motion.kind = DEM_MOTION_TRANSLATING;
+        motion.velocity = at(0, 0, 0.1);
+        if (kind == BELTS) dem_wall_motion_set(w, last, &motion);
+        return last;
+    }
+    case PROFILES: {
+        dem_real a[4] = {(dem_real)-L, 0, 0, 0}, b[4] = {0, 0, (dem_real)L, 0};
+        int32_t s[2] = {0, 1};
+        dem_profile profile;
+        profile.vertex_count = 2;
+        profile.segment_count = 1;
+        profile.vertices = a;
+        profile.segments = s;
+        dem_wall_profile_add(w, m, &profile, DEM_EDGE_RESOLVED);
+        profile.vertices = b;
+        return dem_wall_profile_add(w, m, &profile, DEM_EDGE_RESOLVED);
+    }
+    case BOXES: return boxes_of(w, m, 10, 0, 1.3*R, -4*R, 0, L);
+    case BOXES_IN_MESH: return boxes_of(w, m, 10, 1, 1.3*R, -4*R, 0, L);
+    case STACKED: boxes_of(w, m, 1, 0, 13*R, -8*R, -4*R, 2*L); return boxes_of(w, m, 10, 0, 1.3*R, -4*R, 0, L);
+    case JUNCTIONS: { const double q[12] = {-L, -L, 0, L, 0, -L, L, 0.3*R, 0, 0.3*R, L, L}; return floor_of(w, m, 3, q); }
+    case OVERLAPS: {
+        const double a[4] = {-L, -L, 0.7*R, L}, b[4] = {-0.4*R, -0.9*L, L, 0.8*L};
+        floor_of(w, m, 1, a);
+        return floor_of(w, m, 1, b);
+    }
+    case DOUBLED: { const double q[12] = {-L, -L, 0, L, 0, -L, L, L, 0, -L, L, L}; return floor_of(w, m, 3, q); }
+    case SLIVERS: {
+        double q[80];
+        for (i = 0; i < 20; i++) {
+            q[4*i] = i ? -0.5*R + (i - 1)*R/20 + 1e-5*R*(i%3) : -L;
+            q[4*i + 1] = -L;
+            q[4*i + 3] = L;
+        }
+        for (i = 0; i < 20; i++) q[4*i + 2] = i < 19 ? q[4*i + 4] : L;
+        return floor_of(w, m, 20, q);
+    }
+    default: {                                  /* folds: triangles 0 and 1 lie on the same side of the edge they share */
+        dem_real v[24] = {0, 0, -1, 0, 0, 1, 1, 0, DEM_R(0.003), 1, 0, -1, 1, 0, 1, -1, 0, 0, -1, 0, -1, -1, 0, 1};
+        int32_t t[21] = {0, 1, 2, 0, 1, 4, 0, 2, 3, 1, 4, 2, 0, 5, 1, 0, 6, 5, 1, 5, 7};
+        dem_mesh mesh;
+        for (i = 0; i < 24; i++) v[i] *= (dem_real)L;
+        mesh.vertex_count = 8;
+        mesh.triangle_count = 7;
+        mesh.vertices = v;
+        mesh.triangles = t;
+        return dem_wall_mesh_add(w, m, &mesh);
+    }
+    }
+}
+static dem_shape shape_of(dem_world *w, int body) {
+    dem_real p[24];
+    uint64_t seed = 7;
+    dem_shape two[2];
+    switch (body) {
+    case CLUMP: {
+        dem_cluster_desc c = DEM_CLUSTER_DESC;
+        const double x[9] = {0, 0, 0, 0.8, 0, 0, -0.5, 0, 0.6};
+        int i;
+        for (i = 0; i < 9; i++) p[i] = (dem_real)(x[i]*R);
+        c.count = 3;
+        c.positions = p;
+        c.radius = (dem_real)(0.7*R);
+        c.rays = 64;
+        return dem_shape_cluster_add(w, &c);
+    }
+    case ELLIPSOID: return dem_shape_ellipsoid_add(w, at(1.2*R, 0.8*R, 0.9*R));
+    case ROCK: return scene_rock(w, &seed, 20, R);
+    case UNION: {
+        const double x[6] = {-0.4, 0, 0, 0.5, 0, 0.1};
+        int i;
+        for (i = 0; i < 6; i++) p[i] = (dem_real)(x[i]*R);
+        two[0] = scene_box(w, R, R, R);
+        two[1] = scene_box(w, R, R, 1.4*R);
+        return dem_shape_union_add(w, 2, two, p, 0);
+    }
+    case POLYGON: {
+        const double x[8] = {-0.8, -0.8, 0.8, -0.8, 0.8, 0.8, -0.8, 0.8};
+        int i;
+        for (i = 0; i < 8; i++) p[i] = (dem_real)(x[i]*R);
+        return dem_shape_polygon_add(w, 4, p);
+    }
+    default: return scene_box(w, 1.6*R, 1.6*R, 1.6*R);
+    }
+}
+static dem_world *floor_world(int body, int floor, int impulses, dem_body *b) {
+    dem_world_desc d = DEM_WORLD_DESC;
+    dem_material m;
+    dem_world *w;
+    d.threads = 1;
+    d.gravity = at(0, -9.81, 0);
+    d.planar = body == POLYGON;
+    d.impact_speed = DEM_R(0.2);
+    if (impulses) { d.response = DEM_RESPONSE_IMPULSES; d.dt = DEM_R(1e-4); }
+    if (floor == PERIODIC) {
+        d.boundary[0] = DEM_BOUNDARY_PERIODIC;
+        d.domain = box_of(-10*R, -20*R, -20*R, 10*R, 20*R, 20*R);
+    }
+    w = dem_world_create(&d);
+    m = scene_material(w, 1e7, 0.3, 0, 0);
+    CHECK(floor_add(w, m, floor).id > 0);
+    *b = body == BALL ? dem_sphere_add(w, m, (dem_real)R, at(0, 1.5*R, 0))
+        : dem_body_add(w, m, shape_of(w, body), at(0, 1.5*R, 0), dem_quat_make(1, 0, 0, 0));
+    CHECK_STR(dem_world_error_get(w), "");
+    return w;
+}
+/* A body at rest on a plane. */
+static dem_body_state at_rest(int body, int impulses) {
+    dem_body b;
+    dem_world *w = floor_world(body, PLANE, impulses, &b);
+    dem_body_state s;
+    int i;
+    for (i = 0; i < 40; i++) {
+        CHECK_EQ(dem_world_run(w, 0.01, 0, 0), DEM_OK);
+        s = scene_state(w, b);
+        scene_move(w, b, at(0, (double)s.velocity.y*0.9, 0), at(0.8*(double)s.spin.x, 0, 0.8*(double)s.spin.z));
+    }
+    CHECK_EQ(dem_world_run(w, 0.1, 0, 0), DEM_OK);
+    s = scene_state(w, b);
+    dem_world_destroy(w);
+    s.spin = at(0, 0, 0);
+    return s;
+}
+typedef struct slide { double hop, speed, spin; } slide;     /* over R, v and v/R */
+/* The largest differences between a body that slides over a floor and over the first floor; smooth, at 1 m/s. */
+static slide slide_of(int body, int first, int floor, int impulses, dem_body_state s) {
+    const double v = 1, way = 4*R;
+    slide most = {0, 0, 0};
+    dem_body a, b;
+    dem_world *p = floor_world(body, first, impulses, &a), *w = floor_world(body, floor, impulses, &b);
+    int k;
+    s.velocity = at(v, 0, 0);
+    s.position.x = (dem_real)(-way/2);
+    s.position.z = 0;
+    dem_body_set(p, a, &s);
+    if (floor == PERIODIC) s.position.x += (dem_real)(10*R);
+    dem_body_set(w, b, &s);
+    for (k = 0; k < 40; k++) {
+        dem_body_state x, y;
+        CHECK_EQ(dem_world_run(p, way/v/40, 0, 0), DEM_OK);
+        CHECK_EQ(dem_world_run(w, way/v/40, 0, 0), DEM_OK);
+        x = scene_state(p, a);
+        y = scene_state(w, b);
+        most.hop = fmax(most.hop, fabs((double)(y.position.y - x.position.y))/R);
+        most.speed = fmax(most.speed, (double)demi_length(demi_sub(y.velocity, x.velocity))/v);
+        most.spin = fmax(most.spin, (double)demi_length(demi_sub(y.spin, x.spin))*R/v);
+    }
+    dem_world_destroy(p);
+    dem_world_destroy(w);
+    return most;
+}
+static int planar_floor(int floor) { return floor == PLANE || floor == PLANES || floor == PROFILES; }
+/* All floors of the table; the largest of each number, over its limit. A cell above its limit is printed. */
+static double table_of(int impulses, slide limit) {
+    double worst = 0;
+    int body, floor;
+    for (body = 0; body < BODIES; body++) {
+        const dem_body_state s = at_rest(body, impulses);
+        /* a mesh gives a polyhedron other points than a plane, which it all but balances on */
+        const int first = impulses && (body == ROCK || body == UNION) ? MESH : PLANE;
+        for (floor = PLANE; floor < FLOORS; floor++) {
+            slide q;
+            double over;
+            if (floor == first || (floor == PLANE && first != PLANE) || (body == POLYGON && !planar_floor(floor))) continue;
+            /* by springs each of two surfaces acts by itself on a polyhedron between them */
+            if (!impulses && floor == BELTS && body >= CUBE) continue;
+            if (first == MESH && planar_floor(floor) && floor != PROFILES) continue;
+            if (first == MESH && floor == PLANE_AND_MESH) continue;
+            q = slide_of(body, first, floor, impulses, s);
+            over = fmax(q.hop/limit.hop, fmax(q.speed/limit.speed, q.spin/limit.spin));
+            if (floor == BELTS) over /= 10;     /* the points on both are more than the solver needs, and share the weight */
+            if (over > 1)
+                printf("    a %s over %s by %s: hop %.3g R, speed %.3g, spin %.3g\n", bodies[body], floors[floor],
+                       impulses ? "impulses" : "springs", q.hop, q.speed, q.spin);
+            worst = fmax(worst, over);
+        }
+    }
+    return worst;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+    TEST("by springs every body slides over a floor of meshes, planes, boxes, folds, slivers or images as over one plane") {
+        const slide limit = {fine ? 5e-9 : 1e-4, fine ? 1e-7 : 1e-3, fine ? 1e-7 : 1e-3};
+        CHECK_NEAR(table_of(0, limit), 0, 1);
+    }
+    TEST("by impulses every body slides over a floor of meshes, planes, boxes, belts, folds or images as over one plane") {
+        /* the solver ends at 1e-6 of the speed */
+        const slide limit = {fine ? 2e-6 : 1e-3, fine ? 2e-5 : 1e-2, fine ? 2e-4 : 1e-2};
+        CHECK_NEAR(table_of(1, limit), 0, 1);
+    }
+    TEST("each wall of a joined surface bears the load of the bodies on it") {
+        int floor;
+        for (floor = MESHES; floor <= PROFILES; floor++) {
+            dem_body b;
+            dem_world *w;
+            dem_wall first, second;
+            dem_wall_loads l, r;
+            dem_material m;
+            dem_shape cube;
+            m.id = cube.id = 1;
+            if (floor == PLANES || floor == PLANE_AND_MESH) continue;
+            w = floor_world(CUBE, floor, 0, &b);
+            dem_body_add(w, m, cube, at(-5*R, 0.8*R, 0), dem_quat_make(1, 0, 0, 0));
+            dem_world_settle(w, 2, DEM_R(1e-6), 0, 0);
+            first.id = 1;
+            second.id = 2;
+            dem_wall_loads_get(w, first, &l);
+            dem_wall_loads_get(w, second, &r);
+            CHECK_NEAR((double)l.force.y/(double)r.force.y, 3, 1e-3);    /* one and a half of a cube, and a half */
+            dem_world_destroy(w);
+        }
+    }
+    TEST("a wall that is added or removed in a run leaves the friction of bodies on the others as it was") {
+        int kind;
+        for (kind = 0; kind < 3; kind++) {      /* a ball, a cube, and a ball by impulses, at rest on a slope */
+            dem_world_desc d = DEM_WORLD_DESC;
+            const double q[4] = {-0.1, -0.1, 0.1, 0.1}, aside[4] = {0.1, -0.1, 0.2, 0.1};
+            dem_world *w;
+            dem_material m;
+            dem_body b;
+            dem_body_state s, t;
+            dem_wall more;
+            d.gravity = at(2, -9, 0);
+            d.threads = 1;
+            if (kind == 2) { d.response = DEM_RESPONSE_IMPULSES; d.dt = DEM_R(1e-4); }
+            w = dem_world_create(&d);
+            m = scene_material(w, 1e7, 0.3, 0.5, 0.5);
+            floor_of(w, m, 1, q);
+            b = kind == 1 ? dem_body_add(w, m, scene_box(w, 2*R, 2*R, 2*R), at(0, R, 0), dem_quat_make(1, 0, 0, 0))
+                : dem_sphere_add(w, m, (dem_real)R, at(0, R, 0));
+            CHECK_EQ(dem_world_run(w, 0.2, 0, 0), DEM_OK);
+            s = scene_state(w, b);
+            more = floor_of(w, m, 1, aside);
+            CHECK_EQ(dem_world_run(w, 0.05, 0, 0), DEM_OK);
+            t = scene_state(w, b);
+            CHECK_NEAR((double)demi_length(demi_sub(t.position, s.position))/R, 0, fine ? 1e-6 : 1e-3);
+            dem_wall_remove(w, more);
+            CHECK_EQ(dem_world_run(w, 0.05, 0, 0), DEM_OK);
+            t = scene_state(w, b);
+            CHECK_NEAR((double)demi_length(demi_sub(t.position, s.position))/R, 0, fine ? 1e-6 : 1e-3);
+            dem_world_destroy(w);
+        }
+    }
+    TEST("where closed boxes touch no face remains between them, however they are stacked") {
+        static const struct { int floor, facets; } cases[] = {{BOXES, 84}, {BOXES_IN_MESH, 84}, {DOUBLED, 4}, {MESHES, 4}};
+        int i, k;
+        for (i = 0; i < 4; i++) {
+            dem_body b;
+            dem_world *w = floor_world(BALL, cases[i].floor, 0, &b);
+            int ends = 0;
+            CHECK_EQ(dem_world_run(w, 0, 0, 0), DEM_OK);
+            CHECK_EQ(demi_surfaces_make(w), 1);
+            CHECK_EQ(w->surface_count, 1);
+            CHECK_EQ(w->surfaces[0].element_count, cases[i].facets);     /* of boxes: 12 each, less 4 at 9 places */
+            for (k = 0; k < w->surfaces[0].element_count; k++) ends += w->surfaces[0].ends[k] != 0;
+            CHECK_EQ(ends > 0, i > 1);          /* boxes are closed, sheets are not */
+            dem_world_destroy(w);
+        }
+    }
+    return test_end();
+}
