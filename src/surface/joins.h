@@ -6,6 +6,7 @@
    how walls repeat in a periodic world. >>surfaces makes the surfaces. Owns the numbers of walls
    that say how they repeat; a demi_join exists only while a surface is made.
    --------------------------------------------------------------------------------------------- */
+
 /* --- periodic images of walls. A wall that is not longer than the period along a periodic axis
    repeats there: it is searched for at the images of bodies and, where it ends exactly where its
    image begins, the two are one surface. A longer wall represents all its images and must extend
@@ -47,12 +48,12 @@ static void demi_wall_span(demi_wall *wall) {
     memcpy(wall->span_lo, lo, sizeof lo);
     memcpy(wall->span_hi, hi, sizeof hi);
 }
-/* Sets, for each wall, along which axes it repeats. */
+/* Sets, for each wall, along which axes it repeats. A joined surface repeats as its walls did when
+   it was made. */
 static void demi_walls_repeat(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
     w->repeating = 0;
-    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
     for (k = 0; k < 3; k++) w->wall_period[k] = p.period[k] > 0 ? p.period[k] : w->ring_period[k];
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -68,7 +69,12 @@ static void demi_walls_repeat(dem_world *w) {
             w->repeating |= wall->repeats[k];
         }
     }
-    for (i = 0; i < w->surface_count && w->repeating; i++) demi_wall_span(&w->surfaces[i]);
+    for (i = 0; i < w->surface_count; i++) {
+        demi_wall *s = &w->surfaces[i];
+        s->pose = w->walls[s->lead].pose;
+        for (k = 0; k < 3; k++) w->repeating |= s->repeats[k];
+        if (w->repeating) demi_wall_span(s);
+    }
 }
 static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
     return demi_v((dem_real)a*w->wall_period[0], (dem_real)b*w->wall_period[1],
