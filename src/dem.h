@@ -40,6 +40,7 @@
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
        >>joins             facets of walls that move together: doubles, covers, dividing
+       >>coarsen           facets in one plane merged to fewer
        >>surfaces          one surface per rigid motion: weights of its edges and corners
        >>distances         distance of a point from an element of a wall
      search/ - which bodies may touch: from candidates to the pruned neighbour list
@@ -185,6 +186,7 @@
 #include "surface/motions.h"
 #include "surface/walls.h"
 #include "surface/joins.h"
+#include "surface/coarsen.h"
 #include "surface/surfaces.h"
 #include "surface/distances.h"
 #include "search/search.h"

@@ -784,6 +784,7 @@ struct dem_world {
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
     int facets_valid;              /* surfaces fit the walls and their motions */
+    int facets_given;              /* for tests: facets in one plane are not merged */
     int surface_count;             /* >>surfaces: joined surfaces */
     demi_wall *surfaces;
     /* >>measure, >>feed, >>placing, >>advice */

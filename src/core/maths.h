@@ -14,6 +14,11 @@
 static double demi_size(dem_vec3 a) {                     /* largest |component| */
     return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
 }
+/* Returns a unit vector perpendicular to n (unit) [DUF17]. */
+DEM_INLINE dem_vec3 demi_across(dem_vec3 n) {
+    const dem_real s = n.z < 0 ? DEM_R(-1) : DEM_R(1), a = -1/(s + n.z);
+    return demi_v(1 + s*n.x*n.x*a, s*n.x*n.y*a, -s*n.x);
+}
 static dem_vec3 demi_unit(dem_vec3 a) {                   /* unit vector along a; a must not be 0 */
     double x = (double)a.x, y = (double)a.y, z = (double)a.z, l;
     int e;

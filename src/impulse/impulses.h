@@ -264,11 +264,6 @@ static void demi_impulses_colour(dem_world *w) {
             m->at = at[m->at]++;
         }
 }
-/* Returns a unit vector perpendicular to n (unit) [DUF17]. */
-DEM_INLINE dem_vec3 demi_across(dem_vec3 n) {
-    const dem_real s = n.z < 0 ? DEM_R(-1) : DEM_R(1), a = -1/(s + n.z);
-    return demi_v(1 + s*n.x*n.x*a, s*n.x*n.y*a, -s*n.x);
-}
 /* Inverse effective masses of a contact: the change of relative velocity per unit impulse, 1/kg,
    along the normal (n) and across it (t), and in two directions across it by an impulse along the
    normal (across, aside); the change of relative spin, 1/(kg m2), across the normal (roll) and

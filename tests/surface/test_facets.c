@@ -249,6 +249,7 @@ static rail rail_begin(int threads) {
     desc.threads = threads;
     desc.ledger = 1;
     q.world = dem_world_create(&desc);
+    if (q.world) q.world->facets_given = 1;      /* the rule for facets, not how few are left of a plane */
     m.density = DEM_R(1e20);
     m.poisson = DEM_R(0.25);
     m.stiffness = 1;
@@ -403,6 +404,7 @@ static void impacts_run(impacts *q, const soup *given, int kind, int inside) {
     m.friction = (dem_real)q->friction;
     for (n = 0; n < 2; n++) {                   /* first to ask how long a Hertzian contact lasts */
         world = dem_world_create(&desc);
+        world->facets_given = 1;
         material = dem_material_add(world, &m);
         if (q->shape == impact_ball) body = dem_sphere_add(world, material, (dem_real)r, at(0, 0, 1));
         else if (q->shape == impact_ellipsoid)
