@@ -11357,9 +11357,11 @@ static int demi_join_fan(dem_world *w, demi_join *j, int i, const int32_t *outli
     demi_d3 middle = demi_d(0, 0, 0);
     int k;
     if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 6*(size_t)(j->facets + pieces)) ||
+        !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), (size_t)(j->points + 1)) ||
         !demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*(size_t)(j->points + 1))) return 0;
     for (k = 0; k < 3; k++)
         middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[6*i + k]));
+    j->near_by[j->points] = j->near_by[j->facet[6*i]];
     if (j->per == 3) demi_d3_put(j->x + 3*j->points, middle);
     for (k = 0; k < pieces; k++) {
         int32_t *f = j->facet + 6*(k ? j->facets++ : i);
@@ -11706,8 +11708,8 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     s->joined = 0;
     memset(s->cells, 0, sizeof s->cells);
     s->element_count = j->facets;
-    s->vertices = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)j->points*3, sizeof(dem_real));
-    s->corners = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)(j->facets*j->per), sizeof(int32_t));
+    s->vertices = (dem_real *)demi_hold(w, DEMI_RUN, (size_t)j->points*3, sizeof(dem_real));
+    s->corners = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)(j->facets*j->per), sizeof(int32_t));
     ok = at && s->vertices && s->corners;
     for (i = 0; i < j->points && ok; i++) at[i] = -1;
     for (i = 0; i < j->facets && ok; i++)
@@ -11724,7 +11726,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     ok = ok && demi_facets_begin(w, s) && demi_wall_sheets(w, s);
     if (!ok) return 0;
     s->number_count = s->element_count + s->edge_count + s->vertex_count;
-    s->whose = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)s->number_count, sizeof(int32_t));
+    s->whose = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)s->number_count, sizeof(int32_t));
     if (!s->whose) return 0;
     for (i = 0; i < s->element_count; i++) {
         int32_t *edge = s->whose + s->element_count, *corner = edge + s->edge_count;

@@ -548,9 +548,11 @@ static int demi_join_fan(dem_world *w, demi_join *j, int i, const int32_t *outli
     demi_d3 middle = demi_d(0, 0, 0);
     int k;
     if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 6*(size_t)(j->facets + pieces)) ||
+        !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), (size_t)(j->points + 1)) ||
         !demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*(size_t)(j->points + 1))) return 0;
     for (k = 0; k < 3; k++)
         middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[6*i + k]));
+    j->near_by[j->points] = j->near_by[j->facet[6*i]];
     if (j->per == 3) demi_d3_put(j->x + 3*j->points, middle);
     for (k = 0; k < pieces; k++) {
         int32_t *f = j->facet + 6*(k ? j->facets++ : i);

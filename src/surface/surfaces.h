@@ -68,8 +68,8 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     s->joined = 0;
     memset(s->cells, 0, sizeof s->cells);
     s->element_count = j->facets;
-    s->vertices = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)j->points*3, sizeof(dem_real));
-    s->corners = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)(j->facets*j->per), sizeof(int32_t));
+    s->vertices = (dem_real *)demi_hold(w, DEMI_RUN, (size_t)j->points*3, sizeof(dem_real));
+    s->corners = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)(j->facets*j->per), sizeof(int32_t));
     ok = at && s->vertices && s->corners;
     for (i = 0; i < j->points && ok; i++) at[i] = -1;
     for (i = 0; i < j->facets && ok; i++)
@@ -86,7 +86,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     ok = ok && demi_facets_begin(w, s) && demi_wall_sheets(w, s);
     if (!ok) return 0;
     s->number_count = s->element_count + s->edge_count + s->vertex_count;
-    s->whose = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)s->number_count, sizeof(int32_t));
+    s->whose = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)s->number_count, sizeof(int32_t));
     if (!s->whose) return 0;
     for (i = 0; i < s->element_count; i++) {
         int32_t *edge = s->whose + s->element_count, *corner = edge + s->edge_count;

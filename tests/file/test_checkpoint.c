@@ -404,7 +404,7 @@ static int lie_tell(dem_world *w, int lie) {
     case 39: w->near.a[0] = 12345678; break;
     case 40: w->near.b[0] = -3; break;
     case 41: w->wall_body[0] = 999; break;
-    case 42: w->wall_id[0] = 2; break;
+    case 42: w->wall_id[0] = w->wall_count + w->surface_count; break;
     case 43: w->wall_element[0] = 1 << 30; break;
     case 44: w->kept_now[kept_wall].a = -1; break;
     case 45: w->kept_now[kept_wall].wall = 7; break;

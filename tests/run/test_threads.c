@@ -51,7 +51,7 @@ static outcome bed(int threads, int steps, int at_once) {
     dem_wall_loads_get(world, plane, &out.floor);
     out.domains = dem_counters_get(world).domains;
     CHECK(dem_counters_get(world).contacts > 6000);
-    CHECK(dem_counters_get(world).wall_contacts > 300);
+    CHECK(dem_counters_get(world).wall_contacts > 150);    /* each once, though plane and mesh are in one place */
     CHECK(dem_counters_get(world).rebuilds > 1);
     dem_world_destroy(world);
     return out;
