@@ -11183,6 +11183,26 @@ static demi_shard demi_shard_of(const demi_join *j, int i) {
 static demi_d3 demi_shard_normal(const demi_shard *t) {
     return demi_d3_unit(demi_d3_normal(t->x[0], t->x[1], t->x[2]));
 }
+/* The directions into a triangle from its sides, unit. */
+static void demi_shard_inward(const demi_shard *t, demi_d3 *in) {
+    const demi_d3 n = demi_shard_normal(t);
+    int k;
+    for (k = 0; k < 3; k++)
+        in[k] = demi_d3_unit(demi_d3_cross(n, demi_d3_sub(t->x[(k + 1)%3], t->x[k])));
+}
+/* True if a triangle of corners c (x 3) is beyond a side of triangle s, or touches it there. in: of
+   s. */
+DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const double *c,
+                                 double tiny) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double at = demi_d3_dot(in[k], s->x[k]) + tiny;
+        const double p = demi_d3_dot(in[k], demi_d3_at(c)), q = demi_d3_dot(in[k],
+                                                                            demi_d3_at(c + 3));
+        if (p <= at && q <= at && demi_d3_dot(in[k], demi_d3_at(c + 6)) <= at) return 1;
+    }
+    return 0;
+}
 /* Clips a piece to side k of triangle t; out: to what is beyond that side. */
 static void demi_shard_clip(demi_shard *s, const demi_shard *t, int k, int out) {
     const demi_d3 e = demi_d3_sub(t->x[(k + 1)%3], t->x[k]);
@@ -11271,17 +11291,19 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     const int all = j->facets;
     double *middle = (double *)demi_alloc(w, (size_t)all*3, sizeof *middle);
     double *half = (double *)demi_alloc(w, (size_t)all*3, sizeof *half);
+    double *corner = (double *)demi_alloc(w, (size_t)all*9, sizeof *corner);
     unsigned char *gone = (unsigned char *)demi_alloc(w, (size_t)all, 1);
     demi_shard *pieces = 0;
     demi_tree tree;
-    int i, k, m, any = 0, ok = middle && half && gone;
+    int i, k, m, any = 0, ok = middle && half && corner && gone;
     memset(&tree, 0, sizeof tree);
     for (i = 0; i < all && ok; i++)
         for (k = 0; k < 3; k++) {
             double lo = 1e300, hi = -1e300;
             for (m = 0; m < 3; m++) {
-                lo = DEMI_MIN(lo, j->x[3*j->facet[6*i + m] + k]);
-                hi = DEMI_MAX(hi, j->x[3*j->facet[6*i + m] + k]);
+                corner[9*i + 3*m + k] = j->x[3*j->facet[6*i + m] + k];
+                lo = DEMI_MIN(lo, corner[9*i + 3*m + k]);
+                hi = DEMI_MAX(hi, corner[9*i + 3*m + k]);
             }
             middle[3*i + k] = (lo + hi)/2;
             half[3*i + k] = (hi - lo)/2;
@@ -11293,16 +11315,20 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
         const demi_shard own = demi_shard_of(j, i);
         const double tiny = j->near_by[j->facet[6*i]];
         demi_search_line line;
+        demi_d3 in[3];
         int32_t other;
         int count = 0;
+        demi_shard_inward(&own, in);
         demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
         while (ok && (other = demi_tree_next(&line)) >= 0) {
             const int32_t shell = j->facet[6*i + 5], its = j->facet[6*other + 5];
             const int closed = shell >= 0 && its >= 0 && shell != its;
             demi_shard t;
+            if (other == i || (other > i && !closed)) continue;
             for (k = 0; k < 3; k++)
                 if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
-            if (k < 3 || other == i || (other > i && !closed)) continue;
+            if (k < 3 ||
+                demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
             t = demi_shard_of(j, other);
             if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
                 continue;
@@ -11320,6 +11346,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     if (ok && any) ok = demi_join_again(w, j, gone, all);
     demi_free(w, middle);
     demi_free(w, half);
+    demi_free(w, corner);
     demi_free(w, gone);
     demi_free(w, pieces);
     demi_tree_free(w, &tree);
@@ -11379,15 +11406,27 @@ static int demi_join_fan(dem_world *w, demi_join *j, int i, const int32_t *outli
    ran out. */
 static int demi_join_divide(dem_world *w, demi_join *j) {
     const int all = j->facets, points = j->points;
+    unsigned char *cut = (unsigned char *)demi_alloc(w, (size_t)all, 1);
     int32_t *outline = 0;
     size_t room = 0;
-    int i, k, m, count, ok = 1;
-    if (!demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)points)) return 0;
+    int i, k, m, count, end, ok = cut != 0;
+    if (!ok || !demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)points)) {
+        demi_free(w, cut);
+        return 0;
+    }
     for (i = 0; i < points; i++) j->mark[i] = 0;
     for (i = 0; i < 6*all; i++) if (i%6 < j->per) j->mark[j->facet[i]] = 1;
     if (w->repeating) for (i = 0; i < points; i++) j->mark[i] = j->same[i] == i;
+    for (i = 0; i < all && j->per == 2; i++) cut[i] = 1;
+    demi_join_sides(j);
+    for (i = 0; i < j->sides && j->per == 3; i = end) {        /* each side once; most are whole */
+        end = demi_sides_end(j->side, j->sides, i);
+        if (!demi_join_between(j, j->side[i].lo, j->side[i].hi, 0)) continue;
+        for (k = i; k < end; k++) cut[j->side[k].facet] = 1;
+    }
     for (i = 0; i < all && ok; i++) {
         const int32_t *f = j->facet + 6*i, corner[3] = {f[0], f[1], f[2]};
+        if (!cut[i]) continue;
         for (k = count = 0; k < j->per && (j->per == 3 || !k); k++) {
             const int32_t a = corner[k], b = corner[(k + 1)%j->per];
             /* the same result from either side */
@@ -11410,6 +11449,7 @@ static int demi_join_divide(dem_world *w, demi_join *j) {
         if (ok && count > j->per) ok = demi_join_fan(w, j, i, outline, count);
     }
     demi_free(w, outline);
+    demi_free(w, cut);
     return ok;
 }
 
