@@ -46,6 +46,7 @@ enum { WARM_UP = 100, MOST_LOOPS = BENCH_MOST_LOOPS };
 static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "", *effect_asked = "";
 static int steps_asked, repeat_asked, threads_asked = 2, quick, full, cpu, raw, brief;
 static double skin_asked;
+static int cuts_asked;
 
 /* ---- timing ---- */
 
@@ -652,6 +653,7 @@ static void measure_raw(const bench_scene *s) {
     int r;
     choice.threads = threads_asked;
     choice.skin = skin_asked*s->radius;
+    choice.cuts = cuts_asked;
     world = warm(s->name, s, &choice);
     for (r = 0; world && r < repeats(); r++) {
         const double seconds = loop(s->name, world, steps_of(s));
@@ -671,6 +673,7 @@ int main(int argc, char **argv) {
         {"repeat", STUDY_INT, &repeat_asked, 0, MOST_LOOPS, "", "timed loops, 0: 5, or 9 in full"},
         {"threads", STUDY_INT, &threads_asked, 1, 64, "", "threads to compare one thread with"},
         {"skin", STUDY_REAL, &skin_asked, -1, 10, "radii", "margin of the list, 0: the library's choice"},
+        {"cuts", STUDY_INT, &cuts_asked, 0, 100, "", "with --raw: parts of each side of the drum's triangles (16: 61,440)"},
         {"quick", STUDY_FLAG, &quick, 0, 0, "", "short loops (the default)"},
         {"full", STUDY_FLAG, &full, 0, 0, "", "loops ten times as long, and more of them"},
         {"brief", STUDY_FLAG, &brief, 0, 0, "", "rates only"},

@@ -75,6 +75,7 @@ typedef struct bench_choice {
     int field;                  /* 1: solidicity and velocity sampled every 100 steps; 2: never again */
     int open;                   /* 1: no boundary is periodic                                   */
     int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere */
+    int cuts;                   /* parts of each side of DRUM's triangles: cuts^2 triangles each; 0 or 1: one */
     dem_law_fn law;             /* a law of one's own: 3 reals, 1 vector                        */
     double range;               /* its range, in radii                                          */
     int who;                    /* 1: it asks who touches                                       */
@@ -250,19 +251,27 @@ STUDY_FN void bench_drum_stl(const char *path, double degrees) {
 
 /* ---- worlds ---- */
 
-STUDY_FN int bench_drum_walls(dem_world *world, dem_material glass, double degrees) {
+STUDY_FN int bench_drum_walls(dem_world *world, dem_material glass, double degrees, int cuts) {
+    const int n = cuts > 1 ? cuts : 1, count = BENCH_DRUM_TRIANGLES*n*n;
     double *p = (double *)study_alloc(9*BENCH_DRUM_TRIANGLES, sizeof(double));
     dem_mesh mesh;
     dem_motion turning = DEM_MOTION;
     dem_wall drum;
-    int k, ok;
+    int t, i, j, up, k, e, at = 0, ok;
     bench_drum_mesh(degrees, p);
-    mesh.vertex_count = 3*BENCH_DRUM_TRIANGLES;
-    mesh.triangle_count = BENCH_DRUM_TRIANGLES;
-    mesh.vertices = (dem_real *)study_alloc(9*BENCH_DRUM_TRIANGLES, sizeof(dem_real));
-    mesh.triangles = (int32_t *)study_alloc(3*BENCH_DRUM_TRIANGLES, sizeof(int32_t));
-    for (k = 0; k < 9*BENCH_DRUM_TRIANGLES; k++) mesh.vertices[k] = (dem_real)p[k];
-    for (k = 0; k < 3*BENCH_DRUM_TRIANGLES; k++) mesh.triangles[k] = k;
+    mesh.vertex_count = 3*count;
+    mesh.triangle_count = count;
+    mesh.vertices = (dem_real *)study_alloc((size_t)9*(size_t)count, sizeof(dem_real));
+    mesh.triangles = (int32_t *)study_alloc((size_t)3*(size_t)count, sizeof(int32_t));
+    for (t = 0; t < BENCH_DRUM_TRIANGLES; t++)
+        for (i = 0; i < n; i++) for (j = 0; j < n - i; j++) for (up = 0; up < (j < n - i - 1 ? 2 : 1); up++)
+            for (k = 0; k < 3; k++) {           /* corner a + u (b - a) + v (c - a) */
+                const int u = i + (up ? k != 2 : k == 1), v = j + (up ? k != 0 : k == 2);
+                const double *a = p + 9*t;
+                for (e = 0; e < 3; e++)
+                    mesh.vertices[at++] = (dem_real)(n == 1 ? a[3*k + e] : a[e] + (a[3 + e] - a[e])*u/n + (a[6 + e] - a[e])*v/n);
+            }
+    for (k = 0; k < 3*count; k++) mesh.triangles[k] = k;
     drum = dem_wall_mesh_add(world, glass, &mesh);
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = dem_vec3_make(0, 1, 0);
@@ -387,7 +396,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     }
     ok = ok && material.id;
     if (bed) ok = ok && dem_wall_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
-    if (drum) ok = ok && bench_drum_walls(world, material, degrees) && bench_drum_flow(world, material, o);
+    if (drum) ok = ok && bench_drum_walls(world, material, degrees, o->cuts) && bench_drum_flow(world, material, o);
     ok = ok && bench_field(world, s, o);
 
     x = (dem_real *)study_alloc((size_t)count*3, sizeof *x);
