@@ -3752,8 +3752,9 @@ enum {
     DEMI_DRAWN = 2,                /* infinite along its local z; contacts are found at z = 0 */
     DEMI_BALLS = 4,                /* elements are grains: spheres of `radius` about their corner */
     DEMI_FLAT = 8,                 /* the half space beyond z = 0 */
-    DEMI_CROSSED = 16              /* has points of negative weight, as where the wires of a sieve
+    DEMI_CROSSED = 16,             /* has points of negative weight, as where the wires of a sieve
                                       cross: demi_kept_crossed */
+    DEMI_SMOOTH = 32               /* has no edges */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain with a sieve */
 enum { DEMI_FLATS = 6 };        /* separate contacts that a polyhedron may have with one wall */
@@ -3766,9 +3767,9 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
       (demi_solid_round_touch, demi_solid_round_touch, demi_polyhedra_touch)) \
     /* the last */
 #define DEMI_WALLS(X) \
-    X(PLANE,    0, 7, DEMI_FLAT, "plane", \
+    X(PLANE,    0, 7, DEMI_FLAT | DEMI_SMOOTH, "plane", \
       demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0) \
-    X(CYLINDER, 0, 7, 0, "cylinder", \
+    X(CYLINDER, 0, 7, DEMI_SMOOTH, "cylinder", \
       demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
       demi_cylinder_bend) \
     X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
@@ -19944,8 +19945,7 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
     const demi_wall *wall = demi_surface_of(w, surface);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
     int k;
-    if (!demi_faceted(wall) && wall->kind != DEMI_WALL_PLANE && wall->kind != DEMI_WALL_CYLINDER)
-        return 0;
+    if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH)) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
         const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
         if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
@@ -19961,6 +19961,14 @@ static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
     return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
         DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
                           demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
+}
+/* True if several surfaces are near a body and one of them may have edges. wall: the surfaces of
+   its candidates. */
+DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int count) {
+    int i, edges = 0;
+    for (i = 0; i < count && wall[0] != wall[count - 1]; i++)
+        edges |= !demi_wall_is(demi_surface_of(w, wall[i]), DEMI_SMOOTH);
+    return edges;
 }
 /* Removes contacts at edges of surfaces that move against each other and abut, such as belts in a
    floor: where the point of a contact lies on another surface that the body touches too, that
@@ -20033,7 +20041,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
             demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
-        several = from < end_k && wall[from] != wall[end_k - 1];
+        several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
         for (; k < end_k; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;

@@ -708,8 +708,7 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
     const demi_wall *wall = demi_surface_of(w, surface);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
     int k;
-    if (!demi_faceted(wall) && wall->kind != DEMI_WALL_PLANE && wall->kind != DEMI_WALL_CYLINDER)
-        return 0;
+    if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH)) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
         const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
         if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
@@ -725,6 +724,14 @@ static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
     return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
         DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
                           demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
+}
+/* True if several surfaces are near a body and one of them may have edges. wall: the surfaces of
+   its candidates. */
+DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int count) {
+    int i, edges = 0;
+    for (i = 0; i < count && wall[0] != wall[count - 1]; i++)
+        edges |= !demi_wall_is(demi_surface_of(w, wall[i]), DEMI_SMOOTH);
+    return edges;
 }
 /* Removes contacts at edges of surfaces that move against each other and abut, such as belts in a
    floor: where the point of a contact lies on another surface that the body touches too, that
@@ -797,7 +804,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
             demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
-        several = from < end_k && wall[from] != wall[end_k - 1];
+        several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
         for (; k < end_k; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;

@@ -256,8 +256,9 @@ enum {
     DEMI_DRAWN = 2,                /* infinite along its local z; contacts are found at z = 0 */
     DEMI_BALLS = 4,                /* elements are grains: spheres of `radius` about their corner */
     DEMI_FLAT = 8,                 /* the half space beyond z = 0 */
-    DEMI_CROSSED = 16              /* has points of negative weight, as where the wires of a sieve
+    DEMI_CROSSED = 16,             /* has points of negative weight, as where the wires of a sieve
                                       cross: demi_kept_crossed */
+    DEMI_SMOOTH = 32               /* has no edges */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain with a sieve */
 enum { DEMI_FLATS = 6 };        /* separate contacts that a polyhedron may have with one wall */
@@ -270,9 +271,9 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
       (demi_solid_round_touch, demi_solid_round_touch, demi_polyhedra_touch)) \
     /* the last */
 #define DEMI_WALLS(X) \
-    X(PLANE,    0, 7, DEMI_FLAT, "plane", \
+    X(PLANE,    0, 7, DEMI_FLAT | DEMI_SMOOTH, "plane", \
       demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0) \
-    X(CYLINDER, 0, 7, 0, "cylinder", \
+    X(CYLINDER, 0, 7, DEMI_SMOOTH, "cylinder", \
       demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
       demi_cylinder_bend) \
     X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
