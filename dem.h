@@ -10078,8 +10078,7 @@ static void demi_surfaces_outdated(dem_world *w) {
     for (d = 0; d < DEMI_DOMAINS; d++)
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
-            if (c->b < 0 && (demi_faceted(&w->walls[c->wall])))
-                c->element = -1;
+            if (c->b < 0 && demi_faceted(&w->walls[c->wall])) c->element = -1;
         }
 }
 /* Returns the number of corners of an element and writes their coordinates. */
@@ -10858,6 +10857,11 @@ static void demi_wall_span(demi_wall *wall) {
     memcpy(wall->span_lo, lo, sizeof lo);
     memcpy(wall->span_hi, hi, sizeof hi);
 }
+/* Lets joined surfaces follow the walls that they move with. */
+static void demi_surfaces_follow(dem_world *w) {
+    int i;
+    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
+}
 /* Sets, for each wall, along which axes it repeats. A joined surface repeats as its walls did when
    it was made. */
 static void demi_walls_repeat(dem_world *w) {
@@ -10879,9 +10883,9 @@ static void demi_walls_repeat(dem_world *w) {
             w->repeating |= wall->repeats[k];
         }
     }
+    demi_surfaces_follow(w);
     for (i = 0; i < w->surface_count; i++) {
         demi_wall *s = &w->surfaces[i];
-        s->pose = w->walls[s->lead].pose;
         for (k = 0; k < 3; k++) w->repeating |= s->repeats[k];
         if (w->repeating) demi_wall_span(s);
     }
@@ -10903,8 +10907,8 @@ typedef struct demi_join {
     double *x, *near_by;           /* points x 3, m; welding tolerance, m */
     demi_tree tree;                /* of points */
     int32_t *same;                 /* points: the first one at this position */
-    int32_t *facet;                /* facets x 6: points of its corners, wall, element, and the
-                                      closed shell that it is part of, or -1 */
+    int32_t *facet;                /* facets x 5: points of its corners, wall, and the closed shell
+                                      that it is part of, or -1 */
     demi_side *side;
     int32_t *root;                 /* facets: a tree of those that are connected */
     unsigned char *mark;           /* facets, points: DEMI_JOIN_... */
@@ -10989,7 +10993,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
     if (points > INT_MAX/8 || facets > INT_MAX/8) return 0;
     j->x = (double *)demi_alloc(w, points*3, sizeof(double));
     j->near_by = (double *)demi_alloc(w, points, sizeof(double));
-    j->facet = (int32_t *)demi_alloc(w, facets*6, sizeof(int32_t));
+    j->facet = (int32_t *)demi_alloc(w, facets*5, sizeof(int32_t));
     j->side = (demi_side *)demi_alloc(w, facets*3, sizeof(demi_side));
     j->root = (int32_t *)demi_alloc(w, facets, sizeof(int32_t));
     if (!j->x || !j->near_by || !j->facet || !j->side || !j->root) return 0;
@@ -11016,11 +11020,10 @@ static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
         const demi_wall *wall = &w->walls[i];
         if (!demi_join_member(w, i, lead, per)) continue;
         for (e = 0; e < wall->element_count; e++) {
-            int32_t *f = j->facet + 6*j->facets;
+            int32_t *f = j->facet + 5*j->facets;
             for (k = 0; k < 3; k++)
                 f[k] = k < per ? j->same[first + wall->corners[per*e + k]] : f[1];
             f[3] = i;
-            f[4] = e;
             j->facets += demi_facet_counts(j->x, j->near_by, f, per);
         }
         first += wall->vertex_count;
@@ -11032,7 +11035,7 @@ static void demi_join_sides(demi_join *j) {
     int i, k;
     for (i = 0, j->sides = 0; i < j->facets; i++)
         for (k = 0; k < j->per; k++) {
-            const int32_t *f = j->facet + 6*i;
+            const int32_t *f = j->facet + 5*i;
             j->side[j->sides++] = demi_side_of(f[k], f[j->per == 3 ? (k + 1)%3 : k], i, k);
         }
     qsort(j->side, (size_t)j->sides, sizeof *j->side, demi_side_compare);
@@ -11046,7 +11049,7 @@ static int demi_sides_end(const demi_side *side, int count, int i) {
 /* +1 if a facet runs along its side from the lower to the higher point, or begins at this corner of
    a profile; otherwise -1. */
 static int demi_join_sign(const demi_join *j, const demi_side *s) {
-    return j->per == 2 ? 1 - 2*s->side : j->facet[6*s->facet + s->side] == s->lo ? 1 : -1;
+    return j->per == 2 ? 1 - 2*s->side : j->facet[5*s->facet + s->side] == s->lo ? 1 : -1;
 }
 static int32_t demi_join_root(demi_join *j, int32_t i) {
     while (j->root[i] != i) i = j->root[i] = j->root[j->root[i]];
@@ -11066,10 +11069,10 @@ static void demi_join_open(demi_join *j) {
     for (i = 0; i < j->sides; i = end) {
         end = demi_sides_end(j->side, j->sides, i);
         for (k = i; k < end; k++) {
-            const int wall = j->facet[6*j->side[k].facet + 3];
+            const int wall = j->facet[5*j->side[k].facet + 3];
             int sum = 0;
             for (m = i; m < end; m++) {
-                if (j->facet[6*j->side[m].facet + 3] != wall) continue;
+                if (j->facet[5*j->side[m].facet + 3] != wall) continue;
                 sum += demi_join_sign(j, &j->side[m]);
                 demi_join_unite(j, j->side[k].facet, j->side[m].facet);
             }
@@ -11077,15 +11080,15 @@ static void demi_join_open(demi_join *j) {
         }
     }
     for (i = 0; i < j->facets; i++) {
-        j->facet[6*i + 5] = demi_join_root(j, i);
-        j->mark[i] |= j->mark[j->facet[6*i + 5]] & DEMI_JOIN_OPEN;
-        if (j->mark[i]) j->facet[6*i + 5] = -1;
+        j->facet[5*i + 4] = demi_join_root(j, i);
+        j->mark[i] |= j->mark[j->facet[5*i + 4]] & DEMI_JOIN_OPEN;
+        if (j->mark[i]) j->facet[5*i + 4] = -1;
     }
 }
 /* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
    side: the plane then acts alone. */
 static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
-    const int32_t *f = j->facet + 6*i;
+    const int32_t *f = j->facet + 5*i;
     int p, k;
     for (p = 0; p < w->wall_count; p++) {
         const demi_wall *plane = &w->walls[p];
@@ -11096,7 +11099,7 @@ static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
         for (k = 0; k < j->per; k++)
             if (!(fabs(demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[k]), o))) <=
                   j->near_by[f[k]])) break;
-        if (k == j->per && (f[5] < 0 || j->per == 2 || demi_d3_dot(n, demi_d3_normal(
+        if (k == j->per && (f[4] < 0 || j->per == 2 || demi_d3_dot(n, demi_d3_normal(
             demi_d3_at(j->x + 3*f[0]), demi_d3_at(j->x + 3*f[1]), demi_d3_at(j->x + 3*f[2]))) > 0))
             return 1;
     }
@@ -11117,7 +11120,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
     demi_join_sides(j);
     demi_join_open(j);
     for (i = 0; i < j->facets; i++) {           /* facets by their corners */
-        const int32_t *f = j->facet + 6*i, last = j->per == 3 ? f[2] : f[1];
+        const int32_t *f = j->facet + 5*i, last = j->per == 3 ? f[2] : f[1];
         const int32_t lo = DEMI_MIN(f[0], DEMI_MIN(f[1], last));
         const int32_t hi = DEMI_MAX(f[0], DEMI_MAX(f[1], last));
         s[i] = demi_side_of(lo, hi, j->per == 3 ? f[0] + f[1] + f[2] - lo - hi : 0, i);
@@ -11130,7 +11133,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
              s[end].facet == s[i].facet; end++) {
             const int f = s[end].side;
             if (end > i) j->mark[f] |= DEMI_JOIN_GONE;
-            if (!(j->mark[f] & DEMI_JOIN_OPEN)) way[demi_facet_turn(j->facet + 6*f, j->per) > 0]++;
+            if (!(j->mark[f] & DEMI_JOIN_OPEN)) way[demi_facet_turn(j->facet + 5*f, j->per) > 0]++;
         }
         turns = end - i == 2 && way[0] == 1 && way[1] == 1;
         for (k = i; k < end && turns; k++) j->mark[s[k].side] |= DEMI_JOIN_PAIRED;
@@ -11151,7 +11154,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
         const int root = demi_join_root(j, i), paired = j->mark[i] & DEMI_JOIN_PAIRED;
         if (paired ? j->mark[root] & DEMI_JOIN_ANCHORED || j->mark[i] & DEMI_JOIN_GONE
             : j->mark[i] & DEMI_JOIN_GONE || demi_join_in_plane(w, j, i)) continue;
-        for (m = 0; m < 6; m++) j->facet[6*left + m] = j->facet[6*i + m];
+        for (m = 0; m < 5; m++) j->facet[5*left + m] = j->facet[5*i + m];
         left++;
     }
     j->changed |= left < j->facets;
@@ -11178,7 +11181,7 @@ static double demi_shard_width(const demi_shard *s) {
 static demi_shard demi_shard_of(const demi_join *j, int i) {
     demi_shard s;
     for (s.count = 0; s.count < 3; s.count++)
-        s.x[s.count] = demi_d3_at(j->x + 3*j->facet[6*i + s.count]);
+        s.x[s.count] = demi_d3_at(j->x + 3*j->facet[5*i + s.count]);
     return s;
 }
 static demi_d3 demi_shard_normal(const demi_shard *t) {
@@ -11236,6 +11239,7 @@ static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const
             left += demi_shard_width(out) > tiny;
             demi_shard_clip(&rest, t, k, 0);
         }
+        if (k < 3) (*pieces)[left++] = rest;    /* too many corners: covered twice, but no hole */
     }
     *count = left;
     return 1;
@@ -11248,17 +11252,17 @@ static int demi_join_shards(dem_world *w, demi_join *j, int i, const demi_shard 
         if (!demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*points) ||
             !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), points) ||
             !demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t),
-                       6*(size_t)(j->facets + piece->count))) return 0;
+                       5*(size_t)(j->facets + piece->count))) return 0;
         for (k = 2; k < piece->count; k++) {
-            int32_t *f = j->facet + 6*j->facets++;
+            int32_t *f = j->facet + 5*j->facets++;
             f[0] = j->points;
             f[1] = j->points + k - 1;
             f[2] = j->points + k;
-            for (m = 3; m < 6; m++) f[m] = j->facet[6*i + m];
+            for (m = 3; m < 5; m++) f[m] = j->facet[5*i + m];
         }
         for (k = 0; k < piece->count; k++) {
             demi_d3_put(j->x + 3*j->points, piece->x[k]);
-            j->near_by[j->points++] = j->near_by[j->facet[6*i]];
+            j->near_by[j->points++] = j->near_by[j->facet[5*i]];
         }
     }
     return 1;
@@ -11276,9 +11280,9 @@ static int demi_join_again(dem_world *w, demi_join *j, const unsigned char *gone
         !demi_tree_make(w, &j->tree, j->x, j->points)) return 0;
     demi_points_weld(&j->tree, j->near_by, j->same);
     for (i = left = 0; i < j->facets; i++) {
-        int32_t *f = j->facet + 6*left;
+        int32_t *f = j->facet + 5*left;
         if (i < all && gone[i]) continue;
-        memmove(f, j->facet + 6*i, 6*sizeof *f);
+        memmove(f, j->facet + 5*i, 5*sizeof *f);
         for (k = 0; k < 3; k++) f[k] = j->same[f[k]];
         left += demi_facet_counts(j->x, j->near_by, f, 3);
     }
@@ -11302,7 +11306,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
         for (k = 0; k < 3; k++) {
             double lo = 1e300, hi = -1e300;
             for (m = 0; m < 3; m++) {
-                corner[9*i + 3*m + k] = j->x[3*j->facet[6*i + m] + k];
+                corner[9*i + 3*m + k] = j->x[3*j->facet[5*i + m] + k];
                 lo = DEMI_MIN(lo, corner[9*i + 3*m + k]);
                 hi = DEMI_MAX(hi, corner[9*i + 3*m + k]);
             }
@@ -11314,7 +11318,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     for (i = 0; i < all && ok; i++) {
         const double *at = middle + 3*i, *size = half + 3*i;
         const demi_shard own = demi_shard_of(j, i);
-        const double tiny = j->near_by[j->facet[6*i]];
+        const double tiny = j->near_by[j->facet[5*i]];
         demi_search_line line;
         demi_d3 in[3];
         int32_t other;
@@ -11322,7 +11326,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
         demi_shard_inward(&own, in);
         demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
         while (ok && (other = demi_tree_next(&line)) >= 0) {
-            const int32_t shell = j->facet[6*i + 5], its = j->facet[6*other + 5];
+            const int32_t shell = j->facet[5*i + 4], its = j->facet[5*other + 4];
             const int closed = shell >= 0 && its >= 0 && shell != its;
             demi_shard t;
             if (other == i || (other > i && !closed)) continue;
@@ -11381,23 +11385,23 @@ static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *
    them, of a mesh triangles about the middle. Returns 0 if memory ran out. */
 static int demi_join_fan(dem_world *w, demi_join *j, int i, const int32_t *outline, int count) {
     const int pieces = j->per == 3 ? count : count - 1;
-    const int32_t wall = j->facet[6*i + 3], element = j->facet[6*i + 4];
+    const int32_t wall = j->facet[5*i + 3], shell = j->facet[5*i + 4];
     demi_d3 middle = demi_d(0, 0, 0);
     int k;
-    if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 6*(size_t)(j->facets + pieces)) ||
+    if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 5*(size_t)(j->facets + pieces)) ||
         !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), (size_t)(j->points + 1)) ||
         !demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*(size_t)(j->points + 1))) return 0;
     for (k = 0; k < 3; k++)
-        middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[6*i + k]));
-    j->near_by[j->points] = j->near_by[j->facet[6*i]];
+        middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[5*i + k]));
+    j->near_by[j->points] = j->near_by[j->facet[5*i]];
     if (j->per == 3) demi_d3_put(j->x + 3*j->points, middle);
     for (k = 0; k < pieces; k++) {
-        int32_t *f = j->facet + 6*(k ? j->facets++ : i);
+        int32_t *f = j->facet + 5*(k ? j->facets++ : i);
         f[0] = outline[k];
         f[1] = outline[(k + 1)%count];
         f[2] = j->per == 3 ? j->points : f[1];
         f[3] = wall;
-        f[4] = element;
+        f[4] = shell;
     }
     j->points += j->per == 3;
     j->changed = 1;
@@ -11416,7 +11420,7 @@ static int demi_join_divide(dem_world *w, demi_join *j) {
         return 0;
     }
     for (i = 0; i < points; i++) j->mark[i] = 0;
-    for (i = 0; i < 6*all; i++) if (i%6 < j->per) j->mark[j->facet[i]] = 1;
+    for (i = 0; i < 5*all; i++) if (i%5 < j->per) j->mark[j->facet[i]] = 1;
     if (w->repeating) for (i = 0; i < points; i++) j->mark[i] = j->same[i] == i;
     for (i = 0; i < all && j->per == 2; i++) cut[i] = 1;
     demi_join_sides(j);
@@ -11426,7 +11430,7 @@ static int demi_join_divide(dem_world *w, demi_join *j) {
         for (k = i; k < end; k++) cut[j->side[k].facet] = 1;
     }
     for (i = 0; i < all && ok; i++) {
-        const int32_t *f = j->facet + 6*i, corner[3] = {f[0], f[1], f[2]};
+        const int32_t *f = j->facet + 5*i, corner[3] = {f[0], f[1], f[2]};
         if (!cut[i]) continue;
         for (k = count = 0; k < j->per && (j->per == 3 || !k); k++) {
             const int32_t a = corner[k], b = corner[(k + 1)%j->per];
@@ -11490,7 +11494,7 @@ static double demi_coarse_tiny(const dem_world *w, const demi_join *j) {
     return most*(rough ? 2*(double)FLT_EPSILON : 64*DBL_EPSILON);
 }
 static demi_d3 demi_coarse_normal(const demi_join *j, int f) {
-    const int32_t *c = j->facet + 6*f;
+    const int32_t *c = j->facet + 5*f;
     return demi_d3_unit(demi_d3_normal(demi_d3_at(j->x + 3*c[0]), demi_d3_at(j->x + 3*c[1]),
                                        demi_d3_at(j->x + 3*c[2])));
 }
@@ -11505,13 +11509,13 @@ static void demi_coarse_regions(const demi_coarse *c, int32_t *stack) {
         const demi_side *s = j->side + f;
         end = demi_sides_end(j->side, j->sides, f);
         if (end != f + 2 || demi_join_sign(j, s) == demi_join_sign(j, s + 1) ||
-            j->facet[6*s->facet + 3] != j->facet[6*s[1].facet + 3]) continue;
+            j->facet[5*s->facet + 3] != j->facet[5*s[1].facet + 3]) continue;
         beside[3*s->facet + s->side] = s[1].facet;
         beside[3*s[1].facet + s[1].side] = s->facet;
     }
     for (f = 0; f < j->facets; f++) c->region[f] = -1;
     for (f = 0; f < j->facets; f++) {
-        const demi_d3 n = demi_coarse_normal(j, f), o = demi_d3_at(j->x + 3*j->facet[6*f]);
+        const demi_d3 n = demi_coarse_normal(j, f), o = demi_d3_at(j->x + 3*j->facet[5*f]);
         if (c->region[f] >= 0) continue;
         c->region[f] = f;
         stack[0] = f;
@@ -11522,7 +11526,7 @@ static void demi_coarse_regions(const demi_coarse *c, int32_t *stack) {
                 if (other < 0 || c->region[other] >= 0) continue;
                 for (m = 0; m < 3; m++)
                     if (!(fabs(demi_d3_dot(n, demi_d3_sub(demi_d3_at(
-                        j->x + 3*j->facet[6*other + m]), o))) <= c->tiny)) break;
+                        j->x + 3*j->facet[5*other + m]), o))) <= c->tiny)) break;
                 if (m < 3 || !(demi_d3_dot(n, demi_coarse_normal(j, other)) > 0.999)) continue;
                 c->region[other] = f;
                 stack[count++] = other;
@@ -11545,8 +11549,8 @@ static int demi_coarse_star(const demi_coarse *c, int32_t v, demi_star *s) {
     for (at = c->head[v]; at >= 0; at = c->next[at]) {
         if (all.count == DEMI_POLYGON - 2) return 0;
         all.facet[all.count] = at/3;
-        all.from[all.count] = j->facet[6*(at/3) + (at + 1)%3];
-        all.to[all.count++] = j->facet[6*(at/3) + (at + 2)%3];
+        all.from[all.count] = j->facet[5*(at/3) + (at + 1)%3];
+        all.to[all.count++] = j->facet[5*(at/3) + (at + 2)%3];
     }
     if (all.count < 2) return 0;
     for (i = 0; i < all.count; i++) {           /* begin behind a border, else behind a region */
@@ -11605,14 +11609,14 @@ static int demi_coarse_fill(const demi_coarse *c, const demi_star *s, int first,
     return pieces;
 }
 static void demi_coarse_link(const demi_coarse *c, int f, int k) {
-    const int32_t p = c->j->facet[6*f + k];
+    const int32_t p = c->j->facet[5*f + k];
     c->next[3*f + k] = c->head[p];
     c->head[p] = 3*f + k;
 }
 static void demi_coarse_unlink(const demi_coarse *c, int f) {
     int k;
     for (k = 0; k < 3; k++) {
-        int32_t *at = &c->head[c->j->facet[6*f + k]];
+        int32_t *at = &c->head[c->j->facet[5*f + k]];
         while (*at != 3*f + k) at = &c->next[*at];
         *at = c->next[*at];
     }
@@ -11641,7 +11645,7 @@ static int demi_coarse_drop(const demi_coarse *c, int32_t v) {
         f = s.facet[i];
         if (own >= pieces[second]) { c->region[f] = -1; continue; }
         for (k = 0; k < 3; k++)
-            c->j->facet[6*f + k] = fill[3*(own + (second ? pieces[0] : 0)) + k];
+            c->j->facet[5*f + k] = fill[3*(own + (second ? pieces[0] : 0)) + k];
         for (k = 0; k < 3; k++) demi_coarse_link(c, f, k);
     }
     return 1;
@@ -11669,7 +11673,7 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
     } while (dropped);
     for (i = left = 0; i < j->facets && any; i++) {
         if (c.region[i] < 0) continue;
-        memmove(j->facet + 6*left++, j->facet + 6*i, 6*sizeof *j->facet);
+        memmove(j->facet + 5*left++, j->facet + 5*i, 5*sizeof *j->facet);
     }
     if (any) { j->facets = left; j->changed = 1; }
     demi_free(w, stack);
@@ -11695,6 +11699,11 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
 /* The surface with this number: a wall, or a joined surface. */
 DEM_INLINE const demi_wall *demi_surface_of(const dem_world *w, int number) {
     return number < w->wall_count ? &w->walls[number] : &w->surfaces[number - w->wall_count];
+}
+/* The number of the surface that a wall is part of. */
+DEM_INLINE int demi_surface_number(const dem_world *w, int wall) {
+    const int joined = w->walls[wall].joined;
+    return joined ? w->wall_count + joined - 1 : wall;
 }
 /* The wall that feature `number` (a face, edge or corner) of a surface belongs to. */
 DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, int32_t number) {
@@ -11755,7 +11764,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     for (i = 0; i < j->points && ok; i++) at[i] = -1;
     for (i = 0; i < j->facets && ok; i++)
         for (k = 0; k < j->per; k++) {
-            const int32_t p = j->facet[6*i + k];
+            const int32_t p = j->facet[5*i + k];
             if (at[p] < 0) {
                 at[p] = s->vertex_count++;
                 demi_put(s->vertices + 3*at[p], demi_unrotate(lead->home.rotation, demi_sub(
@@ -11771,10 +11780,10 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     if (!s->whose) return 0;
     for (i = 0; i < s->element_count; i++) {
         int32_t *edge = s->whose + s->element_count, *corner = edge + s->edge_count;
-        s->whose[i] = j->facet[6*i + 3];
+        s->whose[i] = j->facet[5*i + 3];
         for (k = 0; k < j->per; k++) {
-            if (s->owns[i] >> k & 1) edge[s->edges[3*i + k]] = j->facet[6*i + 3];
-            if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[6*i + 3];
+            if (s->owns[i] >> k & 1) edge[s->edges[3*i + k]] = j->facet[5*i + 3];
+            if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[5*i + 3];
         }
     }
     demi_wall_bounds(s);
@@ -11940,11 +11949,6 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
 
 /* --- all surfaces --- */
 
-/* Lets joined surfaces follow their walls. Contact detection and the search call it. */
-static void demi_surfaces_follow(dem_world *w) {
-    int i;
-    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
-}
 static void demi_surfaces_free(dem_world *w) {
     int i;
     for (i = 0; i < w->surface_count; i++) demi_wall_free(w, &w->surfaces[i]);
@@ -19331,8 +19335,8 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
 /* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
    are joined to one surface are the same. */
 DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_kept *b) {
-    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 && w->walls[a->wall].joined &&
-                                  w->walls[a->wall].joined == w->walls[b->wall].joined);
+    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
+        demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
 }
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
    with this wall; for NEAREST only those up to c. */
@@ -19933,11 +19937,6 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
 }
-/* The number of the surface that a wall is part of. */
-DEM_INLINE int demi_kept_surface(const dem_world *w, const demi_kept *c) {
-    const int joined = w->walls[c->wall].joined;
-    return joined ? w->wall_count + joined - 1 : c->wall;
-}
 /* True if the point of c on its wall lies on another surface too. first, last: the candidates of
    the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
 static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
@@ -19957,7 +19956,7 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
 /* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
    of polyhedra, of which a facet may have several. */
 static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
-    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+    const demi_wall *wall = demi_surface_of(w, demi_surface_number(w, c->wall));
     return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
         DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
                           demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
@@ -19979,20 +19978,20 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
-        const int own = demi_kept_surface(w, &c[i]);
+        const int own = demi_surface_number(w, c[i].wall);
         int covered = 0;
-        for (k = walled; k < all && !covered && !demi_kept_flush(w, &c[i]); k++) {
-            const int other = demi_kept_surface(w, &c[k]);
-            if (other == own || c[k].part_a != c[i].part_a || (pressing && c[i].corners) ||
-                c[k].share > DEM_R(1e29)) continue;
+        if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
+        for (k = walled; k < all && !covered; k++) {
+            const int other = demi_surface_number(w, c[k].wall);
+            if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
             covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
                 (k < i || demi_kept_flush(w, &c[k]) ||
                  !demi_kept_lies_on(w, d, first, last, &c[k], own));
         }
-        if (covered) c[i].share = DEM_R(1e30);
+        if (covered) c[i].a = -1;               /* it leaves the list below */
     }
     for (i = walled; i < all; i++) {
-        if (c[i].share > DEM_R(1e29)) continue;
+        if (c[i].a < 0) continue;
         c[i].arm_b = demi_v(0, 0, 0);
         if (i > left) c[left] = c[i];
         left++;
@@ -32849,7 +32848,7 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
     const double *c[3], *a, *b;
     double lo, hi, u[3], v[3], n[3];
     int k, from = 0, to = p->count;
-    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[6*facet + (k < per ? k : 0)];
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + (k < per ? k : 0)];
     lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
     hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
     for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
@@ -32928,7 +32927,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
             if (root[i] != i) continue;
             for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
             for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
-            demi_probes_judge(w, f, &p, j.facet[6*i + 3], per == 3);
+            demi_probes_judge(w, f, &p, j.facet[5*i + 3], per == 3);
         }
     }
     demi_free(w, root);

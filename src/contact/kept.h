@@ -94,8 +94,8 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
 /* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
    are joined to one surface are the same. */
 DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_kept *b) {
-    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 && w->walls[a->wall].joined &&
-                                  w->walls[a->wall].joined == w->walls[b->wall].joined);
+    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
+        demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
 }
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
    with this wall; for NEAREST only those up to c. */
@@ -696,11 +696,6 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
 }
-/* The number of the surface that a wall is part of. */
-DEM_INLINE int demi_kept_surface(const dem_world *w, const demi_kept *c) {
-    const int joined = w->walls[c->wall].joined;
-    return joined ? w->wall_count + joined - 1 : c->wall;
-}
 /* True if the point of c on its wall lies on another surface too. first, last: the candidates of
    the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
 static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
@@ -720,7 +715,7 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
 /* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
    of polyhedra, of which a facet may have several. */
 static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
-    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+    const demi_wall *wall = demi_surface_of(w, demi_surface_number(w, c->wall));
     return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
         DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
                           demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
@@ -742,20 +737,20 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
-        const int own = demi_kept_surface(w, &c[i]);
+        const int own = demi_surface_number(w, c[i].wall);
         int covered = 0;
-        for (k = walled; k < all && !covered && !demi_kept_flush(w, &c[i]); k++) {
-            const int other = demi_kept_surface(w, &c[k]);
-            if (other == own || c[k].part_a != c[i].part_a || (pressing && c[i].corners) ||
-                c[k].share > DEM_R(1e29)) continue;
+        if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
+        for (k = walled; k < all && !covered; k++) {
+            const int other = demi_surface_number(w, c[k].wall);
+            if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
             covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
                 (k < i || demi_kept_flush(w, &c[k]) ||
                  !demi_kept_lies_on(w, d, first, last, &c[k], own));
         }
-        if (covered) c[i].share = DEM_R(1e30);
+        if (covered) c[i].a = -1;               /* it leaves the list below */
     }
     for (i = walled; i < all; i++) {
-        if (c[i].share > DEM_R(1e29)) continue;
+        if (c[i].a < 0) continue;
         c[i].arm_b = demi_v(0, 0, 0);
         if (i > left) c[left] = c[i];
         left++;

@@ -448,7 +448,7 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
     const double *c[3], *a, *b;
     double lo, hi, u[3], v[3], n[3];
     int k, from = 0, to = p->count;
-    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[6*facet + (k < per ? k : 0)];
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + (k < per ? k : 0)];
     lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
     hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
     for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
@@ -527,7 +527,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
             if (root[i] != i) continue;
             for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
             for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
-            demi_probes_judge(w, f, &p, j.facet[6*i + 3], per == 3);
+            demi_probes_judge(w, f, &p, j.facet[5*i + 3], per == 3);
         }
     }
     demi_free(w, root);

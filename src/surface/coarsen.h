@@ -34,7 +34,7 @@ static double demi_coarse_tiny(const dem_world *w, const demi_join *j) {
     return most*(rough ? 2*(double)FLT_EPSILON : 64*DBL_EPSILON);
 }
 static demi_d3 demi_coarse_normal(const demi_join *j, int f) {
-    const int32_t *c = j->facet + 6*f;
+    const int32_t *c = j->facet + 5*f;
     return demi_d3_unit(demi_d3_normal(demi_d3_at(j->x + 3*c[0]), demi_d3_at(j->x + 3*c[1]),
                                        demi_d3_at(j->x + 3*c[2])));
 }
@@ -49,13 +49,13 @@ static void demi_coarse_regions(const demi_coarse *c, int32_t *stack) {
         const demi_side *s = j->side + f;
         end = demi_sides_end(j->side, j->sides, f);
         if (end != f + 2 || demi_join_sign(j, s) == demi_join_sign(j, s + 1) ||
-            j->facet[6*s->facet + 3] != j->facet[6*s[1].facet + 3]) continue;
+            j->facet[5*s->facet + 3] != j->facet[5*s[1].facet + 3]) continue;
         beside[3*s->facet + s->side] = s[1].facet;
         beside[3*s[1].facet + s[1].side] = s->facet;
     }
     for (f = 0; f < j->facets; f++) c->region[f] = -1;
     for (f = 0; f < j->facets; f++) {
-        const demi_d3 n = demi_coarse_normal(j, f), o = demi_d3_at(j->x + 3*j->facet[6*f]);
+        const demi_d3 n = demi_coarse_normal(j, f), o = demi_d3_at(j->x + 3*j->facet[5*f]);
         if (c->region[f] >= 0) continue;
         c->region[f] = f;
         stack[0] = f;
@@ -66,7 +66,7 @@ static void demi_coarse_regions(const demi_coarse *c, int32_t *stack) {
                 if (other < 0 || c->region[other] >= 0) continue;
                 for (m = 0; m < 3; m++)
                     if (!(fabs(demi_d3_dot(n, demi_d3_sub(demi_d3_at(
-                        j->x + 3*j->facet[6*other + m]), o))) <= c->tiny)) break;
+                        j->x + 3*j->facet[5*other + m]), o))) <= c->tiny)) break;
                 if (m < 3 || !(demi_d3_dot(n, demi_coarse_normal(j, other)) > 0.999)) continue;
                 c->region[other] = f;
                 stack[count++] = other;
@@ -89,8 +89,8 @@ static int demi_coarse_star(const demi_coarse *c, int32_t v, demi_star *s) {
     for (at = c->head[v]; at >= 0; at = c->next[at]) {
         if (all.count == DEMI_POLYGON - 2) return 0;
         all.facet[all.count] = at/3;
-        all.from[all.count] = j->facet[6*(at/3) + (at + 1)%3];
-        all.to[all.count++] = j->facet[6*(at/3) + (at + 2)%3];
+        all.from[all.count] = j->facet[5*(at/3) + (at + 1)%3];
+        all.to[all.count++] = j->facet[5*(at/3) + (at + 2)%3];
     }
     if (all.count < 2) return 0;
     for (i = 0; i < all.count; i++) {           /* begin behind a border, else behind a region */
@@ -149,14 +149,14 @@ static int demi_coarse_fill(const demi_coarse *c, const demi_star *s, int first,
     return pieces;
 }
 static void demi_coarse_link(const demi_coarse *c, int f, int k) {
-    const int32_t p = c->j->facet[6*f + k];
+    const int32_t p = c->j->facet[5*f + k];
     c->next[3*f + k] = c->head[p];
     c->head[p] = 3*f + k;
 }
 static void demi_coarse_unlink(const demi_coarse *c, int f) {
     int k;
     for (k = 0; k < 3; k++) {
-        int32_t *at = &c->head[c->j->facet[6*f + k]];
+        int32_t *at = &c->head[c->j->facet[5*f + k]];
         while (*at != 3*f + k) at = &c->next[*at];
         *at = c->next[*at];
     }
@@ -185,7 +185,7 @@ static int demi_coarse_drop(const demi_coarse *c, int32_t v) {
         f = s.facet[i];
         if (own >= pieces[second]) { c->region[f] = -1; continue; }
         for (k = 0; k < 3; k++)
-            c->j->facet[6*f + k] = fill[3*(own + (second ? pieces[0] : 0)) + k];
+            c->j->facet[5*f + k] = fill[3*(own + (second ? pieces[0] : 0)) + k];
         for (k = 0; k < 3; k++) demi_coarse_link(c, f, k);
     }
     return 1;
@@ -213,7 +213,7 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
     } while (dropped);
     for (i = left = 0; i < j->facets && any; i++) {
         if (c.region[i] < 0) continue;
-        memmove(j->facet + 6*left++, j->facet + 6*i, 6*sizeof *j->facet);
+        memmove(j->facet + 5*left++, j->facet + 5*i, 5*sizeof *j->facet);
     }
     if (any) { j->facets = left; j->changed = 1; }
     demi_free(w, stack);

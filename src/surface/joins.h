@@ -48,6 +48,11 @@ static void demi_wall_span(demi_wall *wall) {
     memcpy(wall->span_lo, lo, sizeof lo);
     memcpy(wall->span_hi, hi, sizeof hi);
 }
+/* Lets joined surfaces follow the walls that they move with. */
+static void demi_surfaces_follow(dem_world *w) {
+    int i;
+    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
+}
 /* Sets, for each wall, along which axes it repeats. A joined surface repeats as its walls did when
    it was made. */
 static void demi_walls_repeat(dem_world *w) {
@@ -69,9 +74,9 @@ static void demi_walls_repeat(dem_world *w) {
             w->repeating |= wall->repeats[k];
         }
     }
+    demi_surfaces_follow(w);
     for (i = 0; i < w->surface_count; i++) {
         demi_wall *s = &w->surfaces[i];
-        s->pose = w->walls[s->lead].pose;
         for (k = 0; k < 3; k++) w->repeating |= s->repeats[k];
         if (w->repeating) demi_wall_span(s);
     }
@@ -93,8 +98,8 @@ typedef struct demi_join {
     double *x, *near_by;           /* points x 3, m; welding tolerance, m */
     demi_tree tree;                /* of points */
     int32_t *same;                 /* points: the first one at this position */
-    int32_t *facet;                /* facets x 6: points of its corners, wall, element, and the
-                                      closed shell that it is part of, or -1 */
+    int32_t *facet;                /* facets x 5: points of its corners, wall, and the closed shell
+                                      that it is part of, or -1 */
     demi_side *side;
     int32_t *root;                 /* facets: a tree of those that are connected */
     unsigned char *mark;           /* facets, points: DEMI_JOIN_... */
@@ -179,7 +184,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
     if (points > INT_MAX/8 || facets > INT_MAX/8) return 0;
     j->x = (double *)demi_alloc(w, points*3, sizeof(double));
     j->near_by = (double *)demi_alloc(w, points, sizeof(double));
-    j->facet = (int32_t *)demi_alloc(w, facets*6, sizeof(int32_t));
+    j->facet = (int32_t *)demi_alloc(w, facets*5, sizeof(int32_t));
     j->side = (demi_side *)demi_alloc(w, facets*3, sizeof(demi_side));
     j->root = (int32_t *)demi_alloc(w, facets, sizeof(int32_t));
     if (!j->x || !j->near_by || !j->facet || !j->side || !j->root) return 0;
@@ -206,11 +211,10 @@ static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
         const demi_wall *wall = &w->walls[i];
         if (!demi_join_member(w, i, lead, per)) continue;
         for (e = 0; e < wall->element_count; e++) {
-            int32_t *f = j->facet + 6*j->facets;
+            int32_t *f = j->facet + 5*j->facets;
             for (k = 0; k < 3; k++)
                 f[k] = k < per ? j->same[first + wall->corners[per*e + k]] : f[1];
             f[3] = i;
-            f[4] = e;
             j->facets += demi_facet_counts(j->x, j->near_by, f, per);
         }
         first += wall->vertex_count;
@@ -222,7 +226,7 @@ static void demi_join_sides(demi_join *j) {
     int i, k;
     for (i = 0, j->sides = 0; i < j->facets; i++)
         for (k = 0; k < j->per; k++) {
-            const int32_t *f = j->facet + 6*i;
+            const int32_t *f = j->facet + 5*i;
             j->side[j->sides++] = demi_side_of(f[k], f[j->per == 3 ? (k + 1)%3 : k], i, k);
         }
     qsort(j->side, (size_t)j->sides, sizeof *j->side, demi_side_compare);
@@ -236,7 +240,7 @@ static int demi_sides_end(const demi_side *side, int count, int i) {
 /* +1 if a facet runs along its side from the lower to the higher point, or begins at this corner of
    a profile; otherwise -1. */
 static int demi_join_sign(const demi_join *j, const demi_side *s) {
-    return j->per == 2 ? 1 - 2*s->side : j->facet[6*s->facet + s->side] == s->lo ? 1 : -1;
+    return j->per == 2 ? 1 - 2*s->side : j->facet[5*s->facet + s->side] == s->lo ? 1 : -1;
 }
 static int32_t demi_join_root(demi_join *j, int32_t i) {
     while (j->root[i] != i) i = j->root[i] = j->root[j->root[i]];
@@ -256,10 +260,10 @@ static void demi_join_open(demi_join *j) {
     for (i = 0; i < j->sides; i = end) {
         end = demi_sides_end(j->side, j->sides, i);
         for (k = i; k < end; k++) {
-            const int wall = j->facet[6*j->side[k].facet + 3];
+            const int wall = j->facet[5*j->side[k].facet + 3];
             int sum = 0;
             for (m = i; m < end; m++) {
-                if (j->facet[6*j->side[m].facet + 3] != wall) continue;
+                if (j->facet[5*j->side[m].facet + 3] != wall) continue;
                 sum += demi_join_sign(j, &j->side[m]);
                 demi_join_unite(j, j->side[k].facet, j->side[m].facet);
             }
@@ -267,15 +271,15 @@ static void demi_join_open(demi_join *j) {
         }
     }
     for (i = 0; i < j->facets; i++) {
-        j->facet[6*i + 5] = demi_join_root(j, i);
-        j->mark[i] |= j->mark[j->facet[6*i + 5]] & DEMI_JOIN_OPEN;
-        if (j->mark[i]) j->facet[6*i + 5] = -1;
+        j->facet[5*i + 4] = demi_join_root(j, i);
+        j->mark[i] |= j->mark[j->facet[5*i + 4]] & DEMI_JOIN_OPEN;
+        if (j->mark[i]) j->facet[5*i + 4] = -1;
     }
 }
 /* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
    side: the plane then acts alone. */
 static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
-    const int32_t *f = j->facet + 6*i;
+    const int32_t *f = j->facet + 5*i;
     int p, k;
     for (p = 0; p < w->wall_count; p++) {
         const demi_wall *plane = &w->walls[p];
@@ -286,7 +290,7 @@ static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
         for (k = 0; k < j->per; k++)
             if (!(fabs(demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[k]), o))) <=
                   j->near_by[f[k]])) break;
-        if (k == j->per && (f[5] < 0 || j->per == 2 || demi_d3_dot(n, demi_d3_normal(
+        if (k == j->per && (f[4] < 0 || j->per == 2 || demi_d3_dot(n, demi_d3_normal(
             demi_d3_at(j->x + 3*f[0]), demi_d3_at(j->x + 3*f[1]), demi_d3_at(j->x + 3*f[2]))) > 0))
             return 1;
     }
@@ -307,7 +311,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
     demi_join_sides(j);
     demi_join_open(j);
     for (i = 0; i < j->facets; i++) {           /* facets by their corners */
-        const int32_t *f = j->facet + 6*i, last = j->per == 3 ? f[2] : f[1];
+        const int32_t *f = j->facet + 5*i, last = j->per == 3 ? f[2] : f[1];
         const int32_t lo = DEMI_MIN(f[0], DEMI_MIN(f[1], last));
         const int32_t hi = DEMI_MAX(f[0], DEMI_MAX(f[1], last));
         s[i] = demi_side_of(lo, hi, j->per == 3 ? f[0] + f[1] + f[2] - lo - hi : 0, i);
@@ -320,7 +324,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
              s[end].facet == s[i].facet; end++) {
             const int f = s[end].side;
             if (end > i) j->mark[f] |= DEMI_JOIN_GONE;
-            if (!(j->mark[f] & DEMI_JOIN_OPEN)) way[demi_facet_turn(j->facet + 6*f, j->per) > 0]++;
+            if (!(j->mark[f] & DEMI_JOIN_OPEN)) way[demi_facet_turn(j->facet + 5*f, j->per) > 0]++;
         }
         turns = end - i == 2 && way[0] == 1 && way[1] == 1;
         for (k = i; k < end && turns; k++) j->mark[s[k].side] |= DEMI_JOIN_PAIRED;
@@ -341,7 +345,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
         const int root = demi_join_root(j, i), paired = j->mark[i] & DEMI_JOIN_PAIRED;
         if (paired ? j->mark[root] & DEMI_JOIN_ANCHORED || j->mark[i] & DEMI_JOIN_GONE
             : j->mark[i] & DEMI_JOIN_GONE || demi_join_in_plane(w, j, i)) continue;
-        for (m = 0; m < 6; m++) j->facet[6*left + m] = j->facet[6*i + m];
+        for (m = 0; m < 5; m++) j->facet[5*left + m] = j->facet[5*i + m];
         left++;
     }
     j->changed |= left < j->facets;
@@ -368,7 +372,7 @@ static double demi_shard_width(const demi_shard *s) {
 static demi_shard demi_shard_of(const demi_join *j, int i) {
     demi_shard s;
     for (s.count = 0; s.count < 3; s.count++)
-        s.x[s.count] = demi_d3_at(j->x + 3*j->facet[6*i + s.count]);
+        s.x[s.count] = demi_d3_at(j->x + 3*j->facet[5*i + s.count]);
     return s;
 }
 static demi_d3 demi_shard_normal(const demi_shard *t) {
@@ -426,6 +430,7 @@ static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const
             left += demi_shard_width(out) > tiny;
             demi_shard_clip(&rest, t, k, 0);
         }
+        if (k < 3) (*pieces)[left++] = rest;    /* too many corners: covered twice, but no hole */
     }
     *count = left;
     return 1;
@@ -438,17 +443,17 @@ static int demi_join_shards(dem_world *w, demi_join *j, int i, const demi_shard 
         if (!demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*points) ||
             !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), points) ||
             !demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t),
-                       6*(size_t)(j->facets + piece->count))) return 0;
+                       5*(size_t)(j->facets + piece->count))) return 0;
         for (k = 2; k < piece->count; k++) {
-            int32_t *f = j->facet + 6*j->facets++;
+            int32_t *f = j->facet + 5*j->facets++;
             f[0] = j->points;
             f[1] = j->points + k - 1;
             f[2] = j->points + k;
-            for (m = 3; m < 6; m++) f[m] = j->facet[6*i + m];
+            for (m = 3; m < 5; m++) f[m] = j->facet[5*i + m];
         }
         for (k = 0; k < piece->count; k++) {
             demi_d3_put(j->x + 3*j->points, piece->x[k]);
-            j->near_by[j->points++] = j->near_by[j->facet[6*i]];
+            j->near_by[j->points++] = j->near_by[j->facet[5*i]];
         }
     }
     return 1;
@@ -466,9 +471,9 @@ static int demi_join_again(dem_world *w, demi_join *j, const unsigned char *gone
         !demi_tree_make(w, &j->tree, j->x, j->points)) return 0;
     demi_points_weld(&j->tree, j->near_by, j->same);
     for (i = left = 0; i < j->facets; i++) {
-        int32_t *f = j->facet + 6*left;
+        int32_t *f = j->facet + 5*left;
         if (i < all && gone[i]) continue;
-        memmove(f, j->facet + 6*i, 6*sizeof *f);
+        memmove(f, j->facet + 5*i, 5*sizeof *f);
         for (k = 0; k < 3; k++) f[k] = j->same[f[k]];
         left += demi_facet_counts(j->x, j->near_by, f, 3);
     }
@@ -492,7 +497,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
         for (k = 0; k < 3; k++) {
             double lo = 1e300, hi = -1e300;
             for (m = 0; m < 3; m++) {
-                corner[9*i + 3*m + k] = j->x[3*j->facet[6*i + m] + k];
+                corner[9*i + 3*m + k] = j->x[3*j->facet[5*i + m] + k];
                 lo = DEMI_MIN(lo, corner[9*i + 3*m + k]);
                 hi = DEMI_MAX(hi, corner[9*i + 3*m + k]);
             }
@@ -504,7 +509,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     for (i = 0; i < all && ok; i++) {
         const double *at = middle + 3*i, *size = half + 3*i;
         const demi_shard own = demi_shard_of(j, i);
-        const double tiny = j->near_by[j->facet[6*i]];
+        const double tiny = j->near_by[j->facet[5*i]];
         demi_search_line line;
         demi_d3 in[3];
         int32_t other;
@@ -512,7 +517,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
         demi_shard_inward(&own, in);
         demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
         while (ok && (other = demi_tree_next(&line)) >= 0) {
-            const int32_t shell = j->facet[6*i + 5], its = j->facet[6*other + 5];
+            const int32_t shell = j->facet[5*i + 4], its = j->facet[5*other + 4];
             const int closed = shell >= 0 && its >= 0 && shell != its;
             demi_shard t;
             if (other == i || (other > i && !closed)) continue;
@@ -571,23 +576,23 @@ static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *
    them, of a mesh triangles about the middle. Returns 0 if memory ran out. */
 static int demi_join_fan(dem_world *w, demi_join *j, int i, const int32_t *outline, int count) {
     const int pieces = j->per == 3 ? count : count - 1;
-    const int32_t wall = j->facet[6*i + 3], element = j->facet[6*i + 4];
+    const int32_t wall = j->facet[5*i + 3], shell = j->facet[5*i + 4];
     demi_d3 middle = demi_d(0, 0, 0);
     int k;
-    if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 6*(size_t)(j->facets + pieces)) ||
+    if (!demi_grow(w, DEMI_LOOSE, &j->facet, sizeof(int32_t), 5*(size_t)(j->facets + pieces)) ||
         !demi_grow(w, DEMI_LOOSE, &j->near_by, sizeof(double), (size_t)(j->points + 1)) ||
         !demi_grow(w, DEMI_LOOSE, &j->x, sizeof(double), 3*(size_t)(j->points + 1))) return 0;
     for (k = 0; k < 3; k++)
-        middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[6*i + k]));
-    j->near_by[j->points] = j->near_by[j->facet[6*i]];
+        middle = demi_d3_plus(middle, 1.0/3, demi_d3_at(j->x + 3*j->facet[5*i + k]));
+    j->near_by[j->points] = j->near_by[j->facet[5*i]];
     if (j->per == 3) demi_d3_put(j->x + 3*j->points, middle);
     for (k = 0; k < pieces; k++) {
-        int32_t *f = j->facet + 6*(k ? j->facets++ : i);
+        int32_t *f = j->facet + 5*(k ? j->facets++ : i);
         f[0] = outline[k];
         f[1] = outline[(k + 1)%count];
         f[2] = j->per == 3 ? j->points : f[1];
         f[3] = wall;
-        f[4] = element;
+        f[4] = shell;
     }
     j->points += j->per == 3;
     j->changed = 1;
@@ -606,7 +611,7 @@ static int demi_join_divide(dem_world *w, demi_join *j) {
         return 0;
     }
     for (i = 0; i < points; i++) j->mark[i] = 0;
-    for (i = 0; i < 6*all; i++) if (i%6 < j->per) j->mark[j->facet[i]] = 1;
+    for (i = 0; i < 5*all; i++) if (i%5 < j->per) j->mark[j->facet[i]] = 1;
     if (w->repeating) for (i = 0; i < points; i++) j->mark[i] = j->same[i] == i;
     for (i = 0; i < all && j->per == 2; i++) cut[i] = 1;
     demi_join_sides(j);
@@ -616,7 +621,7 @@ static int demi_join_divide(dem_world *w, demi_join *j) {
         for (k = i; k < end; k++) cut[j->side[k].facet] = 1;
     }
     for (i = 0; i < all && ok; i++) {
-        const int32_t *f = j->facet + 6*i, corner[3] = {f[0], f[1], f[2]};
+        const int32_t *f = j->facet + 5*i, corner[3] = {f[0], f[1], f[2]};
         if (!cut[i]) continue;
         for (k = count = 0; k < j->per && (j->per == 3 || !k); k++) {
             const int32_t a = corner[k], b = corner[(k + 1)%j->per];

@@ -15,6 +15,11 @@
 DEM_INLINE const demi_wall *demi_surface_of(const dem_world *w, int number) {
     return number < w->wall_count ? &w->walls[number] : &w->surfaces[number - w->wall_count];
 }
+/* The number of the surface that a wall is part of. */
+DEM_INLINE int demi_surface_number(const dem_world *w, int wall) {
+    const int joined = w->walls[wall].joined;
+    return joined ? w->wall_count + joined - 1 : wall;
+}
 /* The wall that feature `number` (a face, edge or corner) of a surface belongs to. */
 DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, int32_t number) {
     return surface->whose ? surface->whose[number] : (int)(surface - w->walls);
@@ -74,7 +79,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     for (i = 0; i < j->points && ok; i++) at[i] = -1;
     for (i = 0; i < j->facets && ok; i++)
         for (k = 0; k < j->per; k++) {
-            const int32_t p = j->facet[6*i + k];
+            const int32_t p = j->facet[5*i + k];
             if (at[p] < 0) {
                 at[p] = s->vertex_count++;
                 demi_put(s->vertices + 3*at[p], demi_unrotate(lead->home.rotation, demi_sub(
@@ -90,10 +95,10 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
     if (!s->whose) return 0;
     for (i = 0; i < s->element_count; i++) {
         int32_t *edge = s->whose + s->element_count, *corner = edge + s->edge_count;
-        s->whose[i] = j->facet[6*i + 3];
+        s->whose[i] = j->facet[5*i + 3];
         for (k = 0; k < j->per; k++) {
-            if (s->owns[i] >> k & 1) edge[s->edges[3*i + k]] = j->facet[6*i + 3];
-            if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[6*i + 3];
+            if (s->owns[i] >> k & 1) edge[s->edges[3*i + k]] = j->facet[5*i + 3];
+            if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[5*i + 3];
         }
     }
     demi_wall_bounds(s);
@@ -259,11 +264,6 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
 
 /* --- all surfaces --- */
 
-/* Lets joined surfaces follow their walls. Contact detection and the search call it. */
-static void demi_surfaces_follow(dem_world *w) {
-    int i;
-    for (i = 0; i < w->surface_count; i++) w->surfaces[i].pose = w->walls[w->surfaces[i].lead].pose;
-}
 static void demi_surfaces_free(dem_world *w) {
     int i;
     for (i = 0; i < w->surface_count; i++) demi_wall_free(w, &w->surfaces[i]);

@@ -72,8 +72,7 @@ static void demi_surfaces_outdated(dem_world *w) {
     for (d = 0; d < DEMI_DOMAINS; d++)
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
-            if (c->b < 0 && (demi_faceted(&w->walls[c->wall])))
-                c->element = -1;
+            if (c->b < 0 && demi_faceted(&w->walls[c->wall])) c->element = -1;
         }
 }
 /* Returns the number of corners of an element and writes their coordinates. */

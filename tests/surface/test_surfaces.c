@@ -255,7 +255,8 @@ static double table_of(int impulses, slide limit) {
             if (first == MESH && floor == PLANE_AND_MESH) continue;
             q = slide_of(body, first, floor, impulses, s, 4*R);
             over = fmax(q.hop/limit.hop, fmax(q.speed/limit.speed, q.spin/limit.spin));
-            if (floor == BELTS) over /= 10;     /* the points on both are more than the solver needs, and share the weight */
+            /* impulses: points on both belts share the weight; springs: a clump's merged contacts change places there */
+            if (floor == BELTS) over /= 30;
             if (over > 1)
                 printf("    a %s over %s by %s: hop %.3g R, speed %.3g, spin %.3g\n", bodies[body], floors[floor],
                        impulses ? "impulses" : "springs", q.hop, q.speed, q.spin);
@@ -268,12 +269,12 @@ static double table_of(int impulses, slide limit) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("by springs every body slides over a floor of meshes, planes, boxes, folds, slivers or images as over one plane") {
-        const slide limit = {fine ? 5e-9 : 1e-4, fine ? 1e-7 : 1e-3, fine ? 1e-7 : 1e-3};
+        const slide limit = {fine ? 1e-9 : 1e-4, fine ? 1e-9 : 1e-3, fine ? 1e-9 : 1e-3};
         CHECK_NEAR(table_of(0, limit), 0, 1);
     }
     TEST("by impulses every body slides over a floor of meshes, planes, boxes, belts, folds or images as over one plane") {
         /* the solver ends at 1e-6 of the speed */
-        const slide limit = {fine ? 2e-6 : 1e-3, fine ? 2e-5 : 1e-2, fine ? 2e-4 : 1e-2};
+        const slide limit = {fine ? 1e-6 : 1e-3, fine ? 1e-5 : 1e-2, fine ? 2e-5 : 1e-2};
         CHECK_NEAR(table_of(1, limit), 0, 1);
     }
     TEST("by springs elastic bodies that are thrown at such a floor, turning, bounce and keep their energy as on one plane") {
