@@ -41,6 +41,7 @@
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
        >>joins             facets of walls that move together: doubles, covers, dividing
        >>coarsen           facets in one plane merged to fewer
+       >>tessellate        curved walls and sieves as surfaces of facets
        >>surfaces          one surface per rigid motion: weights of its edges and corners
        >>distances         distance of a point from an element of a wall
      search/ - which bodies may touch: from candidates to the pruned neighbour list
@@ -55,7 +56,7 @@
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
-       >>polyhedra-round   contacts of polyhedra with cylinders and surfaces of revolution
+       >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
        >>meets             contacts of two bodies, by their shapes
        >>kept              contacts other than sphere on sphere: persistent contacts
@@ -327,11 +328,10 @@
 
    Shapes are ellipsoids, clusters of spheres, convex polyhedra (from points or a mesh), unions of
    polyhedra or ellipsoids, and in planar worlds polygons. A body that dem_body_set makes `fixed`
-   never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids have no contact with
-   sieves, surfaces of revolution and profiles whose edges follow the rule of [MIL]
-   (DEM_EDGE_FRACTION). Polyhedra have none with such profiles, with sieves cut out as a disc, with
-   DEM_SIEVE_REDUCED and, under springs, with plates without thickness. dem.h refuses such a pair
-   when you add the second of the two.
+   never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids and polyhedra have
+   no contact with profiles whose edges follow the rule of [MIL] (DEM_EDGE_FRACTION), with sieves
+   cut out as a disc and with DEM_SIEVE_REDUCED. dem.h refuses such a pair when you add the second
+   of the two.
 
    --- 8. Walls and motions ---
 
@@ -1892,9 +1892,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 
 /* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
    orientation (any length but 0) from the frame in which the shape was given. It is an error if a
-   wall has no contact with this shape: sieves, surfaces of revolution and DEM_EDGE_FRACTION
-   profiles have none with ellipsoids; such profiles and some sieves (dem_sieve_kind) have none with
-   polyhedra. */
+   wall has no contact with this shape: DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind)
+   have none with ellipsoids and polyhedra. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:
@@ -2035,9 +2034,9 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, in
                                      const dem_real *positions,
                                      dem_real radius, dem_real share);
 
-/* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids with none.
-   Polyhedra have contact with infinite sieves except DEM_SIEVE_REDUCED; under DEM_RESPONSE_SPRINGS
-   plates need a thickness for it. */
+/* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra
+   with infinite sieves except DEM_SIEVE_REDUCED. Ellipsoids, and polyhedra on plates without
+   thickness by springs, touch facets (>>tessellate). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,               /* a square weave of round wires */
@@ -3587,6 +3586,7 @@ enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_S
 /* A contact point of a body and a wall as >>touch finds it: geometry, before any law is called. */
 typedef struct demi_touching {
     int32_t element;               /* of the wall; of facets: number of the face, edge or corner */
+    int32_t base;                  /* of facets: added to it in the end, see demi_view */
     dem_real overlap, share;       /* m; weight of its force (of facets: see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
     dem_vec3 shift;                /* m, from the body to its image that touches the wall */
@@ -3734,7 +3734,8 @@ typedef struct demi_domain {
        may return less than the gap);
      functions that find contacts with each kind above and with its own kind, in that order.
 
-   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_nears. A row:
+   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_tessellations. A
+   row:
      constant;
      corners of an element (0: elements have none);
      largest number of contact points of one candidate;
@@ -3754,7 +3755,8 @@ enum {
     DEMI_FLAT = 8,                 /* the half space beyond z = 0 */
     DEMI_CROSSED = 16,             /* has points of negative weight, as where the wires of a sieve
                                       cross: demi_kept_crossed */
-    DEMI_SMOOTH = 32               /* has no edges */
+    DEMI_SMOOTH = 32,              /* has no edges */
+    DEMI_ONLY_GAPS = 64            /* its function for polyhedra finds gaps, not pressure */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain with a sieve */
 enum { DEMI_FLATS = 6 };        /* separate contacts that a polyhedron may have with one wall */
@@ -3767,26 +3769,24 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
       (demi_solid_round_touch, demi_solid_round_touch, demi_polyhedra_touch)) \
     /* the last */
 #define DEMI_WALLS(X) \
-    X(PLANE,    0, 7, DEMI_FLAT | DEMI_SMOOTH, "plane", \
-      demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0) \
-    X(CYLINDER, 0, 7, DEMI_SMOOTH, "cylinder", \
-      demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
-      demi_cylinder_bend) \
-    X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
-      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), \
-      demi_profile_bend) \
-    X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", \
-      demi_facet_distance, (demi_segments_touch), 0) \
-    X(MESH,     3, 7, DEMI_FACETS, "mesh", \
-      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), \
-      demi_mesh_bend) \
-    X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
-      demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid, demi_grain_polyhedron), \
-      demi_grain_bend) \
-    X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", \
-      demi_sieve_near, (demi_sieve_spheres, 0, demi_sieve_polyhedron), demi_sieve_bend) \
-    X(REVOLVED, 0, DEMI_RING_MOST, DEMI_CROSSED, "surface of revolution", \
-      demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend) \
+    X(PLANE,    0, 7, DEMI_FLAT | DEMI_SMOOTH, "plane", demi_plane_near, \
+      (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0, 0) \
+    X(CYLINDER, 0, 7, DEMI_SMOOTH | DEMI_ONLY_GAPS, "cylinder", demi_cylinder_near, \
+      (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
+      demi_cylinder_bend, demi_cylinder_tessellate) \
+    X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", demi_facet_distance, \
+      (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), demi_profile_bend, 0) \
+    X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", demi_facet_distance, \
+      (demi_segments_touch), 0, 0) \
+    X(MESH,     3, 7, DEMI_FACETS, "mesh", demi_facet_distance, \
+      (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), demi_mesh_bend, 0) \
+    X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", demi_grain_near, \
+      (demi_elements_touch, demi_grain_ellipsoid, demi_grain_polyhedron), demi_grain_bend, 0) \
+    X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", demi_sieve_near, \
+      (demi_sieve_spheres, 0, demi_sieve_polyhedron), demi_sieve_bend, demi_sieve_tessellate) \
+    X(REVOLVED, 0, DEMI_RING_MOST, DEMI_CROSSED | DEMI_ONLY_GAPS, "surface of revolution", \
+      demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend, \
+      demi_revolved_tessellate) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* a list as one field of a row: (a, b) */
 /* True if entry k of such a list, given as text, names a function: false if it is 0 or missing. */
@@ -3796,16 +3796,17 @@ static int demi_listed(const char *list, int k) {
 }
 #define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
 enum { DEMI_SHAPES(DEMI_SHAPE_CONSTANT) DEMI_SHAPE_KINDS };
-#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_WALL_##KIND,
+#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESSELLATE) DEMI_WALL_##KIND,
 enum { DEMI_WALL_NONE = 0, DEMI_WALLS(DEMI_WALL_CONSTANT) DEMI_WALL_KINDS };
-/* touch: the functions of the row as text, see demi_listed. */
+/* touch, tessellate: the functions of the row as text, see demi_listed. Shapes without a function
+   of their own use the tessellation (>>tessellate). */
 typedef struct demi_wall_kind {
     int corners, most, traits;
-    const char *name, *touch;
+    const char *name, *touch, *tessellate;
 } demi_wall_kind;
-#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, NEAR, TOUCH, BEND) \
-    {CORNERS, MOST, TRAITS, NAME, #TOUCH},
-static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed", ""},
+#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, NEAR, TOUCH, BEND, TESSELLATE) \
+    {CORNERS, MOST, TRAITS, NAME, #TOUCH, #TESSELLATE},
+static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed", "", "0"},
     DEMI_WALLS(DEMI_WALL_KIND)};
 
 /* Responses: how contacts act on bodies (desc.response, in the order of dem_response). A row: name
@@ -3876,6 +3877,9 @@ typedef struct demi_wall {
                                       and corner */
     int lead;                      /* of a joined surface: the wall that it moves with */
     int joined;                    /* wall: 1 + index of its joined surface; 0: it is its own */
+    int scale;                     /* tessellation: 1 + the scale of the bodies that it is for, see
+                                      >>surfaces; else 0 */
+    dem_vec3 step[2];              /* m, tessellation: it repeats in its frame by these; 0: not */
     int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
@@ -4045,6 +4049,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int species_count;             /* DEMI_SPECIES + 1: more than that */
     demi_species species[DEMI_SPECIES];
     dem_real radius_min, radius_max;           /* m */
+    uint64_t scales;               /* bit k: tessellations for bodies of scale k exist */
 } demi_in_force;
 typedef struct demi_levels {       /* >>search */
     int count, wide;               /* levels in use, 0: one grid; radii differ so much that levels
@@ -4336,6 +4341,7 @@ struct dem_world {
     dem_real *wall_gap;            /* m, lower bound on the gap of grain and element when the list
                                       was built */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
+    int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */
@@ -8276,21 +8282,28 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
+/* True if a part touches a wall through a tessellation: if the wall's row has no function for the
+   two, or one that finds only gaps while springs need pressure. */
+static int demi_wall_faceted(const dem_world *w, const demi_wall *wall, int part) {
+    const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
+    const int gaps = kind->traits & DEMI_ONLY_GAPS ||
+        (wall->sieve.kind && !demi_sieve_wires(&wall->sieve) && !(wall->sieve.thickness > 0));
+    return kind->tessellate[0] != '0' &&
+        demi_listed(demi_wall_kinds[DEMI_WALL_MESH].touch, part) &&
+        (!demi_listed(kind->touch, part) ||
+         (part == DEMI_POLYHEDRON && gaps && demi_response_is(w, DEMI_PRESSING)));
+}
 /* Returns why a part cannot touch a wall, and the remedy; 0 if it can. */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
-    const dem_sieve_desc *s = &wall->sieve;
-    if (!demi_listed(demi_wall_kinds[wall->kind].touch, part))
+    if (!demi_listed(demi_wall_kinds[wall->kind].touch, part) && !demi_wall_faceted(w, wall, part))
         return "contacts between the two are not available; make bodies clusters of spheres, or "
                "the wall a mesh or a resolved profile";
-    if (part != DEMI_POLYHEDRON || wall->kind != DEMI_WALL_SIEVE) return 0;
-    if (s->kind == DEM_SIEVE_REDUCED)
+    if (part == DEMI_BALL) return 0;
+    if (wall->sieve.kind == DEM_SIEVE_REDUCED)
         return "reduced holes are only for spheres; use DEM_SIEVE_SQUARE";
-    if (s->radius > 0)
+    if (wall->sieve.radius > 0)
         return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
                "cylinder around it";
-    if (!demi_sieve_wires(s) && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
-        return "a sheet without thickness has no inside for springs to act on; give the sieve a "
-            "thickness, or use impulses";
     return 0;
 }
 /* Returns the first kind of part of a shape (null: a sphere) whose contacts with a wall are not
@@ -11684,6 +11697,232 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>tessellate
+   Curved walls and sieves as surfaces of facets, for bodies that have no closed form with them:
+   polyhedra with cylinders and surfaces of revolution by springs, ellipsoids with sieves and
+   surfaces of revolution. Other bodies keep their closed forms. The kind's function (TESSELLATE in
+   DEMI_WALLS) makes the facets, which stand still in the wall's frame and are used as those of any
+   mesh or profile (>>facets, >>touch, >>polyhedra-walls).
+
+   The distance of facets from the curve is at most 5e-4 times the power of two below the radius of
+   the body's bounding sphere. Each body's facets therefore depend on that body alone. Circles
+   become polygons of the same area, whose numbers of sides are 24 times a power of two. Where a
+   surface of revolution narrows, they have fewer.
+
+   A sieve without end is one cell, which repeats along two steps in its plane. Not tessellated:
+   reduced holes, which [ALK07] defines for spheres, and sieves cut from a disc.
+   --------------------------------------------------------------------------------------------- */
+
+/* A tessellation while it is made. Points and facets are appended; `failed` is set if memory ran
+   out. */
+typedef struct demi_form {
+    dem_world *w;
+    int per, points, facets, failed;           /* per: corners of a facet, 3 or 2 (>>layout) */
+    dem_real *x;                   /* points x 3, m, in the wall's frame */
+    int32_t *corner;               /* facets x per */
+    double chord;                  /* m, largest distance from curves */
+    dem_vec3 step[2];              /* m, in the wall's frame: the surface repeats; 0: it does not */
+} demi_form;
+typedef void (*demi_tessellate_fn)(const demi_wall *wall, demi_form *form);
+static int32_t demi_form_point(demi_form *f, double x, double y, double z) {
+    if (!demi_grow(f->w, DEMI_LOOSE, &f->x, sizeof(dem_real), 3*((size_t)f->points + 1))) {
+        f->failed = 1;
+        return 0;
+    }
+    demi_put(f->x + 3*f->points, demi_v((dem_real)x, (dem_real)y, (dem_real)z));
+    return f->points++;
+}
+/* Adds a triangle, or (per 2) the segment from a to b. */
+static void demi_form_facet(demi_form *f, int32_t a, int32_t b, int32_t c) {
+    const int32_t all[3] = {a, b, c};
+    if (f->failed || !demi_grow(f->w, DEMI_LOOSE, &f->corner, sizeof(int32_t),
+                                (size_t)f->per*((size_t)f->facets + 1))) f->failed = 1;
+    else memcpy(f->corner + f->per*f->facets++, all, (size_t)f->per*sizeof *all);
+}
+static void demi_form_quad(demi_form *f, int32_t a, int32_t b, int32_t c, int32_t d) {
+    demi_form_facet(f, a, b, c);
+    demi_form_facet(f, a, c, d);
+}
+static void demi_form_free(demi_form *f) {
+    demi_free(f->w, f->x);
+    demi_free(f->w, f->corner);
+}
+/* The number of sides of a circle of radius r. */
+enum { DEMI_FORM_LEAST = 24, DEMI_FORM_MOST = 12288 };
+static int demi_form_sides(const demi_form *f, double r) {
+    int n = DEMI_FORM_LEAST;
+    while (n < DEMI_FORM_MOST && DEMI_PI*DEMI_PI*r/2 > f->chord*n*n) n *= 2;
+    return n;
+}
+/* The corner radius of a polygon of n sides that has the area of a circle of radius r. */
+static double demi_form_radius(double r, int n) {
+    const double turn = 2*DEMI_PI/n;
+    return r*sqrt(turn/demi_sin(turn));
+}
+/* Adds a regular polygon of n points about (x, y) at height z. Returns the first. axis: 2 across z,
+   0 across x, 1 across y: z, x and y are then along, and across the axis in cyclic order. */
+static int32_t demi_form_ring(demi_form *f, int axis, int n, double r, double u, double v,
+                              double along) {
+    const double R = demi_form_radius(r, n);
+    const int32_t first = f->points;
+    int i;
+    for (i = 0; i < n; i++) {
+        double x[3];
+        x[axis] = along;
+        x[(axis + 1)%3] = u + R*demi_cos(2*DEMI_PI*i/n);
+        x[(axis + 2)%3] = v + R*demi_sin(2*DEMI_PI*i/n);
+        demi_form_point(f, x[0], x[1], x[2]);
+    }
+    return first;
+}
+/* Joins two rings: of n points from a, and of n, 2 n, n/2 or one (a point on the axis) from b. */
+static void demi_form_band(demi_form *f, int32_t a, int n, int32_t b, int m) {
+    int i;
+    if (m < n) { const int32_t c = a; a = b; b = c; i = n; n = m; m = i; }
+    for (i = 0; i < m && n == 1; i++) demi_form_facet(f, a, b + i, b + (i + 1)%m);
+    for (i = 0; i < n && n > 1; i++) {
+        const int32_t p = a + i, q = a + (i + 1)%n;
+        if (m == n) demi_form_quad(f, p, b + i, b + (i + 1)%n, q);
+        else {
+            demi_form_facet(f, p, b + 2*i, b + 2*i + 1);
+            demi_form_facet(f, p, b + 2*i + 1, q);
+            demi_form_facet(f, q, b + 2*i + 1, b + (2*i + 2)%m);
+        }
+    }
+}
+
+/* --- kinds of walls --- */
+
+static void demi_cylinder_tessellate(const demi_wall *wall, demi_form *f) {
+    const int n = demi_form_sides(f, (double)wall->radius);
+    int i;
+    demi_form_ring(f, 2, n, (double)wall->radius, 0, 0, 0);
+    for (i = 0; i < n; i++) demi_form_facet(f, i, (i + 1)%n, 0);
+}
+/* Adds the next ring of a surface of revolution and joins it to the one before, which begins at
+   *at and has *n corners (0: there is none). back: 1: it is the first ring again. */
+static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32_t *at, int *n) {
+    const int sides = r > 0 ? demi_form_sides(f, r) : 1, before = *n;
+    const int32_t from = *at;
+    *n = sides;
+    *at = back ? 0 : r > 0 ? demi_form_ring(f, 2, sides, r, 0, 0, z) : demi_form_point(f, 0, 0, z);
+    if (before) demi_form_band(f, from, before, *at, sides);
+}
+/* The rings of the wall, and more between them: where the radius changes by more than a factor of
+   four, so that the number of sides changes by two at most, and where facets would be more than 500
+   times as long as wide. */
+static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
+    const int last = wall->ring_count - 1;
+    const double least = DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
+    int32_t at = 0;
+    int k, n = 0;
+    demi_revolved_ring(f, (double)wall->ring_radius[0], (double)wall->ring_height[0], 0, &at, &n);
+    for (k = 1; k <= last; k++) {
+        const double a = (double)wall->ring_radius[k - 1], b = (double)wall->ring_radius[k];
+        const double g = (double)wall->ring_height[k - 1], h = (double)wall->ring_height[k];
+        const double big = DEMI_MAX(a, b), wide = 2*DEMI_PI*big/demi_form_sides(f, big);
+        const int closed = k == last && fabs(b - (double)wall->ring_radius[0]) +
+            fabs(h - (double)wall->ring_height[0]) < 1e-9*(double)wall->radius;
+        double t = 0, to;
+        for (; t < 1 && !f->failed; t = to) {
+            const double r = a + t*(b - a), next = b < a ? r/4 : DEMI_MAX(4*r, least);
+            to = DEMI_MIN(1, t + 500*wide/sqrt((b - a)*(b - a) + (h - g)*(h - g)));
+            if (b < a ? next > b && r > least : next < b) to = DEMI_MIN(to, (next - a)/(b - a));
+            if (to > 1 - 1e-9) to = 1;
+            demi_revolved_ring(f, to < 1 ? a + to*(b - a) : b, to < 1 ? g + to*(h - g) : h,
+                               closed && to >= 1, &at, &n);
+        }
+    }
+}
+
+/* --- sieves: one cell about a hole --- */
+
+/* A plate with a rectangular or round hole: both faces, with the cell's corners halfway between
+   holes, and the wall of the hole. A plate without thickness has one face. */
+static void demi_plate_tessellate(const dem_sieve_desc *s, demi_form *f) {
+    const double bar = (double)s->bar, half = (double)s->thickness/2;
+    const double b = (double)s->aperture/2;
+    const double a = s->kind == DEM_SIEVE_SLOTS ? (double)s->length/2 : b;
+    const int round = s->kind == DEM_SIEVE_ROUND, corners = round && s->staggered ? 6 : 4;
+    const double root3 = 1.7320508075688772;
+    const int n = round ? demi_form_sides(f, b) : 4, per = n/corners, layers = half > 0 ? 2 : 1;
+    int32_t ring[2], rim[2];
+    int i, k, layer;
+    for (layer = 0; layer < layers; layer++) {
+        const double z = layer ? -half : half;
+        rim[layer] = f->points;
+        for (i = 0; i < corners; i++) {         /* of the cell: halfway between holes */
+            const double at = DEMI_PI*(2*i + 1)/corners;
+            if (corners == 6)
+                demi_form_point(f, (2*b + bar)/root3*demi_cos(at),
+                                (2*b + bar)/root3*demi_sin(at), z);
+            else demi_form_point(f, (i == 0 || i == 3 ? 1 : -1)*(a + bar/2),
+                                 (i < 2 ? 1 : -1)*(b + bar/2), z);
+        }
+        ring[layer] = f->points;
+        if (round) demi_form_ring(f, 2, n, b, 0, 0, z);
+        for (i = 0; i < 4 && !round; i++)
+            demi_form_point(f, (i == 0 || i == 3 ? 1 : -1)*a, (i < 2 ? 1 : -1)*b, z);
+        for (i = 0; i < corners; i++) {
+            const int32_t p = rim[layer] + i, q = rim[layer] + (i + 1)%corners;
+            const int from = round ? i*per : i, to = (from + per)%n;
+            for (k = from; k < from + per && round; k++)
+                demi_form_facet(f, p, ring[layer] + k, ring[layer] + (k + 1)%n);
+            if (round) demi_form_facet(f, p, ring[layer] + to, q);
+            else demi_form_quad(f, p, ring[layer] + i, ring[layer] + to, q);
+        }
+    }
+    if (layers == 2) demi_form_band(f, ring[0], n, ring[1], n);
+    f->step[0] = demi_v((dem_real)(2*a + bar), 0, 0);
+    f->step[1] = corners == 6 ? demi_v((dem_real)(b + bar/2), (dem_real)((2*b + bar)*root3/2), 0)
+        : demi_v(0, (dem_real)(2*b + bar), 0);
+}
+/* One wire, bar or strip between endless slots along x (axis 0) or y (axis 1): a prism of n
+   corners, or the four of a strip, of two if it has no thickness. */
+static void demi_row_tessellate(const dem_sieve_desc *s, int axis, demi_form *f) {
+    const int wires = demi_sieve_wires(s), flat = !wires && !(s->thickness > 0);
+    const double pitch = (double)(s->aperture + s->bar), q = (double)s->bar/2;
+    const double z = !wires ? 0 : axis ? (double)s->lift/2 : -(double)s->lift/2;
+    const int n = wires ? demi_form_sides(f, q) : flat ? 2 : 4;
+    int32_t end[2];
+    int i, k;
+    for (k = 0; k < 2; k++) {
+        const double along = (k - 0.5)*pitch;
+        end[k] = f->points;
+        if (wires) demi_form_ring(f, axis, n, q, axis ? z : pitch/2, axis ? pitch/2 : z, along);
+        for (i = 0; i < n && !wires; i++)
+            demi_form_point(f, along, pitch/2 + (i == 0 || i == 3 ? q : -q),
+                            (i < 2 ? 1 : -1)*(double)s->thickness/2);
+    }
+    if (flat) demi_form_quad(f, end[0], end[0] + 1, end[1] + 1, end[1]);
+    else demi_form_band(f, end[0], n, end[1], n);
+    f->step[0] = demi_v((dem_real)pitch, 0, 0);
+    f->step[1] = demi_v(0, (dem_real)pitch, 0);
+}
+static void demi_sieve_tessellate(const demi_wall *wall, demi_form *f) {
+    const dem_sieve_desc *s = &wall->sieve;
+    const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
+    if (!demi_sieve_wires(s) && !endless) { demi_plate_tessellate(s, f); return; }
+    demi_row_tessellate(s, endless ? 0 : 1, f);
+    if (s->kind == DEM_SIEVE_WIRES) demi_row_tessellate(s, 0, f);
+}
+#define DEMI_WALL_FORM(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) TESS,
+static const demi_tessellate_fn demi_tessellations[] = {0, DEMI_WALLS(DEMI_WALL_FORM)};
+/* True if a wall has a tessellation. */
+static int demi_wall_tessellates(const demi_wall *wall) {
+    return demi_tessellations[wall->kind] && wall->sieve.kind != DEM_SIEVE_REDUCED &&
+        !(wall->sieve.kind && wall->sieve.radius > 0);
+}
+/* Tessellates a wall with chords of at most `chord`, m. The caller frees *f. */
+static void demi_form_begin(demi_form *f, dem_world *w, const demi_wall *wall, double chord) {
+    memset(f, 0, sizeof *f);
+    f->w = w;
+    f->per = wall->kind == DEMI_WALL_CYLINDER ? 2 : 3;
+    f->chord = chord;
+    demi_tessellations[wall->kind](wall, f);
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>surfaces
    One surface per rigid motion. Meshes that do not move relative to each other are joined into one
    surface (>>joins), and so are profiles: grains then do not feel how a scene was divided into
@@ -11694,7 +11933,9 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
    (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
    or more, and `whose` tells which wall a face, edge or corner belongs to: contacts act on that
    wall and use its material. Surfaces are made again when a wall is added, removed or moved
-   otherwise. This part owns w->surfaces and the weights of facets.
+   otherwise. Tessellations of curved walls (>>tessellate) follow the joined surfaces: one for each
+   scale of bodies that need it, which is the power of two below their radius.
+   This part owns w->surfaces and the weights of facets.
    --------------------------------------------------------------------------------------------- */
 /* The surface with this number: a wall, or a joined surface. */
 DEM_INLINE const demi_wall *demi_surface_of(const dem_world *w, int number) {
@@ -11707,7 +11948,8 @@ DEM_INLINE int demi_surface_number(const dem_world *w, int wall) {
 }
 /* The wall that feature `number` (a face, edge or corner) of a surface belongs to. */
 DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, int32_t number) {
-    return surface->whose ? surface->whose[number] : (int)(surface - w->walls);
+    return surface->scale ? surface->lead
+        : surface->whose ? surface->whose[number] : (int)(surface - w->walls);
 }
 
 /* Makes one surface of the facets: none coincide or cover each other, and none has corners of
@@ -11741,22 +11983,34 @@ static int demi_plane_again(const dem_world *w, int wall) {
     }
     return 0;
 }
-/* Writes the joined facets to a surface. Returns 0 if memory ran out. */
-static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
-    const demi_wall *lead = &w->walls[j->lead];
-    int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
-    int i, k, ok;
-    *s = *lead;
-    s->vertex_count = s->edge_count = s->border_count = s->cell_item_count = 0;
+/* Begins a surface that moves with wall `lead` and has its properties, but no facets. */
+static void demi_surface_begin(const dem_world *w, int lead, demi_wall *s) {
+    *s = w->walls[lead];
+    s->vertex_count = s->edge_count = s->border_count = s->cell_item_count = s->ring_count = 0;
     s->vertices = s->weight = s->planes = 0;
     s->corners = s->edges = s->sheet = s->whose = s->cell_start = s->cell_items = 0;
     s->owns = s->ends = 0;
     s->borders = 0;
     s->motion.table = 0;
     s->chain = DEMI_RUN;
-    s->lead = j->lead;
+    s->lead = lead;
     s->joined = 0;
     memset(s->cells, 0, sizeof s->cells);
+}
+/* Completes a surface whose vertices and corners are known, except for `whose` and weights. Returns
+   0 if memory ran out. */
+static int demi_surface_end(dem_world *w, demi_wall *s) {
+    if (!demi_facets_begin(w, s) || !demi_wall_sheets(w, s)) return 0;
+    s->number_count = s->element_count + s->edge_count + s->vertex_count;
+    demi_wall_bounds(s);
+    return demi_wall_index(w, s);
+}
+/* Writes the joined facets to a surface. Returns 0 if memory ran out. */
+static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
+    const demi_wall *lead = &w->walls[j->lead];
+    int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
+    int i, k, ok;
+    demi_surface_begin(w, j->lead, s);
     s->element_count = j->facets;
     s->vertices = (dem_real *)demi_hold(w, DEMI_RUN, (size_t)j->points*3, sizeof(dem_real));
     s->corners = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)(j->facets*j->per), sizeof(int32_t));
@@ -11773,9 +12027,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
             s->corners[j->per*i + k] = at[p];
         }
     demi_free(w, at);
-    ok = ok && demi_facets_begin(w, s) && demi_wall_sheets(w, s);
-    if (!ok) return 0;
-    s->number_count = s->element_count + s->edge_count + s->vertex_count;
+    if (!ok || !demi_surface_end(w, s)) return 0;
     s->whose = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)s->number_count, sizeof(int32_t));
     if (!s->whose) return 0;
     for (i = 0; i < s->element_count; i++) {
@@ -11786,8 +12038,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
             if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[5*i + 3];
         }
     }
-    demi_wall_bounds(s);
-    return demi_wall_index(w, s);
+    return 1;
 }
 
 /* --- weights --- */
@@ -11824,6 +12075,15 @@ static void demi_meets_add(const demi_wall *s, demi_meets_at *m, int e, const in
         if (per == 3) m->side[m->sides++] = demi_side_of(p[k], p[(k + 1)%3], e, k + 3*image);
     }
 }
+/* Sets *by, m, to the displacement of the n-th image (0 .. 26; 13 is the surface itself): periodic,
+   or a cell of a tessellation. Returns 0 if there is none. */
+static int demi_surface_shift(const dem_world *w, const demi_wall *s, int n, demi_d3 *by) {
+    const dem_vec3 to = demi_add(demi_scale(s->step[0], (dem_real)(n%3 - 1)),
+                                 demi_scale(s->step[1], (dem_real)(n/3%3 - 1)));
+    if (!(s->step[0].x > 0)) return demi_join_shift(w, s, n, by);
+    *by = demi_d3_of(demi_rotate(s->home.rotation, to));
+    return n/9 == 1 && n != 13;
+}
 /* Adds the images of facets that touch the surface. Returns 0 if memory ran out. */
 static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
     const int per = demi_wall_per(s), own = s->vertex_count;
@@ -11831,7 +12091,7 @@ static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
     for (pass = 0; pass < 2; pass++) {          /* count, then add */
         for (n = 0; n < 27; n++) {
             demi_d3 by;
-            if (!demi_join_shift(w, s, n, &by)) continue;
+            if (!demi_surface_shift(w, s, n, &by)) continue;
             for (e = 0; e < s->element_count; e++) {
                 int32_t at[3];
                 int touches = 0;
@@ -11886,7 +12146,7 @@ static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
    Returns 0 if memory ran out. */
 static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     const int per = demi_wall_per(s), all = s->element_count, own = s->vertex_count;
-    const int repeats = s->repeats[0] || s->repeats[1] || s->repeats[2];
+    const int repeats = s->repeats[0] || s->repeats[1] || s->repeats[2] || s->step[0].x > 0;
     dem_real *edge = s->weight + all, *corner = edge + s->edge_count;
     demi_meets_at m;
     int i, k, end, ok;
@@ -11947,6 +12207,109 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     return ok;
 }
 
+/* --- tessellations of curved walls --- */
+
+/* The scale of a body's radius, m: the power of two below it, as a bit of effects.scales. */
+static int demi_scale_bit(dem_real radius) {
+    int power;
+    frexp((double)radius, &power);
+    return DEMI_MAX(DEMI_MIN(power + 40, 63), 0);
+}
+/* True if body i needs the tessellation of a wall: one of its parts has no closed form with it. A
+   union with an ellipsoid then has facets for all its parts. */
+static int demi_needs_facets(const dem_world *w, const demi_wall *wall, int i) {
+    const demi_shape *shape = w->bodies.shaped ? demi_shape_of(w, i) : 0;
+    const int pieces = shape && shape->pieces ? shape->pieces : 1;
+    int k;
+    for (k = 0; k < pieces && shape; k++)
+        if (demi_wall_faceted(w, wall, shape->pieces ? w->shapes[shape->piece[k].shape].kind
+                              : shape->kind)) return 1;
+    return 0;
+}
+/* The number of the surface on which body i touches a wall. */
+static int demi_surface_for(const dem_world *w, int wall, int i) {
+    int j = demi_needs_facets(w, &w->walls[wall], i) ? 0 : w->surface_count;
+    const int scale = 1 + demi_scale_bit(w->bodies.pos[4*i + 3]);
+    while (j < w->surface_count && !(w->surfaces[j].scale == scale &&
+                                     w->surfaces[j].lead == wall)) j++;
+    return j < w->surface_count ? w->wall_count + j : demi_surface_number(w, wall);
+}
+/* `scale` (demi_wall) that body i needs of surface j, which is a wall, or of the wall that it
+   tessellates. A joined surface has 0. */
+static int demi_surface_scale(const dem_world *w, int j, int i) {
+    const demi_wall *s = demi_surface_of(w, j);
+    const demi_wall *wall = s->scale ? &w->walls[s->lead] : s;
+    return demi_needs_facets(w, wall, i) ? 1 + demi_scale_bit(w->bodies.pos[4*i + 3]) : 0;
+}
+/* The cell in column u and row v of a tessellation that repeats, and its displacement, m, in the
+   frame of the surface. Columns 65,536 apart have the same number: the one next to `at` counts. */
+static int32_t demi_cell_pack(double u, double v) {
+    const double a = u - 65536*floor(u/65536), b = v - 65536*floor(v/65536);
+    return (int32_t)((uint32_t)a << 16 | (uint32_t)b);
+}
+static dem_vec3 demi_cell_shift(const demi_wall *s, int32_t cell, dem_vec3 at) {
+    const double wide = (double)s->step[0].x, skew = (double)s->step[1].x;
+    double u = (uint32_t)cell >> 16, v = (uint32_t)cell & 0xffff;
+    v += 65536*floor(((double)at.y/(double)s->step[1].y - v)/65536 + 0.5);
+    u += 65536*floor((((double)at.x - v*skew)/wide - u)/65536 + 0.5);
+    return demi_v((dem_real)(u*wide + v*skew), (dem_real)(v*(double)s->step[1].y), 0);
+}
+/* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
+   scales. Returns 0 if memory ran out. */
+static int demi_tessellation_make(dem_world *w, int wall, int scale) {
+    demi_form f;
+    demi_wall *s;
+    int ok;
+    if (!DEMI_GROW(w, w->surfaces, (size_t)w->surface_count + 1)) return 0;
+    for (s = &w->surfaces[w->surface_count++]; s > w->surfaces && s[-1].scale &&
+         (s[-1].lead > wall || (s[-1].lead == wall && s[-1].scale > 1 + scale)); s--) s[0] = s[-1];
+    demi_surface_begin(w, wall, s);
+    s->scale = 1 + scale;
+    demi_form_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
+    s->kind = f.per == 3 ? DEMI_WALL_MESH : DEMI_WALL_PROFILE;
+    memcpy(s->step, f.step, sizeof s->step);
+    s->vertex_count = f.points;
+    s->element_count = f.facets;
+    s->vertices = (dem_real *)demi_hold(w, DEMI_RUN, (size_t)f.points*3, sizeof(dem_real));
+    s->corners = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)(f.facets*f.per), sizeof(int32_t));
+    ok = !f.failed && s->vertices && s->corners;
+    if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
+    if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
+    demi_form_free(&f);
+    return ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
+}
+/* Makes the tessellations for the scales in a set of bits. Returns 0 if memory ran out. */
+static int demi_tessellations_make(dem_world *w, uint64_t scales) {
+    int i, k, ok = 1;
+    for (i = 0; i < w->wall_count && scales; i++)
+        for (k = 0; k < 64 && ok; k++)
+            if (scales >> k & 1 && demi_wall_tessellates(&w->walls[i]))
+                ok = demi_tessellation_make(w, i, k);
+    return ok;
+}
+/* The bit of body i in effects.scales if it needs a tessellation that does not exist, else 0. */
+static uint64_t demi_scale_missing(const dem_world *w, int i) {
+    const uint64_t bit = UINT64_C(1) << demi_scale_bit(w->bodies.pos[4*i + 3]);
+    int j;
+    for (j = 0; j < w->wall_count && w->bodies.shaped && !(w->effects.scales & bit); j++)
+        if (demi_needs_facets(w, &w->walls[j], i)) return bit;
+    return 0;
+}
+/* Makes the tessellations that bodies need and that do not exist yet. Surfaces that exist do not
+   change, because slabs share them. Returns 0 if memory ran out. */
+static int demi_scales_take(dem_world *w) {
+    uint64_t more = 0;
+    int i;
+    for (i = 0; i < w->bodies.count && w->wall_count && w->bodies.shaped; i++)
+        more |= demi_scale_missing(w, i);
+    if (!more) return 1;
+    w->effects.scales |= more;
+    if (!w->facets_valid) return 1;             /* demi_surfaces_make makes all */
+    w->facets_valid = demi_tessellations_make(w, more);
+    demi_walls_repeat(w);
+    return w->facets_valid;
+}
+
 /* --- all surfaces --- */
 
 static void demi_surfaces_free(dem_world *w) {
@@ -11994,6 +12357,7 @@ static int demi_surfaces_make(dem_world *w) {
         if (!demi_faceted(&w->walls[i]) || w->walls[i].joined) continue;
         ok = demi_surface_make(w, i);
     }
+    ok = ok && demi_tessellations_make(w, w->effects.scales);
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;
@@ -12175,7 +12539,7 @@ static dem_real demi_grain_near(const demi_wall *wall, int element, dem_vec3 x, 
     *point = demi_at(wall->vertices + 3*element);
     return demi_point_near(demi_sub(*point, x), r + wall->radius, normal);
 }
-#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND) NEAR,
+#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) NEAR,
 static const demi_near_fn demi_nears[] = {0, DEMI_WALLS(DEMI_WALL_NEAR)};
 
 /* Distance, m, from a point to an element. If it is `enough` or more it need not be exact: a
@@ -12192,6 +12556,15 @@ static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 
         if (h*h >= enough*enough*demi_dot(n, n) && demi_dot(n, n) > 0) return enough;
     }
     return -demi_nears[wall->kind](wall, element, local, 0, &n, &p);
+}
+/* True if x, in the frame of a tessellation, is behind a wall that acts on one side. *normal: from
+   there into the wall. */
+static int demi_tessellation_beyond(const dem_world *w, const demi_wall *surface, dem_vec3 x,
+                                    dem_vec3 *normal) {
+    const demi_wall *wall = surface->scale ? &w->walls[surface->lead] : surface;
+    dem_vec3 p;
+    return surface->scale && demi_wall_is(wall, DEMI_SMOOTH) &&
+        demi_nears[wall->kind](wall, 0, x, 0, normal, &p) > 0;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -13079,9 +13452,9 @@ static void demi_domain_search(dem_world *w, int d) {
    --------------------------------------------------------------------------------------------- */
 
 /* Appends an element of a wall to the wall candidates of work group d. gap: m, between body and
-   element; shift: m, from the body to its image at the wall. */
+   element; shift: m, from the body to its image at the wall; cell: of a tessellation. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
-                            int element, dem_real gap, dem_vec3 shift) {
+                            int element, dem_real gap, dem_vec3 shift, int32_t cell) {
     int k = domain->walls;
     if (k >= w->wall_stride) { domain->overflow |= 4; return; }
     domain->walls++;
@@ -13091,6 +13464,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_element[k] = element;
     w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* allows for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
+    w->wall_cell[k] = cell;
 }
 /* Sorts the candidates of one body and wall, from entry `first` on, by element and removes
    duplicates, so that their order does not depend on the wall's cells. */
@@ -13119,30 +13493,29 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
     domain->walls = n;
 }
 /* Lists the elements of surface j (demi_surface_of) near body i, displaced by `shift` (m) to one of
-   its images. */
-static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
+   its images, which is at `at` in the frame of the surface, or of a cell of it. */
+static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift,
+                           dem_vec3 at, int32_t cell) {
     const demi_wall *wall = demi_surface_of(w, j);
     const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
-    dem_vec3 at = demi_unrotate(wall->pose.rotation,
-                              demi_sub(demi_add(demi_at(w->bodies.pos + 4*i), shift),
-                                                            wall->pose.position));
     dem_real away;
     int k, x, y, z, f[3], l[3];
     if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
     if (!wall->cell_start) {
         for (k = 0; k < wall->element_count; k++) {
             away = demi_wall_distance(wall, k, at, near_by);
-            if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r, shift);
+            if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r, shift, cell);
         }
     } else {
         demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
         for (z = f[2]; z <= l[2]; z++)
             for (y = f[1]; y <= l[1]; y++)
                 for (x = f[0]; x <= l[0]; x++) {
-                    const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
-                    for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
+                    const int32_t *box = wall->cell_start + x + wall->cells[0]*(y +
+                                                                               wall->cells[1]*z);
+                    for (k = box[0]; k < box[1]; k++) {
                         const int element = wall->cell_items[k];
                         const int32_t *e = w->wall_element + d*w->wall_stride;
                         int q = DEMI_MAX(first, domain->walls - 16);       /* few duplicates */
@@ -13150,7 +13523,8 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                         if (q < domain->walls) continue;
                         away = demi_wall_distance(wall, element, at, near_by);
                         if (away < near_by)
-                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift);
+                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift,
+                                            cell);
                     }
                 }
     }
@@ -13176,6 +13550,34 @@ static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 p
     *shift = demi_at(x);
     return !n;
 }
+/* Lists the elements of surface j near one image of body i: of all cells that are near. */
+static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, int j,
+                               dem_vec3 shift) {
+    const demi_wall *wall = demi_surface_of(w, j);
+    const dem_vec3 at = demi_unrotate(wall->pose.rotation, demi_sub(demi_add(demi_at(
+        w->bodies.pos + 4*i), shift), wall->pose.position)), *step = wall->step;
+    const double far = (double)(w->bodies.pos[4*i + 3] + demi_cover(w));
+    const dem_box *box = &wall->box;
+    double u, v, to_u, to_v;
+    dem_vec3 n;
+    if (demi_tessellation_beyond(w, wall, at, &n)) {
+        demi_wall_offer(w, domain, d, i, j, 0, -w->bodies.pos[4*i + 3], shift, 0);
+        return;
+    }
+    if (!(step[0].x > 0)) { demi_wall_look(w, domain, d, i, j, shift, at, 0); return; }
+    v = ceil(((double)(at.y - box->hi.y) - far)/(double)step[1].y);
+    to_v = ((double)(at.y - box->lo.y) + far)/(double)step[1].y;
+    for (; v <= to_v; v++) {
+        const double x = (double)at.x - v*(double)step[1].x;
+        u = ceil((x - (double)box->hi.x - far)/(double)step[0].x);
+        to_u = (x - (double)box->lo.x + far)/(double)step[0].x;
+        for (; u <= to_u; u++) {
+            const int32_t cell = demi_cell_pack(u, v);
+            demi_wall_look(w, domain, d, i, j, shift, demi_sub(at, demi_cell_shift(wall, cell, at)),
+                           cell);
+        }
+    }
+}
 /* Lists the elements of all surfaces near body i, unless it is fixed or a ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
@@ -13184,10 +13586,11 @@ static void demi_body_walls(dem_world *w, int d, int i) {
     for (j = 0; j < w->wall_count + w->surface_count; j++) {
         const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
-        if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered) continue;
+        if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered ||
+            demi_surface_scale(w, j, i) != wall->scale) continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
-            demi_wall_look(w, domain, d, i, j, shift);
+            demi_wall_look_all(w, domain, d, i, j, shift);
     }
 }
 /* Lists the wall candidates of a work group, body by body; those of a body and a wall are
@@ -13237,6 +13640,7 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
                    DEMI_GROW(w, w->wall_id, n) &&
                    DEMI_GROW(w, w->wall_shift, 3*n) &&
+                   DEMI_GROW(w, w->wall_cell, n) &&
                    DEMI_GROW(w, w->wall_gap, n) &&
                    DEMI_GROW(w, w->wall_element, n);
     if (ok) w->wall_stride = stride;
@@ -14151,7 +14555,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     int k, leading = 0;
     w->domains[last].end = i + 1;
     if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
-    if (count >= w->join_room) return 0;
+    if (count >= w->join_room || demi_scale_missing(w, i)) return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
         const int a = found[k], d = demi_domain_of(w, a);
@@ -14338,7 +14742,8 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after checks, which must not move bodies */
-    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, call);
+    if (!demi_scales_take(w) || (!w->facets_valid && !demi_surfaces_make(w)))
+        return demi_no_memory(w, call);
     demi_levels_choose(w);
     least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
         (double)demi_cover(w);
@@ -16291,6 +16696,30 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, con
     }
     return 1;
 }
+/* True if a side of a flat piece excludes the section of the body with its plane. all: heights of
+   the corners above the plane, m. The section is within a ball about the mean of the points at
+   which edges cross the plane. */
+static int demi_section_outside(const demi_solid *s, const double *all, const demi_half *sides,
+                                int side_count) {
+    demi_d3 x[3*DEM_POLYHEDRON_FACES], middle = demi_d(0, 0, 0);
+    double far2 = 0;
+    int f, i, count = 0;
+    for (f = 0; f < s->faces; f++)
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
+            if (a > b || (all[a] > 0) == (all[b] > 0)) continue;
+            x[count] = demi_d3_between(s->corner[a], s->corner[b], all[a]/(all[a] - all[b]));
+            middle = demi_d3_add(middle, x[count++]);
+        }
+    middle = demi_d3_over(middle, DEMI_MAX(count, 1));
+    for (i = 0; i < count; i++)
+        far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(x[i], middle)));
+    for (i = 0; i < side_count; i++) {
+        const double in = demi_d3_dot(sides[i].n, demi_d3_sub(middle, sides[i].o));
+        if (in < 0 && in*in > far2*demi_d3_square(sides[i].n)*(1 + 1e-9)) return 1;
+    }
+    return 0;
+}
 /* Adds S on a flat piece of a rigid wall: the part of the plane n.x = at (n unit, into the wall)
    that is within all half spaces `sides`. hole: null, or x, y and radius of a hole in it, across z.
    Without sides, demi_pressure_beyond handles a centre behind the plane. A piece with sides may be
@@ -16303,7 +16732,8 @@ static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const 
     int f, i, k, above = 0, count;
     if (centre > 0 && !side_count) { demi_pressure_beyond(a, n, s); return; }
     for (i = 0; i < a->corners; i++) above += (all[i] = demi_d3_dot(n, a->corner[i]) - at) > 0;
-    if (above == (centre > 0 ? a->corners : 0)) return;
+    if (above == (centre > 0 ? a->corners : 0) ||
+        demi_section_outside(a, all, sides, side_count)) return;
     for (f = 0; f < a->faces; f++) {
         for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++)
             level[k++] = all[demi_solid_number(a, f, i)];
@@ -16910,7 +17340,8 @@ DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
 /* The candidates of one body on one wall. In a periodic world several images of the body may be
-   near the wall; demi_view_next steps through them in list order. */
+   near the wall, and of a tessellation several cells; demi_view_next steps through them in list
+   order. */
 typedef struct demi_view {
     const dem_world *w;
     const demi_wall *wall;
@@ -16919,7 +17350,9 @@ typedef struct demi_view {
     dem_vec3 at;                   /* m, centre of the part of the body, in world axes */
     const int32_t *element;        /* of the candidates of this image; `count` of them */
     const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
+    const int32_t *cell;           /* their cells, of a tessellation that repeats */
     int count, left;               /* left: count, plus those of later images */
+    int32_t base;                  /* added to the numbers of elements: tells cells apart */
     int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
@@ -16935,6 +17368,8 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     v.element = w->wall_element + k;
     v.gap = w->wall_gap + k;
     v.from = w->wall_shift + 3*(size_t)k;
+    v.cell = w->wall_cell + k;
+    v.base = 0;
     v.count = v.several = 0;
     v.left = last - first;
     return v;
@@ -16944,15 +17379,21 @@ DEM_INLINE int demi_view_next(demi_view *v) {
     v->element += v->count;
     v->gap += v->count;
     v->from += 3*v->count;
+    v->cell += v->count;
     v->left -= v->count;
     v->count = v->left;
     if (!v->left) return 0;
-    if (v->w->repeating)
-        for (v->count = 1; v->count < v->left &&
+    if (v->w->repeating || v->wall->step[0].x > 0)
+        for (v->count = 1; v->count < v->left && v->cell[0] == v->cell[v->count] &&
              !memcmp(v->from, v->from + 3*v->count, 3*sizeof *v->from); v->count++) continue;
     v->shift = demi_at(v->from);
     v->x = demi_unrotate(v->wall->pose.rotation,
                          demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
+    if (v->wall->step[0].x > 0) {
+        v->base = (int32_t)((uint32_t)*v->cell%(uint32_t)(INT32_MAX/v->wall->number_count))*
+            v->wall->number_count;
+        v->x = demi_sub(v->x, demi_cell_shift(v->wall, *v->cell, v->x));
+    }
     return 1;
 }
 /* Prepares the room `at` for the contact points of one body and one wall. */
@@ -16998,7 +17439,7 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
         }
         if (reached == 1 && wall->lone) {
             demi_facet_alone(wall, v.element[one], v.x, within, &p);
-            if (p.count > from) p.at[from].shift = v.shift;
+            if (p.count > from) { p.at[from].shift = v.shift; p.at[from].base = v.base; }
             continue;
         }
         for (q = one; q < v.count; q++)         /* spheres have specialised code */
@@ -17012,14 +17453,14 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
             demi_places_rings(wall, v.element, v.count, v.x, part, within,
                               demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
                               v.w->touching_links + v.w->domains[v.d].touching_first, &p);
-        for (q = from; q < p.count; q++) p.at[q].shift = v.shift;
+        for (q = from; q < p.count; q++) { p.at[q].shift = v.shift; p.at[q].base = v.base; }
     }
     if (p.count > 1 || (p.count && p.at->share < 1))
         demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;
         dem_vec3 to = t->point, n = t->point;
-        t->element %= numbers;
+        t->element = t->element%numbers + t->base;
         if (part) {
             const dem_vec3 a = part->axes;
             to = dem_quat_rotate(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
@@ -17438,7 +17879,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
         else if (upright) b->axis = demi_v(0, 0, 1);
     }
 }
-#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
+#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 /* Sets c->bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
    point: of the wall's surface, for the image of the body that touches it. */
@@ -17484,7 +17925,7 @@ typedef struct demi_flats {
 } demi_flats;
 static void demi_flats_begin(demi_flats *f, const demi_view *v) {
     f->count = 0;
-    f->whose = v->wall->whose;
+    f->whose = v->wall->scale ? 0 : v->wall->whose;
 }
 /* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
@@ -17738,6 +18179,17 @@ static int demi_facet_under(const demi_solid *s, const demi_solid *f, double ran
     out->normal = demi_d3_scale(up, -1);
     return demi_spots_take(out, x, gap, count, range, up);
 }
+/* False if all corners of a body about x are at least `range` (m) from the plane of an element, on
+   the side of x. */
+static int demi_facet_in_reach(const demi_wall *wall, int element, dem_vec3 x, const demi_solid *s,
+                               double range) {
+    const demi_d3 n = demi_d3_of(demi_at(wall->planes + 4*element));
+    const double off = demi_d3_dot(n, demi_d3_of(x)) - (double)wall->planes[4*element + 3];
+    const double way = off < 0 ? 1 : -1;
+    const int far = demi_solid_far(s, demi_d3_scale(n, way));
+    return !(-way*off - demi_d3_dot(demi_d3_scale(n, way), s->corner[far]) > range +
+             (double)wall->plane_slack);
+}
 /* Adds the gaps of one facet. start: all facets nearby; v: those of this image. If the body is
    slightly inside, beside an edge at which the surface continues, the shortest separation would
    lead across that edge into the facet beyond. The facet is then treated as infinite. */
@@ -17749,7 +18201,8 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
     demi_spots spots;
     dem_vec3 y[3], own[3];
     int i, k, owns = 0, has[3] = {0, 0, 0};
-    if (!demi_facet_solid(wall, element, v->x, reach, &f) ||
+    if (!demi_facet_in_reach(wall, element, v->x, s, gaps->range) ||
+        !demi_facet_solid(wall, element, v->x, reach, &f) ||
         !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
     if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
@@ -17766,7 +18219,7 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
             (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
     }
     for (i = 0; i < spots.count; i++)
-        demi_gaps_add(gaps, element, spots.normal, spots.x[i], spots.gap[i]);
+        demi_gaps_add(gaps, element + v->base, spots.normal, spots.x[i], spots.gap[i]);
 }
 /* Writes the contact points of all groups: with impulses the four of each direction that matter;
    for a law with a range the nearest one of each direction without pressure, four times. pressed:
@@ -17873,6 +18326,12 @@ static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int elem
     const int i = demi_sheets_which(s, wall, element, image);
     if (i < s->count) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
     return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
+}
+/* True if the plane of an element is farther from x than `within`, m. */
+DEM_INLINE int demi_element_far(const demi_wall *wall, int element, dem_vec3 x, dem_real within) {
+    const dem_real *plane = wall->planes + 4*element;
+    return wall->planes &&
+        DEMI_ABS(demi_dot(demi_at(plane), x) - plane[3]) > within + wall->plane_slack;
 }
 /* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
    normal. */
@@ -17991,9 +18450,7 @@ static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats
     int i, k, count, ends, beyond, image = 0;
     for (; demi_view_next(&v); image++) for (i = 0; i < v.count; i++) {
         const int element = v.element[i], way = demi_sheet_turn(t, &v, i, image);
-        const dem_real *plane = t->wall->planes + 4*element;
-        const dem_real off = demi_dot(demi_at(plane), v.x) - plane[3];
-        if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
+        if (!way || demi_element_far(t->wall, element, v.x, t->within)) continue;
         count = demi_facet_sides(t->wall, element, v.x, way, &n, &at, sides);
         if (!count) continue;
         flats->now = v.shift;
@@ -18001,11 +18458,11 @@ static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats
         beyond = demi_d3_dot(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
         if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
-        if (beyond) demi_flats_add(flats, element, &press);
+        if (beyond) demi_flats_add(flats, element + v.base, &press);
         for (k = 0; k < count; k++) {
             if (!(ends >> k & 1) || !(beyond || demi_curtain_bends(t, 3*element + k, n))) continue;
             demi_sheet_curtain(t, 3*element + k, sides, n, s, &press);
-            demi_flats_add(flats, element, &press);
+            demi_flats_add(flats, element + v.base, &press);
         }
     }
 }
@@ -18042,6 +18499,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
     demi_sheets sheets;
     demi_sheet sheet;
     demi_solid s;
+    dem_vec3 n;
     int k, way, image;
     demi_flats_begin(&flats, start);
     gaps.range = (double)demi_range(start->w, part->radius);
@@ -18052,19 +18510,29 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (v = *start, image = 0; wall->sheet && pressing && demi_view_next(&v); image++)
         for (k = 0; k < v.count; k++)
-            if (!(v.gap[k] > v.gone))
+            if (!(v.gap[k] > v.gone) && !demi_element_far(wall, v.element[k], v.x, sheet.within))
                 demi_sheets_add(&sheets, wall, v.element[k], image, v.x, (double)sheet.within);
     demi_sheets_press(&sheets, &sheet, &s, &flats);
+    for (v = *start; pressing && wall->scale && demi_view_next(&v);)
+        if (demi_tessellation_beyond(start->w, wall, v.x, &n)) {
+            memset(&press, 0, sizeof press);
+            demi_pressure_beyond(&s, demi_d3_of(n), &press);
+            flats.count = 0;
+            flats.now = v.shift;
+            demi_flats_add(&flats, v.element[0], &press);
+            return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
+        }
     for (v = *start, image = 0; demi_view_next(&v); image++) for (k = 0; k < v.count; k++) {
         const int32_t element = v.element[k];
         const int which = !pressing || !wall->sheet ? sheets.count
             : demi_sheets_which(&sheets, wall, element, image);
-        if (v.gap[k] > v.gone) continue;
+        if (v.gap[k] > v.gone ||
+            demi_element_far(wall, element, v.x, sheet.within + (dem_real)gaps.range)) continue;
         flats.now = gaps.now = v.shift;
         if (pressing && (which == sheets.count || !sheets.ends[which])) {
             way = wall->sheet ? demi_sheets_way(&sheets, wall, element, image, v.x) : 1;
             demi_solid_on_element(wall, element, &s, v.x, way, &press);
-            demi_flats_add(&flats, element, &press);
+            demi_flats_add(&flats, element + v.base, &press);
         }
         if (!(gaps.range > 0)) continue;
         if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
@@ -18109,12 +18577,15 @@ static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
 
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-round
-   Contacts of polyhedra with cylinders and surfaces of revolution, piece by piece. With springs,
-   the pressure is integrated along each line (generator) of a piece and summed over angles, in
-   intervals where the integrand is smooth; they are bounded by edges, pyramids and faces that cross
-   the piece or the rings at its ends. With gaps, the contact points are corners if the piece curves
-   around the body, points of the plane along the nearest line if it curves away, and points of the
-   rings at its ends.
+   Polyhedra and curved pieces of walls in closed form. With springs, the pressure on wires and on
+   the walls of round holes (>>polyhedra-sieves) is integrated along each line (generator) of a
+   piece and summed over angles, in intervals where the integrand is smooth; they are bounded by
+   edges, pyramids and faces that cross the piece or the rings at its ends. (Facets take five times
+   as long there. On cylinders and surfaces of revolution they take half the time: >>tessellate.)
+
+   With impulses, the contact points are corners if a piece curves around the body, points of the
+   plane along the nearest line if it curves away, and points of the rings at its ends. (Facets take
+   four to six times as long.)
    --------------------------------------------------------------------------------------------- */
 
 /* A piece of a surface of revolution about z: its lines run from radius a to b and height g to h,
@@ -18253,35 +18724,6 @@ static double demi_rings_side(const demi_wall *wall, demi_d3 x) {
         side = over > 0 ? 1 : -1;
     }
     return side;
-}
-/* True if a surface of revolution ends at its first ring (end 0) or last ring (1), near a body of
-   this radius about x. It does not end on its axis, nor where it closes. */
-static int demi_rings_end(const demi_wall *wall, int end, demi_d3 x, double radius) {
-    const int ring = end ? wall->ring_count - 1 : 0, other = end ? 0 : wall->ring_count - 1;
-    const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
-    const double off = demi_off_axis(x) - r, up = x.z - z;
-    return r > 0 && off*off + up*up < radius*radius &&
-        !(fabs((double)wall->ring_radius[other] - r) + fabs((double)wall->ring_height[other] - z) <
-          1e-9*r);
-}
-/* The curtain there, as at the border of a sheet: from the ring along the normal of its piece, seen
-   from this side, farther than a body of this radius reaches, but not across the axis. */
-static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double radius,
-                                         double side) {
-    const int i = end ? wall->ring_count - 2 : 0, ring = end ? i + 1 : 0;
-    const double e = (double)(wall->ring_radius[i + 1] - wall->ring_radius[i]);
-    const double f = (double)(wall->ring_height[i + 1] - wall->ring_height[i]);
-    const double size = sqrt(e*e + f*f), out = side*f/size, up = -side*e/size;
-    double far = 2.1*radius;
-    demi_generator l;
-    l.a = (double)wall->ring_radius[ring];
-    l.g = (double)wall->ring_height[ring];
-    if (l.a + far*out < 0) far = -l.a/out;
-    l.b = DEMI_MAX(l.a + far*out, 0);
-    l.h = l.g + far*up;
-    l.side = end ? side : -side;
-    l.open[0] = l.open[1] = 0;
-    return l;
 }
 /* True if a body of this radius about x reaches the piece. */
 static int demi_generator_near(const demi_generator *l, demi_d3 x, double radius) {
@@ -18584,69 +19026,34 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
         demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, gaps);
     }
 }
-/* Adds all of a cylinder, or of a surface of revolution seen from one side, with the curtains at
-   its ends (bits). */
-static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec3 x,
-                             dem_real radius, double side, int ends, demi_flats *flats) {
-    const int round = wall->kind == DEMI_WALL_CYLINDER, pieces = round ? 1 : wall->ring_count - 1;
-    const demi_d3 x0 = demi_d3_of(x);
-    int i;
-    for (i = 0; i < pieces; i++) {
-        const demi_generator l = demi_generator_of(wall, i, x, radius, side);
-        if (round || demi_generator_near(&l, x0, (double)radius))
-            demi_solid_on_generator(s, &l, x0, round, i, flats);
-    }
-    for (i = 0; i < 2; i++) {
-        demi_generator l;
-        if (!(ends >> i & 1)) continue;
-        l = demi_rings_curtain(wall, i, (double)radius, side);
-        demi_solid_on_generator(s, &l, x0, 0, i ? 2*pieces : pieces, flats);
-    }
-}
 /* A polyhedron and a cylinder or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
                                  demi_touching *out) {
     demi_view v = *start;
     const demi_wall *wall = v.wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
-    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
-    const double range = (double)demi_range(v.w, part->radius);
-    double side;
-    demi_flats flats, seen[2];
+    const int tube = wall->kind == DEMI_WALL_CYLINDER, pieces = tube ? 1 : wall->ring_count - 1;
+    const double radius = (double)part->radius;
     demi_gaps gaps;
     demi_solid s;
-    int i, ends, count = 0;
-    gaps.range = range;
+    int i, count = 0;
+    gaps.range = (double)demi_range(v.w, part->radius);
     gaps.flat = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     while (demi_view_next(&v)) {
-        const dem_vec3 x = v.x;
-        const demi_d3 x0 = demi_d3_of(x);
-        demi_flats_begin(&flats, &v);
+        const demi_d3 x0 = demi_d3_of(v.x);
+        const double side = demi_rings_side(wall, x0);
         gaps.count = 0;
-        flats.now = gaps.now = v.shift;
+        gaps.now = v.shift;
         if (*v.gap > v.gone) continue;
-        side = demi_rings_side(wall, x0);
-        for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            ends |= demi_rings_end(wall, i, x0, (double)part->radius) << i;
-        if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
-        for (i = 0; i < 2 && pressing && ends; i++) {
-            demi_flats_begin(&seen[i], &v);
-            seen[i].now = v.shift;
-            if (!i || seen[0].count)
-                demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
-        }
-        if (pressing && ends) demi_flats_sides(seen, &flats);
-        for (i = 0; i < pieces && range > 0; i++) {
-            const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
-            if (wall->kind == DEMI_WALL_CYLINDER ||      /* also if deep inside */
-                demi_generator_near(&l, x0, (double)part->radius + range))
+        for (i = 0; i < pieces; i++) {
+            const demi_generator l = demi_generator_of(wall, i, v.x, part->radius, side);
+            if (tube || demi_generator_near(&l, x0, radius + gaps.range))  /* also if deep inside */
                 demi_generator_gaps(&s, &l, x0, i, &gaps);
         }
-        for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            demi_ring_gaps(wall, i, pieces + i, &s, x0, (double)part->radius, &gaps);
-        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
+        for (i = 0; i <= pieces && !tube; i++)
+            demi_ring_gaps(wall, i, pieces + i, &s, x0, radius, &gaps);
+        count += demi_gaps_places(&v, &gaps, wall->pose.rotation, part, 0, out + count);
     }
     return count;
 }
@@ -18660,10 +19067,10 @@ static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
 
    With gaps, a wire is a line with a radius. A corner of the body belongs to the face, or wall of a
    hole, that it is above or nearest to; rims of holes have the points of the body that lie on them.
-   Where wires cross, the volume that they share counts twice. Polyhedra have no contacts with
-   reduced holes or sieves cut out as a disc, and with springs none with sheets without thickness,
-   which have no inside: see demi_wall_why in >>bodies. At the end, the table of functions by kinds
-   of walls and parts.
+   Where wires cross, the volume that they share counts twice. Springs act on sheets without
+   thickness through tessellations. Polyhedra have no contacts with reduced holes or sieves cut out
+   as a disc: see demi_wall_why in >>bodies. At the end, the table of functions by kinds of walls
+   and parts.
    --------------------------------------------------------------------------------------------- */
 
 /* The holes of a plate: half sizes along x and y, and periods. px 0: infinite along x. */
@@ -19018,7 +19425,7 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 }
 
 /* The functions by kind of wall and kind of part. */
-#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
+#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 
 /* ---------------------------------------------------------------------------------------------
@@ -19304,6 +19711,10 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
                 normal within about 18 degrees, that no earlier new contact continues
        SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
+/* The number of the surface that contact c is with. */
+static int demi_kept_surface(const dem_world *w, const demi_kept *c) {
+    return demi_surface_for(w, c->wall, c->a);
+}
 /* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
    DEMI_FAR_OFF if it may not be continued. The criterion is the cosine between the normals. If
    several are nearly equal (within some 3 degrees), contacts that nothing continues yet come first,
@@ -19314,8 +19725,8 @@ enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
 static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
                                const demi_kept *fresh, int freshs, const demi_kept *c) {
     const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    const demi_wall *wall = &w->walls[c->wall];
-    const int crossed = demi_wall_is(wall, DEMI_CROSSED), faceted = demi_faceted(wall);
+    const demi_wall *wall = &w->walls[c->wall], *s = demi_surface_of(w, demi_kept_surface(w, c));
+    const int crossed = demi_wall_is(s, DEMI_CROSSED), faceted = demi_faceted(s);
     const int alike = (o->weight < 0) == (c->share < 0);
     int j, taken = 0;
     if (w->walls[o->wall].group != wall->group || ((crossed || !(c->share < 0)) && !alike))
@@ -19920,7 +20331,8 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
     const int first = (int)(old - demi_kept_of(w, d));
     int e, i;
     for (e = 0; e < olds; e++) {
-        const demi_wall *wall = old[e].b < 0 ? &w->walls[old[e].wall] : 0;
+        const demi_wall *wall = old[e].b >= 0 ? 0
+            : demi_surface_of(w, demi_kept_surface(w, &old[e]));
         dem_real nearest = DEM_R(0.95);
         demi_kept *heir = 0;
         if (!wall || !(old[e].grip > 0) ||
@@ -19944,7 +20356,7 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
     const demi_wall *wall = demi_surface_of(w, surface);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
     int k;
-    if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH)) return 0;
+    if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH) || wall->step[0].x > 0) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
         const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
         if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
@@ -19956,9 +20368,10 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
 /* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
    of polyhedra, of which a facet may have several. */
 static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
-    const demi_wall *wall = demi_surface_of(w, demi_surface_number(w, c->wall));
-    return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
-        DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
+    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+    const int32_t element = wall->scale ? c->element%wall->number_count : c->element;
+    return c->corners && demi_faceted(wall) && element < wall->element_count &&
+        DEMI_ABS(demi_dot(demi_at(wall->planes + 4*element),
                           demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
 }
 /* True if several surfaces are near a body and one of them may have edges. wall: the surfaces of
@@ -19978,11 +20391,11 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
-        const int own = demi_surface_number(w, c[i].wall);
+        const int own = demi_kept_surface(w, &c[i]);
         int covered = 0;
         if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
         for (k = walled; k < all && !covered; k++) {
-            const int other = demi_surface_number(w, c[k].wall);
+            const int other = demi_kept_surface(w, &c[k]);
             if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
             covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
                 (k < i || demi_kept_flush(w, &c[k]) ||
@@ -30887,7 +31300,7 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 16 };
+enum { DEMI_CHECKPOINT_VERSION = 17 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -31124,6 +31537,7 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
         demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride,
                    3*walls*sizeof(dem_real));
+        demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
 /* Visits persistent contacts, with or without a list, and the contact history of spheres that is

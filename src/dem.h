@@ -41,6 +41,7 @@
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
        >>joins             facets of walls that move together: doubles, covers, dividing
        >>coarsen           facets in one plane merged to fewer
+       >>tessellate        curved walls and sieves as surfaces of facets
        >>surfaces          one surface per rigid motion: weights of its edges and corners
        >>distances         distance of a point from an element of a wall
      search/ - which bodies may touch: from candidates to the pruned neighbour list
@@ -55,7 +56,7 @@
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
-       >>polyhedra-round   contacts of polyhedra with cylinders and surfaces of revolution
+       >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
        >>meets             contacts of two bodies, by their shapes
        >>kept              contacts other than sphere on sphere: persistent contacts
@@ -187,6 +188,7 @@
 #include "surface/walls.h"
 #include "surface/joins.h"
 #include "surface/coarsen.h"
+#include "surface/tessellate.h"
 #include "surface/surfaces.h"
 #include "surface/distances.h"
 #include "search/search.h"

@@ -221,11 +221,10 @@
 
    Shapes are ellipsoids, clusters of spheres, convex polyhedra (from points or a mesh), unions of
    polyhedra or ellipsoids, and in planar worlds polygons. A body that dem_body_set makes `fixed`
-   never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids have no contact with
-   sieves, surfaces of revolution and profiles whose edges follow the rule of [MIL]
-   (DEM_EDGE_FRACTION). Polyhedra have none with such profiles, with sieves cut out as a disc, with
-   DEM_SIEVE_REDUCED and, under springs, with plates without thickness. dem.h refuses such a pair
-   when you add the second of the two.
+   never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids and polyhedra have
+   no contact with profiles whose edges follow the rule of [MIL] (DEM_EDGE_FRACTION), with sieves
+   cut out as a disc and with DEM_SIEVE_REDUCED. dem.h refuses such a pair when you add the second
+   of the two.
 
    --- 8. Walls and motions ---
 

@@ -510,9 +510,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 
 /* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
    orientation (any length but 0) from the frame in which the shape was given. It is an error if a
-   wall has no contact with this shape: sieves, surfaces of revolution and DEM_EDGE_FRACTION
-   profiles have none with ellipsoids; such profiles and some sieves (dem_sieve_kind) have none with
-   polyhedra. */
+   wall has no contact with this shape: DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind)
+   have none with ellipsoids and polyhedra. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:
@@ -653,9 +652,9 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, in
                                      const dem_real *positions,
                                      dem_real radius, dem_real share);
 
-/* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids with none.
-   Polyhedra have contact with infinite sieves except DEM_SIEVE_REDUCED; under DEM_RESPONSE_SPRINGS
-   plates need a thickness for it. */
+/* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra
+   with infinite sieves except DEM_SIEVE_REDUCED. Ellipsoids, and polyhedra on plates without
+   thickness by springs, touch facets (>>tessellate). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,               /* a square weave of round wires */

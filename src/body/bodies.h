@@ -384,21 +384,28 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
+/* True if a part touches a wall through a tessellation: if the wall's row has no function for the
+   two, or one that finds only gaps while springs need pressure. */
+static int demi_wall_faceted(const dem_world *w, const demi_wall *wall, int part) {
+    const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
+    const int gaps = kind->traits & DEMI_ONLY_GAPS ||
+        (wall->sieve.kind && !demi_sieve_wires(&wall->sieve) && !(wall->sieve.thickness > 0));
+    return kind->tessellate[0] != '0' &&
+        demi_listed(demi_wall_kinds[DEMI_WALL_MESH].touch, part) &&
+        (!demi_listed(kind->touch, part) ||
+         (part == DEMI_POLYHEDRON && gaps && demi_response_is(w, DEMI_PRESSING)));
+}
 /* Returns why a part cannot touch a wall, and the remedy; 0 if it can. */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
-    const dem_sieve_desc *s = &wall->sieve;
-    if (!demi_listed(demi_wall_kinds[wall->kind].touch, part))
+    if (!demi_listed(demi_wall_kinds[wall->kind].touch, part) && !demi_wall_faceted(w, wall, part))
         return "contacts between the two are not available; make bodies clusters of spheres, or "
                "the wall a mesh or a resolved profile";
-    if (part != DEMI_POLYHEDRON || wall->kind != DEMI_WALL_SIEVE) return 0;
-    if (s->kind == DEM_SIEVE_REDUCED)
+    if (part == DEMI_BALL) return 0;
+    if (wall->sieve.kind == DEM_SIEVE_REDUCED)
         return "reduced holes are only for spheres; use DEM_SIEVE_SQUARE";
-    if (s->radius > 0)
+    if (wall->sieve.radius > 0)
         return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
                "cylinder around it";
-    if (!demi_sieve_wires(s) && !(s->thickness > 0) && demi_response_is(w, DEMI_PRESSING))
-        return "a sheet without thickness has no inside for springs to act on; give the sieve a "
-            "thickness, or use impulses";
     return 0;
 }
 /* Returns the first kind of part of a shape (null: a sphere) whose contacts with a wall are not

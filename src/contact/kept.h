@@ -63,6 +63,10 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
                 normal within about 18 degrees, that no earlier new contact continues
        SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
+/* The number of the surface that contact c is with. */
+static int demi_kept_surface(const dem_world *w, const demi_kept *c) {
+    return demi_surface_for(w, c->wall, c->a);
+}
 /* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
    DEMI_FAR_OFF if it may not be continued. The criterion is the cosine between the normals. If
    several are nearly equal (within some 3 degrees), contacts that nothing continues yet come first,
@@ -73,8 +77,8 @@ enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
 static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
                                const demi_kept *fresh, int freshs, const demi_kept *c) {
     const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    const demi_wall *wall = &w->walls[c->wall];
-    const int crossed = demi_wall_is(wall, DEMI_CROSSED), faceted = demi_faceted(wall);
+    const demi_wall *wall = &w->walls[c->wall], *s = demi_surface_of(w, demi_kept_surface(w, c));
+    const int crossed = demi_wall_is(s, DEMI_CROSSED), faceted = demi_faceted(s);
     const int alike = (o->weight < 0) == (c->share < 0);
     int j, taken = 0;
     if (w->walls[o->wall].group != wall->group || ((crossed || !(c->share < 0)) && !alike))
@@ -679,7 +683,8 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
     const int first = (int)(old - demi_kept_of(w, d));
     int e, i;
     for (e = 0; e < olds; e++) {
-        const demi_wall *wall = old[e].b < 0 ? &w->walls[old[e].wall] : 0;
+        const demi_wall *wall = old[e].b >= 0 ? 0
+            : demi_surface_of(w, demi_kept_surface(w, &old[e]));
         dem_real nearest = DEM_R(0.95);
         demi_kept *heir = 0;
         if (!wall || !(old[e].grip > 0) ||
@@ -703,7 +708,7 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
     const demi_wall *wall = demi_surface_of(w, surface);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
     int k;
-    if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH)) return 0;
+    if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH) || wall->step[0].x > 0) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
         const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
         if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
@@ -715,9 +720,10 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
 /* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
    of polyhedra, of which a facet may have several. */
 static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
-    const demi_wall *wall = demi_surface_of(w, demi_surface_number(w, c->wall));
-    return c->corners && demi_faceted(wall) && c->element < wall->element_count &&
-        DEMI_ABS(demi_dot(demi_at(wall->planes + 4*c->element),
+    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+    const int32_t element = wall->scale ? c->element%wall->number_count : c->element;
+    return c->corners && demi_faceted(wall) && element < wall->element_count &&
+        DEMI_ABS(demi_dot(demi_at(wall->planes + 4*element),
                           demi_unrotate(wall->pose.rotation, c->normal))) > DEM_R(DEMI_FLUSH);
 }
 /* True if several surfaces are near a body and one of them may have edges. wall: the surfaces of
@@ -737,11 +743,11 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
-        const int own = demi_surface_number(w, c[i].wall);
+        const int own = demi_kept_surface(w, &c[i]);
         int covered = 0;
         if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
         for (k = walled; k < all && !covered; k++) {
-            const int other = demi_surface_number(w, c[k].wall);
+            const int other = demi_kept_surface(w, &c[k]);
             if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
             covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
                 (k < i || demi_kept_flush(w, &c[k]) ||

@@ -11,7 +11,8 @@ DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
 /* The candidates of one body on one wall. In a periodic world several images of the body may be
-   near the wall; demi_view_next steps through them in list order. */
+   near the wall, and of a tessellation several cells; demi_view_next steps through them in list
+   order. */
 typedef struct demi_view {
     const dem_world *w;
     const demi_wall *wall;
@@ -20,7 +21,9 @@ typedef struct demi_view {
     dem_vec3 at;                   /* m, centre of the part of the body, in world axes */
     const int32_t *element;        /* of the candidates of this image; `count` of them */
     const dem_real *gap, *from;    /* m: their gaps; their shifts, x 3 */
+    const int32_t *cell;           /* their cells, of a tessellation that repeats */
     int count, left;               /* left: count, plus those of later images */
+    int32_t base;                  /* added to the numbers of elements: tells cells apart */
     int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
@@ -36,6 +39,8 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     v.element = w->wall_element + k;
     v.gap = w->wall_gap + k;
     v.from = w->wall_shift + 3*(size_t)k;
+    v.cell = w->wall_cell + k;
+    v.base = 0;
     v.count = v.several = 0;
     v.left = last - first;
     return v;
@@ -45,15 +50,21 @@ DEM_INLINE int demi_view_next(demi_view *v) {
     v->element += v->count;
     v->gap += v->count;
     v->from += 3*v->count;
+    v->cell += v->count;
     v->left -= v->count;
     v->count = v->left;
     if (!v->left) return 0;
-    if (v->w->repeating)
-        for (v->count = 1; v->count < v->left &&
+    if (v->w->repeating || v->wall->step[0].x > 0)
+        for (v->count = 1; v->count < v->left && v->cell[0] == v->cell[v->count] &&
              !memcmp(v->from, v->from + 3*v->count, 3*sizeof *v->from); v->count++) continue;
     v->shift = demi_at(v->from);
     v->x = demi_unrotate(v->wall->pose.rotation,
                          demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
+    if (v->wall->step[0].x > 0) {
+        v->base = (int32_t)((uint32_t)*v->cell%(uint32_t)(INT32_MAX/v->wall->number_count))*
+            v->wall->number_count;
+        v->x = demi_sub(v->x, demi_cell_shift(v->wall, *v->cell, v->x));
+    }
     return 1;
 }
 /* Prepares the room `at` for the contact points of one body and one wall. */
@@ -99,7 +110,7 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
         }
         if (reached == 1 && wall->lone) {
             demi_facet_alone(wall, v.element[one], v.x, within, &p);
-            if (p.count > from) p.at[from].shift = v.shift;
+            if (p.count > from) { p.at[from].shift = v.shift; p.at[from].base = v.base; }
             continue;
         }
         for (q = one; q < v.count; q++)         /* spheres have specialised code */
@@ -113,14 +124,14 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
             demi_places_rings(wall, v.element, v.count, v.x, part, within,
                               demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
                               v.w->touching_links + v.w->domains[v.d].touching_first, &p);
-        for (q = from; q < p.count; q++) p.at[q].shift = v.shift;
+        for (q = from; q < p.count; q++) { p.at[q].shift = v.shift; p.at[q].base = v.base; }
     }
     if (p.count > 1 || (p.count && p.at->share < 1))
         demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;
         dem_vec3 to = t->point, n = t->point;
-        t->element %= numbers;
+        t->element = t->element%numbers + t->base;
         if (part) {
             const dem_vec3 a = part->axes;
             to = dem_quat_rotate(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
@@ -539,7 +550,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
         else if (upright) b->axis = demi_v(0, 0, 1);
     }
 }
-#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
+#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 /* Sets c->bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
    point: of the wall's surface, for the image of the body that touches it. */

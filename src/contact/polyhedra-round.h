@@ -1,11 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-round
-   Contacts of polyhedra with cylinders and surfaces of revolution, piece by piece. With springs,
-   the pressure is integrated along each line (generator) of a piece and summed over angles, in
-   intervals where the integrand is smooth; they are bounded by edges, pyramids and faces that cross
-   the piece or the rings at its ends. With gaps, the contact points are corners if the piece curves
-   around the body, points of the plane along the nearest line if it curves away, and points of the
-   rings at its ends.
+   Polyhedra and curved pieces of walls in closed form. With springs, the pressure on wires and on
+   the walls of round holes (>>polyhedra-sieves) is integrated along each line (generator) of a
+   piece and summed over angles, in intervals where the integrand is smooth; they are bounded by
+   edges, pyramids and faces that cross the piece or the rings at its ends. (Facets take five times
+   as long there. On cylinders and surfaces of revolution they take half the time: >>tessellate.)
+
+   With impulses, the contact points are corners if a piece curves around the body, points of the
+   plane along the nearest line if it curves away, and points of the rings at its ends. (Facets take
+   four to six times as long.)
    --------------------------------------------------------------------------------------------- */
 
 /* A piece of a surface of revolution about z: its lines run from radius a to b and height g to h,
@@ -144,35 +147,6 @@ static double demi_rings_side(const demi_wall *wall, demi_d3 x) {
         side = over > 0 ? 1 : -1;
     }
     return side;
-}
-/* True if a surface of revolution ends at its first ring (end 0) or last ring (1), near a body of
-   this radius about x. It does not end on its axis, nor where it closes. */
-static int demi_rings_end(const demi_wall *wall, int end, demi_d3 x, double radius) {
-    const int ring = end ? wall->ring_count - 1 : 0, other = end ? 0 : wall->ring_count - 1;
-    const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
-    const double off = demi_off_axis(x) - r, up = x.z - z;
-    return r > 0 && off*off + up*up < radius*radius &&
-        !(fabs((double)wall->ring_radius[other] - r) + fabs((double)wall->ring_height[other] - z) <
-          1e-9*r);
-}
-/* The curtain there, as at the border of a sheet: from the ring along the normal of its piece, seen
-   from this side, farther than a body of this radius reaches, but not across the axis. */
-static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double radius,
-                                         double side) {
-    const int i = end ? wall->ring_count - 2 : 0, ring = end ? i + 1 : 0;
-    const double e = (double)(wall->ring_radius[i + 1] - wall->ring_radius[i]);
-    const double f = (double)(wall->ring_height[i + 1] - wall->ring_height[i]);
-    const double size = sqrt(e*e + f*f), out = side*f/size, up = -side*e/size;
-    double far = 2.1*radius;
-    demi_generator l;
-    l.a = (double)wall->ring_radius[ring];
-    l.g = (double)wall->ring_height[ring];
-    if (l.a + far*out < 0) far = -l.a/out;
-    l.b = DEMI_MAX(l.a + far*out, 0);
-    l.h = l.g + far*up;
-    l.side = end ? side : -side;
-    l.open[0] = l.open[1] = 0;
-    return l;
 }
 /* True if a body of this radius about x reaches the piece. */
 static int demi_generator_near(const demi_generator *l, demi_d3 x, double radius) {
@@ -475,69 +449,34 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
         demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, gaps);
     }
 }
-/* Adds all of a cylinder, or of a surface of revolution seen from one side, with the curtains at
-   its ends (bits). */
-static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec3 x,
-                             dem_real radius, double side, int ends, demi_flats *flats) {
-    const int round = wall->kind == DEMI_WALL_CYLINDER, pieces = round ? 1 : wall->ring_count - 1;
-    const demi_d3 x0 = demi_d3_of(x);
-    int i;
-    for (i = 0; i < pieces; i++) {
-        const demi_generator l = demi_generator_of(wall, i, x, radius, side);
-        if (round || demi_generator_near(&l, x0, (double)radius))
-            demi_solid_on_generator(s, &l, x0, round, i, flats);
-    }
-    for (i = 0; i < 2; i++) {
-        demi_generator l;
-        if (!(ends >> i & 1)) continue;
-        l = demi_rings_curtain(wall, i, (double)radius, side);
-        demi_solid_on_generator(s, &l, x0, 0, i ? 2*pieces : pieces, flats);
-    }
-}
 /* A polyhedron and a cylinder or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const demi_view *start, const demi_part *part,
                                  demi_touching *out) {
     demi_view v = *start;
     const demi_wall *wall = v.wall;
     const demi_part local = demi_part_local(wall->pose.rotation, part);
-    const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
-    const int pressing = demi_response_is(v.w, DEMI_PRESSING);
-    const double range = (double)demi_range(v.w, part->radius);
-    double side;
-    demi_flats flats, seen[2];
+    const int tube = wall->kind == DEMI_WALL_CYLINDER, pieces = tube ? 1 : wall->ring_count - 1;
+    const double radius = (double)part->radius;
     demi_gaps gaps;
     demi_solid s;
-    int i, ends, count = 0;
-    gaps.range = range;
+    int i, count = 0;
+    gaps.range = (double)demi_range(v.w, part->radius);
     gaps.flat = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     while (demi_view_next(&v)) {
-        const dem_vec3 x = v.x;
-        const demi_d3 x0 = demi_d3_of(x);
-        demi_flats_begin(&flats, &v);
+        const demi_d3 x0 = demi_d3_of(v.x);
+        const double side = demi_rings_side(wall, x0);
         gaps.count = 0;
-        flats.now = gaps.now = v.shift;
+        gaps.now = v.shift;
         if (*v.gap > v.gone) continue;
-        side = demi_rings_side(wall, x0);
-        for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            ends |= demi_rings_end(wall, i, x0, (double)part->radius) << i;
-        if (pressing && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
-        for (i = 0; i < 2 && pressing && ends; i++) {
-            demi_flats_begin(&seen[i], &v);
-            seen[i].now = v.shift;
-            if (!i || seen[0].count)
-                demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
-        }
-        if (pressing && ends) demi_flats_sides(seen, &flats);
-        for (i = 0; i < pieces && range > 0; i++) {
-            const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
-            if (wall->kind == DEMI_WALL_CYLINDER ||      /* also if deep inside */
-                demi_generator_near(&l, x0, (double)part->radius + range))
+        for (i = 0; i < pieces; i++) {
+            const demi_generator l = demi_generator_of(wall, i, v.x, part->radius, side);
+            if (tube || demi_generator_near(&l, x0, radius + gaps.range))  /* also if deep inside */
                 demi_generator_gaps(&s, &l, x0, i, &gaps);
         }
-        for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            demi_ring_gaps(wall, i, pieces + i, &s, x0, (double)part->radius, &gaps);
-        count += demi_wall_places(&v, &flats, &gaps, wall->pose.rotation, part, out + count);
+        for (i = 0; i <= pieces && !tube; i++)
+            demi_ring_gaps(wall, i, pieces + i, &s, x0, radius, &gaps);
+        count += demi_gaps_places(&v, &gaps, wall->pose.rotation, part, 0, out + count);
     }
     return count;
 }

@@ -7,10 +7,10 @@
 
    With gaps, a wire is a line with a radius. A corner of the body belongs to the face, or wall of a
    hole, that it is above or nearest to; rims of holes have the points of the body that lie on them.
-   Where wires cross, the volume that they share counts twice. Polyhedra have no contacts with
-   reduced holes or sieves cut out as a disc, and with springs none with sheets without thickness,
-   which have no inside: see demi_wall_why in >>bodies. At the end, the table of functions by kinds
-   of walls and parts.
+   Where wires cross, the volume that they share counts twice. Springs act on sheets without
+   thickness through tessellations. Polyhedra have no contacts with reduced holes or sieves cut out
+   as a disc: see demi_wall_why in >>bodies. At the end, the table of functions by kinds of walls
+   and parts.
    --------------------------------------------------------------------------------------------- */
 
 /* The holes of a plate: half sizes along x and y, and periods. px 0: infinite along x. */
@@ -365,5 +365,5 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 }
 
 /* The functions by kind of wall and kind of part. */
-#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
+#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};

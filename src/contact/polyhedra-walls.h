@@ -24,7 +24,7 @@ typedef struct demi_flats {
 } demi_flats;
 static void demi_flats_begin(demi_flats *f, const demi_view *v) {
     f->count = 0;
-    f->whose = v->wall->whose;
+    f->whose = v->wall->scale ? 0 : v->wall->whose;
 }
 /* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
 static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
@@ -278,6 +278,17 @@ static int demi_facet_under(const demi_solid *s, const demi_solid *f, double ran
     out->normal = demi_d3_scale(up, -1);
     return demi_spots_take(out, x, gap, count, range, up);
 }
+/* False if all corners of a body about x are at least `range` (m) from the plane of an element, on
+   the side of x. */
+static int demi_facet_in_reach(const demi_wall *wall, int element, dem_vec3 x, const demi_solid *s,
+                               double range) {
+    const demi_d3 n = demi_d3_of(demi_at(wall->planes + 4*element));
+    const double off = demi_d3_dot(n, demi_d3_of(x)) - (double)wall->planes[4*element + 3];
+    const double way = off < 0 ? 1 : -1;
+    const int far = demi_solid_far(s, demi_d3_scale(n, way));
+    return !(-way*off - demi_d3_dot(demi_d3_scale(n, way), s->corner[far]) > range +
+             (double)wall->plane_slack);
+}
 /* Adds the gaps of one facet. start: all facets nearby; v: those of this image. If the body is
    slightly inside, beside an edge at which the surface continues, the shortest separation would
    lead across that edge into the facet beyond. The facet is then treated as infinite. */
@@ -289,7 +300,8 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
     demi_spots spots;
     dem_vec3 y[3], own[3];
     int i, k, owns = 0, has[3] = {0, 0, 0};
-    if (!demi_facet_solid(wall, element, v->x, reach, &f) ||
+    if (!demi_facet_in_reach(wall, element, v->x, s, gaps->range) ||
+        !demi_facet_solid(wall, element, v->x, reach, &f) ||
         !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
     if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
@@ -306,7 +318,7 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
             (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
     }
     for (i = 0; i < spots.count; i++)
-        demi_gaps_add(gaps, element, spots.normal, spots.x[i], spots.gap[i]);
+        demi_gaps_add(gaps, element + v->base, spots.normal, spots.x[i], spots.gap[i]);
 }
 /* Writes the contact points of all groups: with impulses the four of each direction that matter;
    for a law with a range the nearest one of each direction without pressure, four times. pressed:
@@ -413,6 +425,12 @@ static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int elem
     const int i = demi_sheets_which(s, wall, element, image);
     if (i < s->count) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
     return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
+}
+/* True if the plane of an element is farther from x than `within`, m. */
+DEM_INLINE int demi_element_far(const demi_wall *wall, int element, dem_vec3 x, dem_real within) {
+    const dem_real *plane = wall->planes + 4*element;
+    return wall->planes &&
+        DEMI_ABS(demi_dot(demi_at(plane), x) - plane[3]) > within + wall->plane_slack;
 }
 /* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
    normal. */
@@ -531,9 +549,7 @@ static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats
     int i, k, count, ends, beyond, image = 0;
     for (; demi_view_next(&v); image++) for (i = 0; i < v.count; i++) {
         const int element = v.element[i], way = demi_sheet_turn(t, &v, i, image);
-        const dem_real *plane = t->wall->planes + 4*element;
-        const dem_real off = demi_dot(demi_at(plane), v.x) - plane[3];
-        if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
+        if (!way || demi_element_far(t->wall, element, v.x, t->within)) continue;
         count = demi_facet_sides(t->wall, element, v.x, way, &n, &at, sides);
         if (!count) continue;
         flats->now = v.shift;
@@ -541,11 +557,11 @@ static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats
         beyond = demi_d3_dot(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
         if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
-        if (beyond) demi_flats_add(flats, element, &press);
+        if (beyond) demi_flats_add(flats, element + v.base, &press);
         for (k = 0; k < count; k++) {
             if (!(ends >> k & 1) || !(beyond || demi_curtain_bends(t, 3*element + k, n))) continue;
             demi_sheet_curtain(t, 3*element + k, sides, n, s, &press);
-            demi_flats_add(flats, element, &press);
+            demi_flats_add(flats, element + v.base, &press);
         }
     }
 }
@@ -582,6 +598,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
     demi_sheets sheets;
     demi_sheet sheet;
     demi_solid s;
+    dem_vec3 n;
     int k, way, image;
     demi_flats_begin(&flats, start);
     gaps.range = (double)demi_range(start->w, part->radius);
@@ -592,19 +609,29 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (v = *start, image = 0; wall->sheet && pressing && demi_view_next(&v); image++)
         for (k = 0; k < v.count; k++)
-            if (!(v.gap[k] > v.gone))
+            if (!(v.gap[k] > v.gone) && !demi_element_far(wall, v.element[k], v.x, sheet.within))
                 demi_sheets_add(&sheets, wall, v.element[k], image, v.x, (double)sheet.within);
     demi_sheets_press(&sheets, &sheet, &s, &flats);
+    for (v = *start; pressing && wall->scale && demi_view_next(&v);)
+        if (demi_tessellation_beyond(start->w, wall, v.x, &n)) {
+            memset(&press, 0, sizeof press);
+            demi_pressure_beyond(&s, demi_d3_of(n), &press);
+            flats.count = 0;
+            flats.now = v.shift;
+            demi_flats_add(&flats, v.element[0], &press);
+            return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
+        }
     for (v = *start, image = 0; demi_view_next(&v); image++) for (k = 0; k < v.count; k++) {
         const int32_t element = v.element[k];
         const int which = !pressing || !wall->sheet ? sheets.count
             : demi_sheets_which(&sheets, wall, element, image);
-        if (v.gap[k] > v.gone) continue;
+        if (v.gap[k] > v.gone ||
+            demi_element_far(wall, element, v.x, sheet.within + (dem_real)gaps.range)) continue;
         flats.now = gaps.now = v.shift;
         if (pressing && (which == sheets.count || !sheets.ends[which])) {
             way = wall->sheet ? demi_sheets_way(&sheets, wall, element, image, v.x) : 1;
             demi_solid_on_element(wall, element, &s, v.x, way, &press);
-            demi_flats_add(&flats, element, &press);
+            demi_flats_add(&flats, element + v.base, &press);
         }
         if (!(gaps.range > 0)) continue;
         if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);

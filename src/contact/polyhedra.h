@@ -348,6 +348,30 @@ static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, con
     }
     return 1;
 }
+/* True if a side of a flat piece excludes the section of the body with its plane. all: heights of
+   the corners above the plane, m. The section is within a ball about the mean of the points at
+   which edges cross the plane. */
+static int demi_section_outside(const demi_solid *s, const double *all, const demi_half *sides,
+                                int side_count) {
+    demi_d3 x[3*DEM_POLYHEDRON_FACES], middle = demi_d(0, 0, 0);
+    double far2 = 0;
+    int f, i, count = 0;
+    for (f = 0; f < s->faces; f++)
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const int32_t a = demi_solid_number(s, f, i), b = demi_solid_number(s, f, i + 1);
+            if (a > b || (all[a] > 0) == (all[b] > 0)) continue;
+            x[count] = demi_d3_between(s->corner[a], s->corner[b], all[a]/(all[a] - all[b]));
+            middle = demi_d3_add(middle, x[count++]);
+        }
+    middle = demi_d3_over(middle, DEMI_MAX(count, 1));
+    for (i = 0; i < count; i++)
+        far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(x[i], middle)));
+    for (i = 0; i < side_count; i++) {
+        const double in = demi_d3_dot(sides[i].n, demi_d3_sub(middle, sides[i].o));
+        if (in < 0 && in*in > far2*demi_d3_square(sides[i].n)*(1 + 1e-9)) return 1;
+    }
+    return 0;
+}
 /* Adds S on a flat piece of a rigid wall: the part of the plane n.x = at (n unit, into the wall)
    that is within all half spaces `sides`. hole: null, or x, y and radius of a hole in it, across z.
    Without sides, demi_pressure_beyond handles a centre behind the plane. A piece with sides may be
@@ -360,7 +384,8 @@ static void demi_solid_on_flat(const demi_solid *a, demi_d3 n, double at, const 
     int f, i, k, above = 0, count;
     if (centre > 0 && !side_count) { demi_pressure_beyond(a, n, s); return; }
     for (i = 0; i < a->corners; i++) above += (all[i] = demi_d3_dot(n, a->corner[i]) - at) > 0;
-    if (above == (centre > 0 ? a->corners : 0)) return;
+    if (above == (centre > 0 ? a->corners : 0) ||
+        demi_section_outside(a, all, sides, side_count)) return;
     for (f = 0; f < a->faces; f++) {
         for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++)
             level[k++] = all[demi_solid_number(a, f, i)];

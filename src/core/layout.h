@@ -91,6 +91,7 @@ enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_S
 /* A contact point of a body and a wall as >>touch finds it: geometry, before any law is called. */
 typedef struct demi_touching {
     int32_t element;               /* of the wall; of facets: number of the face, edge or corner */
+    int32_t base;                  /* of facets: added to it in the end, see demi_view */
     dem_real overlap, share;       /* m; weight of its force (of facets: see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
     dem_vec3 shift;                /* m, from the body to its image that touches the wall */
@@ -238,7 +239,8 @@ typedef struct demi_domain {
        may return less than the gap);
      functions that find contacts with each kind above and with its own kind, in that order.
 
-   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_nears. A row:
+   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_tessellations. A
+   row:
      constant;
      corners of an element (0: elements have none);
      largest number of contact points of one candidate;
@@ -258,7 +260,8 @@ enum {
     DEMI_FLAT = 8,                 /* the half space beyond z = 0 */
     DEMI_CROSSED = 16,             /* has points of negative weight, as where the wires of a sieve
                                       cross: demi_kept_crossed */
-    DEMI_SMOOTH = 32               /* has no edges */
+    DEMI_SMOOTH = 32,              /* has no edges */
+    DEMI_ONLY_GAPS = 64            /* its function for polyhedra finds gaps, not pressure */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain with a sieve */
 enum { DEMI_FLATS = 6 };        /* separate contacts that a polyhedron may have with one wall */
@@ -271,26 +274,24 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
       (demi_solid_round_touch, demi_solid_round_touch, demi_polyhedra_touch)) \
     /* the last */
 #define DEMI_WALLS(X) \
-    X(PLANE,    0, 7, DEMI_FLAT | DEMI_SMOOTH, "plane", \
-      demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0) \
-    X(CYLINDER, 0, 7, DEMI_SMOOTH, "cylinder", \
-      demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
-      demi_cylinder_bend) \
-    X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
-      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), \
-      demi_profile_bend) \
-    X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", \
-      demi_facet_distance, (demi_segments_touch), 0) \
-    X(MESH,     3, 7, DEMI_FACETS, "mesh", \
-      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), \
-      demi_mesh_bend) \
-    X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
-      demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid, demi_grain_polyhedron), \
-      demi_grain_bend) \
-    X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", \
-      demi_sieve_near, (demi_sieve_spheres, 0, demi_sieve_polyhedron), demi_sieve_bend) \
-    X(REVOLVED, 0, DEMI_RING_MOST, DEMI_CROSSED, "surface of revolution", \
-      demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend) \
+    X(PLANE,    0, 7, DEMI_FLAT | DEMI_SMOOTH, "plane", demi_plane_near, \
+      (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0, 0) \
+    X(CYLINDER, 0, 7, DEMI_SMOOTH | DEMI_ONLY_GAPS, "cylinder", demi_cylinder_near, \
+      (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
+      demi_cylinder_bend, demi_cylinder_tessellate) \
+    X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", demi_facet_distance, \
+      (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), demi_profile_bend, 0) \
+    X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", demi_facet_distance, \
+      (demi_segments_touch), 0, 0) \
+    X(MESH,     3, 7, DEMI_FACETS, "mesh", demi_facet_distance, \
+      (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), demi_mesh_bend, 0) \
+    X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", demi_grain_near, \
+      (demi_elements_touch, demi_grain_ellipsoid, demi_grain_polyhedron), demi_grain_bend, 0) \
+    X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", demi_sieve_near, \
+      (demi_sieve_spheres, 0, demi_sieve_polyhedron), demi_sieve_bend, demi_sieve_tessellate) \
+    X(REVOLVED, 0, DEMI_RING_MOST, DEMI_CROSSED | DEMI_ONLY_GAPS, "surface of revolution", \
+      demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend, \
+      demi_revolved_tessellate) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* a list as one field of a row: (a, b) */
 /* True if entry k of such a list, given as text, names a function: false if it is 0 or missing. */
@@ -300,16 +301,17 @@ static int demi_listed(const char *list, int k) {
 }
 #define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
 enum { DEMI_SHAPES(DEMI_SHAPE_CONSTANT) DEMI_SHAPE_KINDS };
-#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_WALL_##KIND,
+#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESSELLATE) DEMI_WALL_##KIND,
 enum { DEMI_WALL_NONE = 0, DEMI_WALLS(DEMI_WALL_CONSTANT) DEMI_WALL_KINDS };
-/* touch: the functions of the row as text, see demi_listed. */
+/* touch, tessellate: the functions of the row as text, see demi_listed. Shapes without a function
+   of their own use the tessellation (>>tessellate). */
 typedef struct demi_wall_kind {
     int corners, most, traits;
-    const char *name, *touch;
+    const char *name, *touch, *tessellate;
 } demi_wall_kind;
-#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, NEAR, TOUCH, BEND) \
-    {CORNERS, MOST, TRAITS, NAME, #TOUCH},
-static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed", ""},
+#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, NEAR, TOUCH, BEND, TESSELLATE) \
+    {CORNERS, MOST, TRAITS, NAME, #TOUCH, #TESSELLATE},
+static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed", "", "0"},
     DEMI_WALLS(DEMI_WALL_KIND)};
 
 /* Responses: how contacts act on bodies (desc.response, in the order of dem_response). A row: name
@@ -380,6 +382,9 @@ typedef struct demi_wall {
                                       and corner */
     int lead;                      /* of a joined surface: the wall that it moves with */
     int joined;                    /* wall: 1 + index of its joined surface; 0: it is its own */
+    int scale;                     /* tessellation: 1 + the scale of the bodies that it is for, see
+                                      >>surfaces; else 0 */
+    dem_vec3 step[2];              /* m, tessellation: it repeats in its frame by these; 0: not */
     int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
@@ -549,6 +554,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int species_count;             /* DEMI_SPECIES + 1: more than that */
     demi_species species[DEMI_SPECIES];
     dem_real radius_min, radius_max;           /* m */
+    uint64_t scales;               /* bit k: tessellations for bodies of scale k exist */
 } demi_in_force;
 typedef struct demi_levels {       /* >>search */
     int count, wide;               /* levels in use, 0: one grid; radii differ so much that levels
@@ -840,6 +846,7 @@ struct dem_world {
     dem_real *wall_gap;            /* m, lower bound on the gap of grain and element when the list
                                       was built */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
+    int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */

@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 16 };
+enum { DEMI_CHECKPOINT_VERSION = 17 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -255,6 +255,7 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
         demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride,
                    3*walls*sizeof(dem_real));
+        demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
 /* Visits persistent contacts, with or without a list, and the contact history of spheres that is

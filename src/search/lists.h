@@ -8,9 +8,9 @@
    --------------------------------------------------------------------------------------------- */
 
 /* Appends an element of a wall to the wall candidates of work group d. gap: m, between body and
-   element; shift: m, from the body to its image at the wall. */
+   element; shift: m, from the body to its image at the wall; cell: of a tessellation. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
-                            int element, dem_real gap, dem_vec3 shift) {
+                            int element, dem_real gap, dem_vec3 shift, int32_t cell) {
     int k = domain->walls;
     if (k >= w->wall_stride) { domain->overflow |= 4; return; }
     domain->walls++;
@@ -20,6 +20,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_element[k] = element;
     w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* allows for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
+    w->wall_cell[k] = cell;
 }
 /* Sorts the candidates of one body and wall, from entry `first` on, by element and removes
    duplicates, so that their order does not depend on the wall's cells. */
@@ -48,30 +49,29 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
     domain->walls = n;
 }
 /* Lists the elements of surface j (demi_surface_of) near body i, displaced by `shift` (m) to one of
-   its images. */
-static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
+   its images, which is at `at` in the frame of the surface, or of a cell of it. */
+static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift,
+                           dem_vec3 at, int32_t cell) {
     const demi_wall *wall = demi_surface_of(w, j);
     const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
-    dem_vec3 at = demi_unrotate(wall->pose.rotation,
-                              demi_sub(demi_add(demi_at(w->bodies.pos + 4*i), shift),
-                                                            wall->pose.position));
     dem_real away;
     int k, x, y, z, f[3], l[3];
     if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
     if (!wall->cell_start) {
         for (k = 0; k < wall->element_count; k++) {
             away = demi_wall_distance(wall, k, at, near_by);
-            if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r, shift);
+            if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r, shift, cell);
         }
     } else {
         demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
         for (z = f[2]; z <= l[2]; z++)
             for (y = f[1]; y <= l[1]; y++)
                 for (x = f[0]; x <= l[0]; x++) {
-                    const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
-                    for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
+                    const int32_t *box = wall->cell_start + x + wall->cells[0]*(y +
+                                                                               wall->cells[1]*z);
+                    for (k = box[0]; k < box[1]; k++) {
                         const int element = wall->cell_items[k];
                         const int32_t *e = w->wall_element + d*w->wall_stride;
                         int q = DEMI_MAX(first, domain->walls - 16);       /* few duplicates */
@@ -79,7 +79,8 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                         if (q < domain->walls) continue;
                         away = demi_wall_distance(wall, element, at, near_by);
                         if (away < near_by)
-                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift);
+                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift,
+                                            cell);
                     }
                 }
     }
@@ -105,6 +106,34 @@ static int demi_wall_image(const dem_world *w, const demi_wall *wall, dem_vec3 p
     *shift = demi_at(x);
     return !n;
 }
+/* Lists the elements of surface j near one image of body i: of all cells that are near. */
+static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, int j,
+                               dem_vec3 shift) {
+    const demi_wall *wall = demi_surface_of(w, j);
+    const dem_vec3 at = demi_unrotate(wall->pose.rotation, demi_sub(demi_add(demi_at(
+        w->bodies.pos + 4*i), shift), wall->pose.position)), *step = wall->step;
+    const double far = (double)(w->bodies.pos[4*i + 3] + demi_cover(w));
+    const dem_box *box = &wall->box;
+    double u, v, to_u, to_v;
+    dem_vec3 n;
+    if (demi_tessellation_beyond(w, wall, at, &n)) {
+        demi_wall_offer(w, domain, d, i, j, 0, -w->bodies.pos[4*i + 3], shift, 0);
+        return;
+    }
+    if (!(step[0].x > 0)) { demi_wall_look(w, domain, d, i, j, shift, at, 0); return; }
+    v = ceil(((double)(at.y - box->hi.y) - far)/(double)step[1].y);
+    to_v = ((double)(at.y - box->lo.y) + far)/(double)step[1].y;
+    for (; v <= to_v; v++) {
+        const double x = (double)at.x - v*(double)step[1].x;
+        u = ceil((x - (double)box->hi.x - far)/(double)step[0].x);
+        to_u = (x - (double)box->lo.x + far)/(double)step[0].x;
+        for (; u <= to_u; u++) {
+            const int32_t cell = demi_cell_pack(u, v);
+            demi_wall_look(w, domain, d, i, j, shift, demi_sub(at, demi_cell_shift(wall, cell, at)),
+                           cell);
+        }
+    }
+}
 /* Lists the elements of all surfaces near body i, unless it is fixed or a ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
@@ -113,10 +142,11 @@ static void demi_body_walls(dem_world *w, int d, int i) {
     for (j = 0; j < w->wall_count + w->surface_count; j++) {
         const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
-        if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered) continue;
+        if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered ||
+            demi_surface_scale(w, j, i) != wall->scale) continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
-            demi_wall_look(w, domain, d, i, j, shift);
+            demi_wall_look_all(w, domain, d, i, j, shift);
     }
 }
 /* Lists the wall candidates of a work group, body by body; those of a body and a wall are
@@ -166,6 +196,7 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
                    DEMI_GROW(w, w->wall_id, n) &&
                    DEMI_GROW(w, w->wall_shift, 3*n) &&
+                   DEMI_GROW(w, w->wall_cell, n) &&
                    DEMI_GROW(w, w->wall_gap, n) &&
                    DEMI_GROW(w, w->wall_element, n);
     if (ok) w->wall_stride = stride;

@@ -245,7 +245,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     int k, leading = 0;
     w->domains[last].end = i + 1;
     if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
-    if (count >= w->join_room) return 0;
+    if (count >= w->join_room || demi_scale_missing(w, i)) return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
         const int a = found[k], d = demi_domain_of(w, a);
@@ -432,7 +432,8 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after checks, which must not move bodies */
-    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, call);
+    if (!demi_scales_take(w) || (!w->facets_valid && !demi_surfaces_make(w)))
+        return demi_no_memory(w, call);
     demi_levels_choose(w);
     least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
         (double)demi_cover(w);

@@ -174,7 +174,7 @@ static dem_real demi_grain_near(const demi_wall *wall, int element, dem_vec3 x, 
     *point = demi_at(wall->vertices + 3*element);
     return demi_point_near(demi_sub(*point, x), r + wall->radius, normal);
 }
-#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND) NEAR,
+#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) NEAR,
 static const demi_near_fn demi_nears[] = {0, DEMI_WALLS(DEMI_WALL_NEAR)};
 
 /* Distance, m, from a point to an element. If it is `enough` or more it need not be exact: a
@@ -191,4 +191,13 @@ static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 
         if (h*h >= enough*enough*demi_dot(n, n) && demi_dot(n, n) > 0) return enough;
     }
     return -demi_nears[wall->kind](wall, element, local, 0, &n, &p);
+}
+/* True if x, in the frame of a tessellation, is behind a wall that acts on one side. *normal: from
+   there into the wall. */
+static int demi_tessellation_beyond(const dem_world *w, const demi_wall *surface, dem_vec3 x,
+                                    dem_vec3 *normal) {
+    const demi_wall *wall = surface->scale ? &w->walls[surface->lead] : surface;
+    dem_vec3 p;
+    return surface->scale && demi_wall_is(wall, DEMI_SMOOTH) &&
+        demi_nears[wall->kind](wall, 0, x, 0, normal, &p) > 0;
 }

@@ -9,7 +9,9 @@
    (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
    or more, and `whose` tells which wall a face, edge or corner belongs to: contacts act on that
    wall and use its material. Surfaces are made again when a wall is added, removed or moved
-   otherwise. This part owns w->surfaces and the weights of facets.
+   otherwise. Tessellations of curved walls (>>tessellate) follow the joined surfaces: one for each
+   scale of bodies that need it, which is the power of two below their radius.
+   This part owns w->surfaces and the weights of facets.
    --------------------------------------------------------------------------------------------- */
 /* The surface with this number: a wall, or a joined surface. */
 DEM_INLINE const demi_wall *demi_surface_of(const dem_world *w, int number) {
@@ -22,7 +24,8 @@ DEM_INLINE int demi_surface_number(const dem_world *w, int wall) {
 }
 /* The wall that feature `number` (a face, edge or corner) of a surface belongs to. */
 DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, int32_t number) {
-    return surface->whose ? surface->whose[number] : (int)(surface - w->walls);
+    return surface->scale ? surface->lead
+        : surface->whose ? surface->whose[number] : (int)(surface - w->walls);
 }
 
 /* Makes one surface of the facets: none coincide or cover each other, and none has corners of
@@ -56,22 +59,34 @@ static int demi_plane_again(const dem_world *w, int wall) {
     }
     return 0;
 }
-/* Writes the joined facets to a surface. Returns 0 if memory ran out. */
-static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
-    const demi_wall *lead = &w->walls[j->lead];
-    int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
-    int i, k, ok;
-    *s = *lead;
-    s->vertex_count = s->edge_count = s->border_count = s->cell_item_count = 0;
+/* Begins a surface that moves with wall `lead` and has its properties, but no facets. */
+static void demi_surface_begin(const dem_world *w, int lead, demi_wall *s) {
+    *s = w->walls[lead];
+    s->vertex_count = s->edge_count = s->border_count = s->cell_item_count = s->ring_count = 0;
     s->vertices = s->weight = s->planes = 0;
     s->corners = s->edges = s->sheet = s->whose = s->cell_start = s->cell_items = 0;
     s->owns = s->ends = 0;
     s->borders = 0;
     s->motion.table = 0;
     s->chain = DEMI_RUN;
-    s->lead = j->lead;
+    s->lead = lead;
     s->joined = 0;
     memset(s->cells, 0, sizeof s->cells);
+}
+/* Completes a surface whose vertices and corners are known, except for `whose` and weights. Returns
+   0 if memory ran out. */
+static int demi_surface_end(dem_world *w, demi_wall *s) {
+    if (!demi_facets_begin(w, s) || !demi_wall_sheets(w, s)) return 0;
+    s->number_count = s->element_count + s->edge_count + s->vertex_count;
+    demi_wall_bounds(s);
+    return demi_wall_index(w, s);
+}
+/* Writes the joined facets to a surface. Returns 0 if memory ran out. */
+static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
+    const demi_wall *lead = &w->walls[j->lead];
+    int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
+    int i, k, ok;
+    demi_surface_begin(w, j->lead, s);
     s->element_count = j->facets;
     s->vertices = (dem_real *)demi_hold(w, DEMI_RUN, (size_t)j->points*3, sizeof(dem_real));
     s->corners = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)(j->facets*j->per), sizeof(int32_t));
@@ -88,9 +103,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
             s->corners[j->per*i + k] = at[p];
         }
     demi_free(w, at);
-    ok = ok && demi_facets_begin(w, s) && demi_wall_sheets(w, s);
-    if (!ok) return 0;
-    s->number_count = s->element_count + s->edge_count + s->vertex_count;
+    if (!ok || !demi_surface_end(w, s)) return 0;
     s->whose = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)s->number_count, sizeof(int32_t));
     if (!s->whose) return 0;
     for (i = 0; i < s->element_count; i++) {
@@ -101,8 +114,7 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
             if (s->owns[i] >> (3 + k) & 1) corner[s->corners[j->per*i + k]] = j->facet[5*i + 3];
         }
     }
-    demi_wall_bounds(s);
-    return demi_wall_index(w, s);
+    return 1;
 }
 
 /* --- weights --- */
@@ -139,6 +151,15 @@ static void demi_meets_add(const demi_wall *s, demi_meets_at *m, int e, const in
         if (per == 3) m->side[m->sides++] = demi_side_of(p[k], p[(k + 1)%3], e, k + 3*image);
     }
 }
+/* Sets *by, m, to the displacement of the n-th image (0 .. 26; 13 is the surface itself): periodic,
+   or a cell of a tessellation. Returns 0 if there is none. */
+static int demi_surface_shift(const dem_world *w, const demi_wall *s, int n, demi_d3 *by) {
+    const dem_vec3 to = demi_add(demi_scale(s->step[0], (dem_real)(n%3 - 1)),
+                                 demi_scale(s->step[1], (dem_real)(n/3%3 - 1)));
+    if (!(s->step[0].x > 0)) return demi_join_shift(w, s, n, by);
+    *by = demi_d3_of(demi_rotate(s->home.rotation, to));
+    return n/9 == 1 && n != 13;
+}
 /* Adds the images of facets that touch the surface. Returns 0 if memory ran out. */
 static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
     const int per = demi_wall_per(s), own = s->vertex_count;
@@ -146,7 +167,7 @@ static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
     for (pass = 0; pass < 2; pass++) {          /* count, then add */
         for (n = 0; n < 27; n++) {
             demi_d3 by;
-            if (!demi_join_shift(w, s, n, &by)) continue;
+            if (!demi_surface_shift(w, s, n, &by)) continue;
             for (e = 0; e < s->element_count; e++) {
                 int32_t at[3];
                 int touches = 0;
@@ -201,7 +222,7 @@ static int demi_meets_images(dem_world *w, demi_wall *s, demi_meets_at *m) {
    Returns 0 if memory ran out. */
 static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     const int per = demi_wall_per(s), all = s->element_count, own = s->vertex_count;
-    const int repeats = s->repeats[0] || s->repeats[1] || s->repeats[2];
+    const int repeats = s->repeats[0] || s->repeats[1] || s->repeats[2] || s->step[0].x > 0;
     dem_real *edge = s->weight + all, *corner = edge + s->edge_count;
     demi_meets_at m;
     int i, k, end, ok;
@@ -262,6 +283,109 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     return ok;
 }
 
+/* --- tessellations of curved walls --- */
+
+/* The scale of a body's radius, m: the power of two below it, as a bit of effects.scales. */
+static int demi_scale_bit(dem_real radius) {
+    int power;
+    frexp((double)radius, &power);
+    return DEMI_MAX(DEMI_MIN(power + 40, 63), 0);
+}
+/* True if body i needs the tessellation of a wall: one of its parts has no closed form with it. A
+   union with an ellipsoid then has facets for all its parts. */
+static int demi_needs_facets(const dem_world *w, const demi_wall *wall, int i) {
+    const demi_shape *shape = w->bodies.shaped ? demi_shape_of(w, i) : 0;
+    const int pieces = shape && shape->pieces ? shape->pieces : 1;
+    int k;
+    for (k = 0; k < pieces && shape; k++)
+        if (demi_wall_faceted(w, wall, shape->pieces ? w->shapes[shape->piece[k].shape].kind
+                              : shape->kind)) return 1;
+    return 0;
+}
+/* The number of the surface on which body i touches a wall. */
+static int demi_surface_for(const dem_world *w, int wall, int i) {
+    int j = demi_needs_facets(w, &w->walls[wall], i) ? 0 : w->surface_count;
+    const int scale = 1 + demi_scale_bit(w->bodies.pos[4*i + 3]);
+    while (j < w->surface_count && !(w->surfaces[j].scale == scale &&
+                                     w->surfaces[j].lead == wall)) j++;
+    return j < w->surface_count ? w->wall_count + j : demi_surface_number(w, wall);
+}
+/* `scale` (demi_wall) that body i needs of surface j, which is a wall, or of the wall that it
+   tessellates. A joined surface has 0. */
+static int demi_surface_scale(const dem_world *w, int j, int i) {
+    const demi_wall *s = demi_surface_of(w, j);
+    const demi_wall *wall = s->scale ? &w->walls[s->lead] : s;
+    return demi_needs_facets(w, wall, i) ? 1 + demi_scale_bit(w->bodies.pos[4*i + 3]) : 0;
+}
+/* The cell in column u and row v of a tessellation that repeats, and its displacement, m, in the
+   frame of the surface. Columns 65,536 apart have the same number: the one next to `at` counts. */
+static int32_t demi_cell_pack(double u, double v) {
+    const double a = u - 65536*floor(u/65536), b = v - 65536*floor(v/65536);
+    return (int32_t)((uint32_t)a << 16 | (uint32_t)b);
+}
+static dem_vec3 demi_cell_shift(const demi_wall *s, int32_t cell, dem_vec3 at) {
+    const double wide = (double)s->step[0].x, skew = (double)s->step[1].x;
+    double u = (uint32_t)cell >> 16, v = (uint32_t)cell & 0xffff;
+    v += 65536*floor(((double)at.y/(double)s->step[1].y - v)/65536 + 0.5);
+    u += 65536*floor((((double)at.x - v*skew)/wide - u)/65536 + 0.5);
+    return demi_v((dem_real)(u*wide + v*skew), (dem_real)(v*(double)s->step[1].y), 0);
+}
+/* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
+   scales. Returns 0 if memory ran out. */
+static int demi_tessellation_make(dem_world *w, int wall, int scale) {
+    demi_form f;
+    demi_wall *s;
+    int ok;
+    if (!DEMI_GROW(w, w->surfaces, (size_t)w->surface_count + 1)) return 0;
+    for (s = &w->surfaces[w->surface_count++]; s > w->surfaces && s[-1].scale &&
+         (s[-1].lead > wall || (s[-1].lead == wall && s[-1].scale > 1 + scale)); s--) s[0] = s[-1];
+    demi_surface_begin(w, wall, s);
+    s->scale = 1 + scale;
+    demi_form_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
+    s->kind = f.per == 3 ? DEMI_WALL_MESH : DEMI_WALL_PROFILE;
+    memcpy(s->step, f.step, sizeof s->step);
+    s->vertex_count = f.points;
+    s->element_count = f.facets;
+    s->vertices = (dem_real *)demi_hold(w, DEMI_RUN, (size_t)f.points*3, sizeof(dem_real));
+    s->corners = (int32_t *)demi_hold(w, DEMI_RUN, (size_t)(f.facets*f.per), sizeof(int32_t));
+    ok = !f.failed && s->vertices && s->corners;
+    if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
+    if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
+    demi_form_free(&f);
+    return ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
+}
+/* Makes the tessellations for the scales in a set of bits. Returns 0 if memory ran out. */
+static int demi_tessellations_make(dem_world *w, uint64_t scales) {
+    int i, k, ok = 1;
+    for (i = 0; i < w->wall_count && scales; i++)
+        for (k = 0; k < 64 && ok; k++)
+            if (scales >> k & 1 && demi_wall_tessellates(&w->walls[i]))
+                ok = demi_tessellation_make(w, i, k);
+    return ok;
+}
+/* The bit of body i in effects.scales if it needs a tessellation that does not exist, else 0. */
+static uint64_t demi_scale_missing(const dem_world *w, int i) {
+    const uint64_t bit = UINT64_C(1) << demi_scale_bit(w->bodies.pos[4*i + 3]);
+    int j;
+    for (j = 0; j < w->wall_count && w->bodies.shaped && !(w->effects.scales & bit); j++)
+        if (demi_needs_facets(w, &w->walls[j], i)) return bit;
+    return 0;
+}
+/* Makes the tessellations that bodies need and that do not exist yet. Surfaces that exist do not
+   change, because slabs share them. Returns 0 if memory ran out. */
+static int demi_scales_take(dem_world *w) {
+    uint64_t more = 0;
+    int i;
+    for (i = 0; i < w->bodies.count && w->wall_count && w->bodies.shaped; i++)
+        more |= demi_scale_missing(w, i);
+    if (!more) return 1;
+    w->effects.scales |= more;
+    if (!w->facets_valid) return 1;             /* demi_surfaces_make makes all */
+    w->facets_valid = demi_tessellations_make(w, more);
+    demi_walls_repeat(w);
+    return w->facets_valid;
+}
+
 /* --- all surfaces --- */
 
 static void demi_surfaces_free(dem_world *w) {
@@ -309,6 +433,7 @@ static int demi_surfaces_make(dem_world *w) {
         if (!demi_faceted(&w->walls[i]) || w->walls[i].joined) continue;
         ok = demi_surface_make(w, i);
     }
+    ok = ok && demi_tessellations_make(w, w->effects.scales);
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;

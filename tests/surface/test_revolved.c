@@ -262,11 +262,6 @@ int main(int argc, char **argv) {
         dem_wall_cone_add(world[1], m, at(0.02, 0, 0), at(0.02, 0, 0.04), DEM_R(0.003), DEM_R(0.04));
         CHECK_EQ(dem_checkpoint_read(world[1], "build/tmp/revolved.ckpt"), DEM_ERROR_FORMAT);
         CHECK_STR(dem_world_error_get(world[1]), "of wall 1, this world has");
-        {
-            const dem_shape egg = dem_shape_ellipsoid_add(world[1], at(0.002, 0.003, 0.004));
-            CHECK_EQ((int)dem_body_add(world[1], m, egg, at(0, 0, 0.5), dem_quat_make(1, 0, 0, 0)).slot, 0);
-            CHECK_STR(dem_world_error_get(world[1]), "surface of revolution");
-        }
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
 
