@@ -716,7 +716,7 @@ int main(int argc, char **argv) {
                 d.shapes[1] = dem_shape_ellipsoid_add(world[part], at(1, 1, 1.5));
                 dem_wall_plane_add(world[part], stuff, at(0, 0, 0.19), at(0, 0, 1));
                 CHECK(dem_feed_add(world[part], &d).id);
-                sieve.kind = DEM_SIEVE_SQUARE;
+                sieve.kind = DEM_SIEVE_REDUCED;
                 sieve.aperture = DEM_R(0.01);
                 sieve.bar = DEM_R(0.002);
                 CHECK(!dem_wall_sieve_add(world[part], stuff, &sieve).id);
