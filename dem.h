@@ -3883,6 +3883,7 @@ typedef struct demi_wall {
     int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
+    int open;                      /* 1: it may be a sheet: it has open edges or repeats */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
     int repeats[3];                /* 1: repeats along a periodic axis, since it is not longer than
                                       the period */
@@ -4286,6 +4287,7 @@ struct dem_world {
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
     int facets_valid;              /* surfaces fit the walls and their motions */
+    int sheeted;                   /* 1: some surface of facets may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
     int surface_count;             /* >>surfaces: joined surfaces */
     demi_wall *surfaces;
@@ -4342,6 +4344,7 @@ struct dem_world {
                                       was built */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
     int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
+    int32_t *walled;               /* bodies: 1 + first wall candidate, 0: none (if `sheeted`) */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */
@@ -12152,7 +12155,7 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     int i, k, end, ok;
     memset(&m, 0, sizeof m);
     s->lone = !repeats;
-    s->wraps = 0;
+    s->wraps = s->open = 0;
     memset(s->ends, 0, (size_t)all);
     s->number_count = all + s->edge_count + own;
     m.points = own;
@@ -12203,6 +12206,8 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     for (i = 0; i < 2*all && ok && per == 2; i++)
         if (m.faces[s->corners[i]] != 2)
             s->ends[i/2] = (unsigned char)(s->ends[i/2] | 1 << i%2);
+    s->open = s->wraps;                         /* a sheet without end has no open edges */
+    for (i = 0; i < all && ok; i++) s->open |= s->ends[i] != 0;
     demi_meets_free(w, &m);
     return ok;
 }
@@ -12306,6 +12311,7 @@ static int demi_scales_take(dem_world *w) {
     w->effects.scales |= more;
     if (!w->facets_valid) return 1;             /* demi_surfaces_make makes all */
     w->facets_valid = demi_tessellations_make(w, more);
+    for (i = 0; i < w->surface_count; i++) w->sheeted |= w->surfaces[i].open;
     demi_walls_repeat(w);
     return w->facets_valid;
 }
@@ -12358,6 +12364,10 @@ static int demi_surfaces_make(dem_world *w) {
         ok = demi_surface_make(w, i);
     }
     ok = ok && demi_tessellations_make(w, w->effects.scales);
+    for (i = w->sheeted = 0; i < w->wall_count + w->surface_count; i++) {
+        const demi_wall *s = demi_surface_of(w, i);
+        w->sheeted |= s->open && !s->joined && !s->covered;
+    }
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;
@@ -13602,6 +13612,19 @@ static void demi_domain_walls(dem_world *w, int d) {
     domain->overflow &= ~4;
     for (i = domain->begin; i < domain->end; i++) demi_body_walls(w, d, i);
 }
+/* Notes the first wall candidate of each body, while some surface is a sheet. Returns 0 if memory
+   ran out. */
+static int demi_walled_note(dem_world *w) {
+    const size_t n = (size_t)w->bodies.count + (size_t)w->join_room;
+    int d, k;
+    if (!w->sheeted) return 1;
+    if (!DEMI_GROW(w, w->walled, n)) return 0;
+    memset(w->walled, 0, n*sizeof *w->walled);
+    for (d = 0; d < w->domain_count; d++)
+        for (k = d*w->wall_stride + w->domains[d].walls - 1; k >= d*w->wall_stride; k--)
+            w->walled[w->wall_body[k]] = 1 + k;
+    return 1;
+}
 
 /* Allocates a candidate list of `stride` entries per work group. Returns 0 if memory runs out;
    arrays that have grown stay valid. */
@@ -14143,6 +14166,73 @@ static void demi_domain_adopt(dem_world *w, int d) {
     demi_near_adopt(w, d);
 }
 
+/* --- sheets: bodies on both sides of a surface without thickness do not touch --- */
+
+/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: where,
+   as a part of the segment. */
+static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to,
+                                dem_real *at) {
+    const dem_real *plane = wall->planes + 4*element;
+    const dem_vec3 n = demi_at(plane);
+    const dem_real here = demi_dot(n, x) - plane[3], there = here + demi_dot(n, to);
+    dem_vec3 c[3], p;
+    int i, corners, sides = 0;
+    if ((here > 0) == (there > 0)) return 0;
+    *at = here/(here - there);
+    p = demi_add(x, demi_scale(to, *at));
+    corners = demi_wall_corners(wall, element, c);
+    for (i = 0; i < corners; i++) {
+        const dem_vec3 e = demi_sub(c[(i + 1)%corners], c[i]), d = demi_sub(p, c[i]);
+        const dem_real hair = DEM_R(-1e-6)*demi_dot(e, e);
+        sides += corners == 2 ? e.x*d.x + e.y*d.y > hair : demi_dot(n, demi_cross(e, d)) > hair;
+    }
+    return sides == corners;
+}
+/* True if a sheet crosses the line between the centres of two bodies, at a point in the bounding
+   spheres of both, extended by half a skin. to: m, from a to the image of b. The sheet is among the
+   candidates of either; ghosts have none. */
+static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
+    const dem_real more = demi_cover(w)/2, length = demi_length(to);
+    const dem_real ra = w->bodies.pos[4*a + 3] + more, rb = w->bodies.pos[4*b + 3] + more;
+    int i;
+    for (i = 0; i < 2; i++) {
+        const int body = i ? b : a, first = w->walled[body] - 1;
+        const dem_real own = i ? rb : ra, other = i ? ra : rb;
+        const int d = first < 0 ? 0 : first/w->wall_stride;
+        const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
+        int k;
+        for (k = first; k < end && w->wall_body[k] == body; k++) {
+            const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
+            const dem_real *R = wall->pose.rotation;
+            dem_vec3 x;
+            dem_real at;
+            if (!wall->open) continue;
+            x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
+                demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
+            if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
+            if (demi_element_crossed(wall, w->wall_element[k], x,
+                                     demi_unrotate(R, i ? demi_scale(to, -1) : to), &at) &&
+                at*length < own && (1 - at)*length < other) return 1;
+        }
+    }
+    return 0;
+}
+/* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
+   group. Returns the new end. */
+static int demi_near_part(const dem_world *w, const demi_list *list, int d, int first, int end) {
+    int32_t *out = w->near.k + d*w->near.stride;
+    int q, left = first;
+    if (!w->sheeted) return end;
+    for (q = first; q < end; q++) {
+        const int k = out[q], a = list->a[k], b = list->b[k];
+        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
+            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+            demi_at(w->image_shift + list->image[k])))) continue;
+        out[left++] = k;
+    }
+    return left;
+}
+
 /* Builds the pruned list of a work group: first the pairs of spheres, then the others; in both, the
    pairs inside the group, then those with later groups. Sets `overflow` if there is no room. */
 static void demi_domain_near(dem_world *w, int d) {
@@ -14156,6 +14246,7 @@ static void demi_domain_near(dem_world *w, int d) {
         const int first = p;
         p = demi_near_pick(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
+        p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
             near->a[at] = list->a[k];
@@ -14177,6 +14268,7 @@ static void demi_domain_near(dem_world *w, int d) {
         if (l) domain->near_next_shaped_cross = p;
         if (w->bodies.shaped) p = demi_near_pick_shaped(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
+        p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
             near->a[at] = list->a[k];
@@ -14572,6 +14664,8 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->domains[last].walls - walls >= w->join_room) return 0;
     w->join_room -= w->domains[last].walls - walls;
     if (w->domains[last].walls > walls) w->touching_valid = 0;
+    if (w->sheeted) w->walled[i] = w->domains[last].walls > walls
+        ? 1 + last*w->wall_stride + walls : 0;
     demi_quiet_at(w, last, i)->restless = 2;
     w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
     w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
@@ -14701,7 +14795,7 @@ static int demi_walls_find(dem_world *w) {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
         room = w->wall_stride/2*3 + 64;
     } while (demi_lists_overflow(w, 4));
-    return 1;
+    return demi_walled_note(w);
 }
 /* Moves the persistent contacts to the new lists. Allocates everything first, because the move
    cannot be undone. Returns 0 if memory runs out. */
@@ -14757,7 +14851,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_pairs_find(w)) return demi_no_memory(w, call);
     if (!w->stage.near_chosen) demi_near_choose(w);
     w->stage.near_chosen = 1;
-    if (!demi_near_make(w, 1) || !demi_walls_find(w) || !demi_contacts_move(w))
+    if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
@@ -32350,6 +32444,7 @@ static int demi_twin_follow(dem_world *t) {
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
+    if (!demi_walled_note(t)) return 0;
     if (!t->stage.pairs_changed) demi_species_lay(t);
     demi_species_vary(t);
     if (t->bodies.shaped && !demi_centres_lay(t)) return 0;

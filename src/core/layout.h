@@ -388,6 +388,7 @@ typedef struct demi_wall {
     int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
+    int open;                      /* 1: it may be a sheet: it has open edges or repeats */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
     int repeats[3];                /* 1: repeats along a periodic axis, since it is not longer than
                                       the period */
@@ -791,6 +792,7 @@ struct dem_world {
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
     int facets_valid;              /* surfaces fit the walls and their motions */
+    int sheeted;                   /* 1: some surface of facets may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
     int surface_count;             /* >>surfaces: joined surfaces */
     demi_wall *surfaces;
@@ -847,6 +849,7 @@ struct dem_world {
                                       was built */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
     int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
+    int32_t *walled;               /* bodies: 1 + first wall candidate, 0: none (if `sheeted`) */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */

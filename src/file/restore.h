@@ -486,6 +486,7 @@ static int demi_twin_follow(dem_world *t) {
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
+    if (!demi_walled_note(t)) return 0;
     if (!t->stage.pairs_changed) demi_species_lay(t);
     demi_species_vary(t);
     if (t->bodies.shaped && !demi_centres_lay(t)) return 0;

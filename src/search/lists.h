@@ -158,6 +158,19 @@ static void demi_domain_walls(dem_world *w, int d) {
     domain->overflow &= ~4;
     for (i = domain->begin; i < domain->end; i++) demi_body_walls(w, d, i);
 }
+/* Notes the first wall candidate of each body, while some surface is a sheet. Returns 0 if memory
+   ran out. */
+static int demi_walled_note(dem_world *w) {
+    const size_t n = (size_t)w->bodies.count + (size_t)w->join_room;
+    int d, k;
+    if (!w->sheeted) return 1;
+    if (!DEMI_GROW(w, w->walled, n)) return 0;
+    memset(w->walled, 0, n*sizeof *w->walled);
+    for (d = 0; d < w->domain_count; d++)
+        for (k = d*w->wall_stride + w->domains[d].walls - 1; k >= d*w->wall_stride; k--)
+            w->walled[w->wall_body[k]] = 1 + k;
+    return 1;
+}
 
 /* Allocates a candidate list of `stride` entries per work group. Returns 0 if memory runs out;
    arrays that have grown stay valid. */

@@ -322,6 +322,73 @@ static void demi_domain_adopt(dem_world *w, int d) {
     demi_near_adopt(w, d);
 }
 
+/* --- sheets: bodies on both sides of a surface without thickness do not touch --- */
+
+/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: where,
+   as a part of the segment. */
+static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to,
+                                dem_real *at) {
+    const dem_real *plane = wall->planes + 4*element;
+    const dem_vec3 n = demi_at(plane);
+    const dem_real here = demi_dot(n, x) - plane[3], there = here + demi_dot(n, to);
+    dem_vec3 c[3], p;
+    int i, corners, sides = 0;
+    if ((here > 0) == (there > 0)) return 0;
+    *at = here/(here - there);
+    p = demi_add(x, demi_scale(to, *at));
+    corners = demi_wall_corners(wall, element, c);
+    for (i = 0; i < corners; i++) {
+        const dem_vec3 e = demi_sub(c[(i + 1)%corners], c[i]), d = demi_sub(p, c[i]);
+        const dem_real hair = DEM_R(-1e-6)*demi_dot(e, e);
+        sides += corners == 2 ? e.x*d.x + e.y*d.y > hair : demi_dot(n, demi_cross(e, d)) > hair;
+    }
+    return sides == corners;
+}
+/* True if a sheet crosses the line between the centres of two bodies, at a point in the bounding
+   spheres of both, extended by half a skin. to: m, from a to the image of b. The sheet is among the
+   candidates of either; ghosts have none. */
+static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
+    const dem_real more = demi_cover(w)/2, length = demi_length(to);
+    const dem_real ra = w->bodies.pos[4*a + 3] + more, rb = w->bodies.pos[4*b + 3] + more;
+    int i;
+    for (i = 0; i < 2; i++) {
+        const int body = i ? b : a, first = w->walled[body] - 1;
+        const dem_real own = i ? rb : ra, other = i ? ra : rb;
+        const int d = first < 0 ? 0 : first/w->wall_stride;
+        const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
+        int k;
+        for (k = first; k < end && w->wall_body[k] == body; k++) {
+            const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
+            const dem_real *R = wall->pose.rotation;
+            dem_vec3 x;
+            dem_real at;
+            if (!wall->open) continue;
+            x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
+                demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
+            if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
+            if (demi_element_crossed(wall, w->wall_element[k], x,
+                                     demi_unrotate(R, i ? demi_scale(to, -1) : to), &at) &&
+                at*length < own && (1 - at)*length < other) return 1;
+        }
+    }
+    return 0;
+}
+/* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
+   group. Returns the new end. */
+static int demi_near_part(const dem_world *w, const demi_list *list, int d, int first, int end) {
+    int32_t *out = w->near.k + d*w->near.stride;
+    int q, left = first;
+    if (!w->sheeted) return end;
+    for (q = first; q < end; q++) {
+        const int k = out[q], a = list->a[k], b = list->b[k];
+        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
+            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+            demi_at(w->image_shift + list->image[k])))) continue;
+        out[left++] = k;
+    }
+    return left;
+}
+
 /* Builds the pruned list of a work group: first the pairs of spheres, then the others; in both, the
    pairs inside the group, then those with later groups. Sets `overflow` if there is no room. */
 static void demi_domain_near(dem_world *w, int d) {
@@ -335,6 +402,7 @@ static void demi_domain_near(dem_world *w, int d) {
         const int first = p;
         p = demi_near_pick(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
+        p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
             near->a[at] = list->a[k];
@@ -356,6 +424,7 @@ static void demi_domain_near(dem_world *w, int d) {
         if (l) domain->near_next_shaped_cross = p;
         if (w->bodies.shaped) p = demi_near_pick_shaped(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
+        p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
             near->a[at] = list->a[k];

@@ -262,6 +262,8 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->domains[last].walls - walls >= w->join_room) return 0;
     w->join_room -= w->domains[last].walls - walls;
     if (w->domains[last].walls > walls) w->touching_valid = 0;
+    if (w->sheeted) w->walled[i] = w->domains[last].walls > walls
+        ? 1 + last*w->wall_stride + walls : 0;
     demi_quiet_at(w, last, i)->restless = 2;
     w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
     w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
@@ -391,7 +393,7 @@ static int demi_walls_find(dem_world *w) {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
         room = w->wall_stride/2*3 + 64;
     } while (demi_lists_overflow(w, 4));
-    return 1;
+    return demi_walled_note(w);
 }
 /* Moves the persistent contacts to the new lists. Allocates everything first, because the move
    cannot be undone. Returns 0 if memory runs out. */
@@ -447,7 +449,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_pairs_find(w)) return demi_no_memory(w, call);
     if (!w->stage.near_chosen) demi_near_choose(w);
     w->stage.near_chosen = 1;
-    if (!demi_near_make(w, 1) || !demi_walls_find(w) || !demi_contacts_move(w))
+    if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);

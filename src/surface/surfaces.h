@@ -228,7 +228,7 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     int i, k, end, ok;
     memset(&m, 0, sizeof m);
     s->lone = !repeats;
-    s->wraps = 0;
+    s->wraps = s->open = 0;
     memset(s->ends, 0, (size_t)all);
     s->number_count = all + s->edge_count + own;
     m.points = own;
@@ -279,6 +279,8 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     for (i = 0; i < 2*all && ok && per == 2; i++)
         if (m.faces[s->corners[i]] != 2)
             s->ends[i/2] = (unsigned char)(s->ends[i/2] | 1 << i%2);
+    s->open = s->wraps;                         /* a sheet without end has no open edges */
+    for (i = 0; i < all && ok; i++) s->open |= s->ends[i] != 0;
     demi_meets_free(w, &m);
     return ok;
 }
@@ -382,6 +384,7 @@ static int demi_scales_take(dem_world *w) {
     w->effects.scales |= more;
     if (!w->facets_valid) return 1;             /* demi_surfaces_make makes all */
     w->facets_valid = demi_tessellations_make(w, more);
+    for (i = 0; i < w->surface_count; i++) w->sheeted |= w->surfaces[i].open;
     demi_walls_repeat(w);
     return w->facets_valid;
 }
@@ -434,6 +437,10 @@ static int demi_surfaces_make(dem_world *w) {
         ok = demi_surface_make(w, i);
     }
     ok = ok && demi_tessellations_make(w, w->effects.scales);
+    for (i = w->sheeted = 0; i < w->wall_count + w->surface_count; i++) {
+        const demi_wall *s = demi_surface_of(w, i);
+        w->sheeted |= s->open && !s->joined && !s->covered;
+    }
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;

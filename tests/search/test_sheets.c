@@ -1,0 +1,165 @@
+/* Sheets, surfaces without thickness, separate grains: what is pressed against both sides acts as if it were alone. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+#define R 0.005
+static const int fine = sizeof(dem_real) == 8;
+static const dem_quat straight = {1, 0, 0, 0};
+enum { BALL, EGG, CLUSTER, CUBE, BODIES };
+enum { MESH, PROFILE, PERIODIC, MOVED, SIEVE, WALLS };
+static dem_body put(dem_world *w, dem_material m, int kind, dem_vec3 x) {
+    static const dem_real at3[9] = {0, 0, 0, DEM_R(0.002), 0, 0, 0, DEM_R(0.002), 0};
+    dem_cluster_desc c = DEM_CLUSTER_DESC;
+    if (kind == BALL) return dem_sphere_add(w, m, DEM_R(R), x);
+    c.count = 3;
+    c.positions = at3;
+    c.radius = DEM_R(0.004);
+    return dem_body_add(w, m, kind == EGG ? dem_shape_ellipsoid_add(w, at(R, 0.8*R, 0.9*R))
+                        : kind == CLUSTER ? dem_shape_cluster_add(w, &c) : scene_box(w, R, 1.1*R, 1.2*R), x, straight);
+}
+/* A sheet in the plane y = 0, or at this end of it. */
+static dem_wall sheet(dem_world *w, dem_material m, int kind, double end) {
+    const double far = kind == PERIODIC ? 0.03 : 0.1;
+    dem_real v[12] = {DEM_R(-0.1), 0, DEM_R(-0.1), 0, 0, DEM_R(-0.1), 0, 0, DEM_R(0.1), DEM_R(-0.1), 0, DEM_R(0.1)};
+    const int32_t t[6] = {0, 2, 1, 0, 3, 2}, s[2] = {0, 1};
+    dem_sieve_desc holes = DEM_SIEVE_DESC;
+    dem_profile line;
+    dem_mesh mesh;
+    int i;
+    for (i = 0; i < 4; i++) {
+        v[3*i] = (dem_real)(i == 1 || i == 2 ? end < far ? end : far : -far);
+        v[3*i + 2] = (dem_real)(i < 2 ? -far : far);
+    }
+    if (kind == PROFILE) {
+        dem_real x[4] = {DEM_R(-0.1), 0, 0, 0};
+        x[2] = (dem_real)end;
+        line.vertex_count = 2; line.segment_count = 1; line.vertices = x; line.segments = (int32_t *)(size_t)s;
+        return dem_wall_profile_add(w, m, &line, DEM_EDGE_RESOLVED);
+    }
+    if (kind == SIEVE) {                        /* its bar, at z from 8 to 18 mm */
+        holes.kind = DEM_SIEVE_SQUARE;
+        holes.normal = at(0, 1, 0);
+        holes.along = at(1, 0, 0);
+        holes.aperture = DEM_R(0.004);
+        holes.bar = DEM_R(0.05);
+        return dem_wall_sieve_add(w, m, &holes);
+    }
+    mesh.vertex_count = 4; mesh.triangle_count = 2; mesh.vertices = v; mesh.triangles = (int32_t *)(size_t)t;
+    return dem_wall_mesh_add(w, m, &mesh);
+}
+/* What a body does that hits the sheet from above while another one, if `both`, does from below. */
+static dem_body_state hit(int body, int kind, int impulses, int both, int threads) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_motion motion = DEM_MOTION;
+    dem_world *w;
+    dem_material m;
+    dem_body_state s;
+    dem_body b[2];
+    dem_wall wall;
+    int i;
+    desc.response = impulses ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+    desc.dt = impulses ? DEM_R(1e-4) : DEM_R(2e-6);
+    desc.allow_large_dt = 1;
+    desc.threads = threads;
+    if (kind == PERIODIC) {
+        desc.boundary[0] = desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
+        desc.domain = box_of(-0.03, -1, -0.03, 0.03, 1, 0.03);
+    }
+    w = dem_world_create(&desc);
+    m = scene_material(w, impulses ? 0 : 1e7, 0.5, 0.3, 0);
+    wall = sheet(w, m, kind, 0.1);
+    CHECK(wall.id);
+    if (kind == MOVED) {
+        motion.kind = DEM_MOTION_TRANSLATING;
+        motion.velocity = at(0, 0.1, 0.1);
+        CHECK_EQ(dem_wall_motion_set(w, wall, &motion), DEM_OK);
+    }
+    for (i = 0; i < 1 + both; i++) {
+        b[i] = put(w, m, body, at(kind == SIEVE ? 0.027 : kind == PERIODIC ? 0.029 : 0.012 + 0.001*i, (i ? -1 : 1)*1.6*R,
+                                  kind == SIEVE ? 0.027 : 0.0123));
+        CHECK(b[i].slot);
+        scene_move(w, b[i], at(0.2, i ? 0.5 : -0.5, 0), at(0, 0, 0));
+    }
+    CHECK_EQ(dem_world_run(w, 0.02, 0, 0), DEM_OK);
+    s = scene_state(w, b[0]);
+    dem_world_destroy(w);
+    return s;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("sheets: bodies that hit both sides of a mesh, a profile, a periodic seam or a moving sheet bounce as if each were "
+         "alone, by springs and impulses") {
+        int body, kind, impulses;
+        for (body = 0; body < BODIES; body++)
+            for (kind = 0; kind < WALLS; kind++)
+                for (impulses = 0; impulses < 2; impulses++) {
+                    const double close = fine ? impulses ? 1e-5 : 1e-9 : 1e-3;
+                    dem_body_state one, two;
+                    if (kind == SIEVE && (body != EGG || impulses)) continue;      /* of facets: see >>tessellate */
+                    one = hit(body, kind, impulses, 0, 1);
+                    two = hit(body, kind, impulses, 1, 1);
+                    CHECK(one.velocity.y > DEM_R(0.1));
+                    CHECK((double)demi_size(demi_sub(one.velocity, two.velocity)) < close);
+                    CHECK((double)demi_size(demi_sub(one.spin, two.spin))*R < close);
+                    CHECK((double)demi_size(demi_sub(one.position, two.position)) < close*R);
+                }
+    }
+
+    TEST("sheets: balls beside a sheet's end touch each other, and those on both sides of it do not") {
+        int beyond;
+        for (beyond = 0; beyond < 2; beyond++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *w;
+            dem_material m;
+            dem_body b;
+            desc.impact_speed = 1;
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e7, 1, 0, 0);
+            sheet(w, m, MESH, 0);
+            b = put(w, m, BALL, at(beyond ? 0.0101 : -0.001, 1.05*R, 0));
+            scene_move(w, put(w, m, BALL, at(beyond ? 0.0101 : -0.001, -1.05*R, 0)), at(0, 0.5, 0), at(0, 0, 0));
+            CHECK_EQ(dem_world_run(w, 0.01, 0, 0), DEM_OK);
+            CHECK_NEAR((double)scene_state(w, b).velocity.y, beyond ? 0.5 : 0, fine ? 1e-3 : 1e-2);
+            dem_world_destroy(w);
+        }
+    }
+
+    TEST("sheets: grains on both sides of a sheet that turns give the same bits after a restart, for any threads and in "
+         "slabs") {
+        uint64_t hash[3];
+        int k, i;
+        for (k = 0; k < 3; k++) {               /* 1 thread; 2; on from a checkpoint */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_motion motion = DEM_MOTION;
+            dem_world *w;
+            dem_material m;
+            desc.gravity = at(0, -9.81, 0);
+            desc.threads = 1 + (k == 1);
+            desc.impact_speed = 1;
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e6, 0.5, 0.3, 0);
+            motion.kind = DEM_MOTION_ROTATING;
+            motion.axis = at(0, 0, 1);
+            motion.speed = 3;
+            CHECK_EQ(dem_wall_motion_set(w, sheet(w, m, MESH, 0.1), &motion), DEM_OK);
+            dem_wall_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.06), 1);
+            dem_wall_plane_add(w, m, at(0, 0, -0.02), at(0, 0, 1));
+            dem_wall_plane_add(w, m, at(0, 0, 0.02), at(0, 0, -1));
+            for (i = 0; i < 2; i++)
+                dem_spheres_fill(w, m, DEM_R(0.003), dem_region_make(box_of(-0.04, i ? -0.035 : 0.005, -0.015, 0.04,
+                                                                            i ? -0.005 : 0.035, 0.015)), 60, 3);
+            if (k < 2) CHECK_EQ(dem_world_run(w, 0.1, 0, 0), DEM_OK);
+            if (k == 1) CHECK_EQ(dem_checkpoint_write(w, "build/tmp/sheets.dem"), DEM_OK);
+            if (k == 2) CHECK_EQ(dem_checkpoint_read(w, "build/tmp/sheets.dem"), DEM_OK);
+            CHECK_EQ(dem_world_run(w, 0.05, 0, 0), DEM_OK);
+            hash[k] = dem_world_hash_get(w);
+            dem_world_destroy(w);
+        }
+        CHECK(hash[1] == hash[0] && hash[2] == hash[0]);
+    }
+    return test_end();
+}
