@@ -653,8 +653,8 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, in
                                      dem_real radius, dem_real share);
 
 /* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra
-   with infinite sieves except DEM_SIEVE_REDUCED. Ellipsoids, and polyhedra on plates without
-   thickness by springs, touch facets (>>tessellate). */
+   with infinite sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids, and polyhedra on
+   plates without thickness by springs, touch facets (>>tessellate). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,               /* a square weave of round wires */

@@ -398,14 +398,14 @@ static int demi_wall_faceted(const dem_world *w, const demi_wall *wall, int part
 /* Returns why a part cannot touch a wall, and the remedy; 0 if it can. */
 static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
     if (!demi_listed(demi_wall_kinds[wall->kind].touch, part) && !demi_wall_faceted(w, wall, part))
-        return "contacts between the two are not available; make bodies clusters of spheres, or "
-               "the wall a mesh or a resolved profile";
+        return "contacts between the two are not available; use a mesh or a resolved profile";
     if (part == DEMI_BALL) return 0;
+    if (w->desc.planar && (wall->sieve.kind || wall->ring_count))
+        return "a polygon is a prism along z, and the wall is not; use a profile";
     if (wall->sieve.kind == DEM_SIEVE_REDUCED)
         return "reduced holes are only for spheres; use DEM_SIEVE_SQUARE";
     if (wall->sieve.radius > 0)
-        return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
-               "cylinder around it";
+        return "a sieve cut from a disc is only for spheres; set its radius to 0, add a cylinder";
     return 0;
 }
 /* Returns the first kind of part of a shape (null: a sphere) whose contacts with a wall are not
