@@ -108,7 +108,7 @@ static int cell(int wall, int body, int impulses, char *why, size_t room) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("cells: every body comes to rest on every wall, by springs and impulses, or is refused with a reason") {
+    TEST("cells: every body comes to rest on every wall, by springs and impulses, or dem.h refuses it with a reason") {
         static char reasons[16][200];
         int wall, body, impulses, i, known = 0, filled = 0, refused = 0;
         if (getenv("CELLS")) {
