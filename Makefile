@@ -228,7 +228,7 @@ $(ROOMS_O): build/rooms/%.o: build/rooms/%.c build/flags
 	$(COMPILE) $(LEVEL) $(OMP) -c -o $@ $<
 # two tests need several domains of few bodies
 build/rooms/small_%.o: build/rooms/%.c build/flags
-	$(COMPILE) $(LEVEL) $(OMP) -DDEM_DOMAIN_BODIES=16 -c -o $@ $<
+	$(COMPILE) $(LEVEL) $(OMP) -DDEM_DOMAIN_BODIES=16 -DDEM_THREADS_FIXED -c -o $@ $<
 SMALL_O := $(patsubst %/search.o,%/small_search.o,$(patsubst %/file.o,%/small_file.o,$(ROOMS_O)))
 # a call of every public function, each argument bad in turn: made anew when dem.h is another
 tests/refused.h: tests/refused.awk dem.h

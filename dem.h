@@ -1502,7 +1502,8 @@ typedef struct dem_world_desc {
 
     /* -- running -- */
     int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
-    /* number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64 */
+    /* Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are
+       used while that is faster; results are the same. */
     int threads;
     dem_allocator allocator;       /* memory functions; 0 means malloc and free */
 } dem_world_desc;
@@ -4158,6 +4159,15 @@ typedef struct demi_output {
    sums are incomplete, 0 where the world is consistent and files may be written. */
 typedef struct demi_calling { const char *who; int within; } demi_calling;
 
+/* How many threads a world uses, see demi_crew_end. Not part of the state. */
+typedef struct demi_crew {
+    int now, best, steps, fewer;   /* threads of this step; of steps outside trials; steps that were
+                                      measured; 1: the last trial was of fewer threads */
+    double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
+    double since, wait;            /* s: since the last trial, until the next one */
+    uint64_t rebuilds;             /* when this step began */
+} demi_crew;
+
 /* Observers of a run: outputs, replays, progress. Not part of the state, except `written` of
    outputs: reading a checkpoint does not change them. */
 typedef struct demi_lookers {
@@ -4286,6 +4296,7 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
+    demi_crew crew;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
     int sheeted;                   /* 1: some surface of facets may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
@@ -9348,7 +9359,7 @@ static void demi_domain_finish(dem_world *w, int d) {
    time. */
 static void demi_finish(dem_world *w) {
     if (w->stage.synced) return;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_finish);
     w->stage.synced = 1;
 }
 
@@ -14381,7 +14392,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     do {                                        /* until the pairs of every group fit */
         again = 0;
         if (demi_near_reserve(w, &w->near, w->domain_count, stride)) {
-            demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_near);
+            demi_parallel(w, w->crew.now, w->domain_count, demi_domain_near);
             for (d = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 8;
             stride = stride/4*5/DEMI_LANES*DEMI_LANES + 4*DEMI_LANES;
             continue;
@@ -14390,9 +14401,9 @@ static int demi_near_make(dem_world *w, int fresh) {
         w->near = swap;
         return 0;
     } while (again);
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
+        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */
@@ -14778,7 +14789,7 @@ static int demi_pairs_find(dem_world *w) {
         !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return 0;
     do {
-        demi_parallel(w, w->desc.threads, n, demi_domain_search);
+        demi_parallel(w, w->crew.now, n, demi_domain_search);
         over = demi_lists_overflow(w, 3);
         if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
             (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
@@ -14792,7 +14803,7 @@ static int demi_walls_find(dem_world *w) {
     int room = DEMI_MAX(w->wall_stride, 64);
     do {
         if (!demi_wall_lists_reserve(w, room)) return 0;
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
+        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_walls);
         room = w->wall_stride/2*3 + 64;
     } while (demi_lists_overflow(w, 4));
     return demi_walled_note(w);
@@ -14854,7 +14865,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
+        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
@@ -18423,9 +18434,8 @@ static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int elem
 }
 /* True if the plane of an element is farther from x than `within`, m. */
 DEM_INLINE int demi_element_far(const demi_wall *wall, int element, dem_vec3 x, dem_real within) {
-    const dem_real *plane = wall->planes + 4*element;
-    return wall->planes &&
-        DEMI_ABS(demi_dot(demi_at(plane), x) - plane[3]) > within + wall->plane_slack;
+    const dem_real *plane = wall->planes ? wall->planes + 4*element : 0;
+    return plane && DEMI_ABS(demi_dot(demi_at(plane), x) - plane[3]) > within + wall->plane_slack;
 }
 /* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
    normal. */
@@ -20589,7 +20599,7 @@ static int demi_touch(dem_world *w) {
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     demi_surfaces_follow(w);
     do {
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_kept_touch);
+        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_kept_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
         if (again && !demi_kept_widen(w)) return 0;
     } while (again);
@@ -22807,7 +22817,7 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->desc.threads, runs, task);
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, task);
         s->run += runs;
     }
 }
@@ -22817,7 +22827,7 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
     s->last = s->count;
-    demi_parallel(w, w->desc.threads, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
+    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
 /* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
@@ -23427,11 +23437,11 @@ static void demi_impulses(dem_world *w) {
     double farthest = 0;
     int i;
     s->dt = w->clock.dt;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_lay);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_movers_lay);
     demi_joints_lay(w);
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_meet);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_meet);
     demi_impulses_colour(w);
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_lay);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_lay);
     if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
         demi_joints_warm(w);
@@ -23446,8 +23456,8 @@ static void demi_impulses(dem_world *w) {
         w->booked.unsolved++;
         s->limited = demi_solver_limited(s);
     }
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_force);
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_tell);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_movers_force);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_tell);
     demi_impulses_fixed(w);
     demi_joints_tell(w);
     w->booked.due[0] = demi_sum_energy(w, DEMI_E_DASHPOT);
@@ -23508,7 +23518,7 @@ static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->desc.threads, runs, demi_some_ahead);
+    demi_parallel(w, w->crew.now, runs, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -23525,7 +23535,7 @@ static void demi_ahead(dem_world *w) {
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->desc.threads, runs, demi_some_back);
+    demi_parallel(w, w->crew.now, runs, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 /* Adds the work of walls, joints and motors in the coming step to the energies due. */
@@ -24993,7 +25003,7 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
    exchange data of ghost particles and agree on maxima and failures. A single world has no team and
    is its own only member: an exchange then does nothing, and an agreement returns the member's own
    numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
-   for slabs. Owns nothing.
+   for slabs. At the end, the number of threads of a single world. Owns w->crew.
    --------------------------------------------------------------------------------------------- */
 
 /* Return the number of members in this process, and member k. In all parts `h` is the head of a
@@ -25029,6 +25039,72 @@ static void demi_dt_share(dem_world *h) {
 }
 /* Completes the half kick that the last step left open (demi_finish), as a task for demi_all. */
 static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }
+
+/* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
+   scene, or if another program keeps a core busy, since each parallel loop then waits for the
+   thread that does not run. So steps are timed, and half and twice the present number are tried in
+   turns. A trial ends early once it has lost the time of four steps, and the next one waits for
+   twenty times what it has lost, so trials take at most some 5 % of the time. Steps with a rebuild
+   are not counted. With DEM_THREADS_FIXED (tests) the number is that of the desc. --- */
+#ifdef DEM_THREADS_FIXED
+enum { DEMI_CREW_FIXED = 1 };
+#else
+enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+#endif
+enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
+/* True if the number of threads of a world is to be chosen. */
+static int demi_crew_varies(const dem_world *h) {
+    return !DEMI_CREW_FIXED && !h->team && h->desc.threads > 1;
+}
+static void demi_crew_begin(dem_world *h) {
+    int k;
+    for (k = 0; k < demi_members(h); k++) {
+        demi_crew *c = &demi_member(h, k)->crew;
+        if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
+    }
+    h->crew.rebuilds = h->clock.rebuilds;
+    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+}
+/* Ends a measurement with `now` threads on trial; they may be `best`. */
+static void demi_crew_try(demi_crew *c, int now) {
+    c->now = now;
+    c->steps = 0;
+    c->sum = 0;
+}
+/* Measures the step and decides how many threads take the next one. */
+static void demi_crew_end(dem_world *w) {
+    demi_crew *c = &w->crew;
+    const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
+    const int first = !(c->cost > 0), trial = c->now != c->best;
+    const int half = DEMI_MAX(c->best/2, 1), twice = DEMI_MIN(2*c->best, w->desc.threads);
+    double lost;
+    if (!demi_crew_varies(w)) return;
+    if (!trial) c->since += took;
+    if (w->clock.rebuilds != c->rebuilds) return;
+    c->sum += took;
+    c->steps++;
+    lost = c->sum - c->steps*c->cost;
+    if (trial) {
+        const int worse = lost > 4*c->cost;
+        if (!worse && c->steps < DEMI_CREW_STEPS) return;
+        c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
+        if (!worse && c->sum < 0.97*c->steps*c->cost) {
+            c->best = c->now;
+            c->cost = c->sum/c->steps;
+            c->wait = 0;                        /* perhaps farther the same way */
+        }
+        c->since = 0;
+        demi_crew_try(c, c->best);
+    } else {
+        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
+        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
+        c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
+        if (first || slow || c->since > c->wait) {
+            c->fewer = twice == c->best || (half < c->best && (first || slow || !c->fewer));
+            demi_crew_try(c, c->fewer ? half : twice);
+        } else demi_crew_try(c, c->best);
+    }
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>advice
@@ -26683,9 +26759,9 @@ static int demi_forces(dem_world *w) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
     }
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_respond);
     if (response->solve) response->solve(w);
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
@@ -26855,7 +26931,7 @@ static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
@@ -26939,7 +27015,7 @@ static void demi_domain_gain(dem_world *w, int d) {
 static void demi_reals_gain(dem_world *w) {
     int i, k;
     if (!w->bodies.real_count) return;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gain);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gain);
     for (i = 0; i < w->wall_count; i++)
         for (k = 0; k < w->bodies.real_count; k++)
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
@@ -27245,9 +27321,11 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     int i, whole = 1;
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
+        demi_crew_begin(h);
         if (!h->stage.moved) result = demi_step_ready(h);
         if (result == DEM_OK) {
             result = demi_step_once(h);
+            demi_crew_end(h);
             whole = result == DEM_OK;
             if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
         }
@@ -34675,6 +34753,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
+    w->crew.now = w->desc.threads;              /* until the first step */
     demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;
@@ -34894,13 +34973,16 @@ static void demi_report(const dem_world *world, FILE *out) {
     dem_world look = *world, *w = &look;        /* computes missing effects in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
+    char few[48] = "";
     dem_advice a;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
-    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
+    if (w->crew.best && w->crew.best < c.threads)
+        snprintf(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
             DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? ""
-            : "s", c.domains,
+            : "s", few, c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
     fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
             "+ %llu left\n", w->bodies.count,

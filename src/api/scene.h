@@ -120,7 +120,8 @@ typedef struct dem_world_desc {
 
     /* -- running -- */
     int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
-    /* number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64 */
+    /* Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are
+       used while that is faster; results are the same. */
     int threads;
     dem_allocator allocator;       /* memory functions; 0 means malloc and free */
 } dem_world_desc;

@@ -428,9 +428,8 @@ static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int elem
 }
 /* True if the plane of an element is farther from x than `within`, m. */
 DEM_INLINE int demi_element_far(const demi_wall *wall, int element, dem_vec3 x, dem_real within) {
-    const dem_real *plane = wall->planes + 4*element;
-    return wall->planes &&
-        DEMI_ABS(demi_dot(demi_at(plane), x) - plane[3]) > within + wall->plane_slack;
+    const dem_real *plane = wall->planes ? wall->planes + 4*element : 0;
+    return plane && DEMI_ABS(demi_dot(demi_at(plane), x) - plane[3]) > within + wall->plane_slack;
 }
 /* Sets the pressure of one element on a polyhedron about the origin. way: direction of its
    normal. */

@@ -663,6 +663,15 @@ typedef struct demi_output {
    sums are incomplete, 0 where the world is consistent and files may be written. */
 typedef struct demi_calling { const char *who; int within; } demi_calling;
 
+/* How many threads a world uses, see demi_crew_end. Not part of the state. */
+typedef struct demi_crew {
+    int now, best, steps, fewer;   /* threads of this step; of steps outside trials; steps that were
+                                      measured; 1: the last trial was of fewer threads */
+    double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
+    double since, wait;            /* s: since the last trial, until the next one */
+    uint64_t rebuilds;             /* when this step began */
+} demi_crew;
+
 /* Observers of a run: outputs, replays, progress. Not part of the state, except `written` of
    outputs: reading a checkpoint does not change them. */
 typedef struct demi_lookers {
@@ -791,6 +800,7 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
+    demi_crew crew;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
     int sheeted;                   /* 1: some surface of facets may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */

@@ -98,6 +98,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
+    w->crew.now = w->desc.threads;              /* until the first step */
     demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;
@@ -317,13 +318,16 @@ static void demi_report(const dem_world *world, FILE *out) {
     dem_world look = *world, *w = &look;        /* computes missing effects in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
+    char few[48] = "";
     dem_advice a;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
-    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
+    if (w->crew.best && w->crew.best < c.threads)
+        snprintf(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
             DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? ""
-            : "s", c.domains,
+            : "s", few, c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
     fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
             "+ %llu left\n", w->bodies.count,

@@ -244,9 +244,9 @@ static int demi_forces(dem_world *w) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
     }
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_respond);
     if (response->solve) response->solve(w);
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
@@ -416,7 +416,7 @@ static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
@@ -500,7 +500,7 @@ static void demi_domain_gain(dem_world *w, int d) {
 static void demi_reals_gain(dem_world *w) {
     int i, k;
     if (!w->bodies.real_count) return;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gain);
+    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gain);
     for (i = 0; i < w->wall_count; i++)
         for (k = 0; k < w->bodies.real_count; k++)
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
@@ -806,9 +806,11 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     int i, whole = 1;
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
+        demi_crew_begin(h);
         if (!h->stage.moved) result = demi_step_ready(h);
         if (result == DEM_OK) {
             result = demi_step_once(h);
+            demi_crew_end(h);
             whole = result == DEM_OK;
             if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
         }

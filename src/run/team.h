@@ -5,7 +5,7 @@
    exchange data of ghost particles and agree on maxima and failures. A single world has no team and
    is its own only member: an exchange then does nothing, and an agreement returns the member's own
    numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
-   for slabs. Owns nothing.
+   for slabs. At the end, the number of threads of a single world. Owns w->crew.
    --------------------------------------------------------------------------------------------- */
 
 /* Return the number of members in this process, and member k. In all parts `h` is the head of a
@@ -41,3 +41,69 @@ static void demi_dt_share(dem_world *h) {
 }
 /* Completes the half kick that the last step left open (demi_finish), as a task for demi_all. */
 static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }
+
+/* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
+   scene, or if another program keeps a core busy, since each parallel loop then waits for the
+   thread that does not run. So steps are timed, and half and twice the present number are tried in
+   turns. A trial ends early once it has lost the time of four steps, and the next one waits for
+   twenty times what it has lost, so trials take at most some 5 % of the time. Steps with a rebuild
+   are not counted. With DEM_THREADS_FIXED (tests) the number is that of the desc. --- */
+#ifdef DEM_THREADS_FIXED
+enum { DEMI_CREW_FIXED = 1 };
+#else
+enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+#endif
+enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
+/* True if the number of threads of a world is to be chosen. */
+static int demi_crew_varies(const dem_world *h) {
+    return !DEMI_CREW_FIXED && !h->team && h->desc.threads > 1;
+}
+static void demi_crew_begin(dem_world *h) {
+    int k;
+    for (k = 0; k < demi_members(h); k++) {
+        demi_crew *c = &demi_member(h, k)->crew;
+        if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
+    }
+    h->crew.rebuilds = h->clock.rebuilds;
+    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+}
+/* Ends a measurement with `now` threads on trial; they may be `best`. */
+static void demi_crew_try(demi_crew *c, int now) {
+    c->now = now;
+    c->steps = 0;
+    c->sum = 0;
+}
+/* Measures the step and decides how many threads take the next one. */
+static void demi_crew_end(dem_world *w) {
+    demi_crew *c = &w->crew;
+    const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
+    const int first = !(c->cost > 0), trial = c->now != c->best;
+    const int half = DEMI_MAX(c->best/2, 1), twice = DEMI_MIN(2*c->best, w->desc.threads);
+    double lost;
+    if (!demi_crew_varies(w)) return;
+    if (!trial) c->since += took;
+    if (w->clock.rebuilds != c->rebuilds) return;
+    c->sum += took;
+    c->steps++;
+    lost = c->sum - c->steps*c->cost;
+    if (trial) {
+        const int worse = lost > 4*c->cost;
+        if (!worse && c->steps < DEMI_CREW_STEPS) return;
+        c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
+        if (!worse && c->sum < 0.97*c->steps*c->cost) {
+            c->best = c->now;
+            c->cost = c->sum/c->steps;
+            c->wait = 0;                        /* perhaps farther the same way */
+        }
+        c->since = 0;
+        demi_crew_try(c, c->best);
+    } else {
+        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
+        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
+        c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
+        if (first || slow || c->since > c->wait) {
+            c->fewer = twice == c->best || (half < c->best && (first || slow || !c->fewer));
+            demi_crew_try(c, c->fewer ? half : twice);
+        } else demi_crew_try(c, c->best);
+    }
+}

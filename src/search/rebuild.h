@@ -376,7 +376,7 @@ static int demi_pairs_find(dem_world *w) {
         !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return 0;
     do {
-        demi_parallel(w, w->desc.threads, n, demi_domain_search);
+        demi_parallel(w, w->crew.now, n, demi_domain_search);
         over = demi_lists_overflow(w, 3);
         if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
             (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
@@ -390,7 +390,7 @@ static int demi_walls_find(dem_world *w) {
     int room = DEMI_MAX(w->wall_stride, 64);
     do {
         if (!demi_wall_lists_reserve(w, room)) return 0;
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
+        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_walls);
         room = w->wall_stride/2*3 + 64;
     } while (demi_lists_overflow(w, 4));
     return demi_walled_note(w);
@@ -452,7 +452,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
+        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
