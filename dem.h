@@ -471,6 +471,7 @@
        DEM_STATIC           makes every function static; use it with DEM_IMPLEMENTATION
        DEM_LAW              name of your contact law, to have it inlined (docs/extending.md)
        DEM_NO_OPENMP        never uses OpenMP, even if the compiler offers it
+       DEM_THREADS_FIXED    always uses desc.threads threads, also where fewer are faster
        DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits
        DEM_NO_CLONES        gcc on x86-64 Linux: no second copy of the loops for AVX2: less code,
                             slower unless compiled for AVX2, same bits
@@ -3253,6 +3254,12 @@ static void demi_parallel(dem_world *w, int threads, int count, demi_task task) 
     (void)threads;
     for (i = 0; i < count; i++) task(w, i);
 }
+/* 1: worlds use as many threads as their desc says. See >>team. */
+#ifdef DEM_THREADS_FIXED
+enum { DEMI_CREW_FIXED = 1 };
+#else
+enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+#endif
 /* Number of threads to use if desc.threads is 0. */
 static int demi_threads_available(void) {
 #if DEMI_OPENMP
@@ -4161,8 +4168,8 @@ typedef struct demi_calling { const char *who; int within; } demi_calling;
 
 /* How many threads a world uses, see demi_crew_end. Not part of the state. */
 typedef struct demi_crew {
-    int now, best, steps, fewer;   /* threads of this step; of steps outside trials; steps that were
-                                      measured; 1: the last trial was of fewer threads */
+    int now, best;                 /* threads of this step; of steps outside trials */
+    int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
     double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
     double since, wait;            /* s: since the last trial, until the next one */
     uint64_t rebuilds;             /* when this step began */
@@ -25053,19 +25060,15 @@ static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_
 
 /* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
    scene, or if another program keeps a core busy, since each parallel loop then waits for the
-   thread that does not run. So steps are timed, and half and twice the present number are tried in
-   turns. A trial ends early once it has lost the time of four steps, and the next one waits for
-   twenty times what it has lost, so trials take at most some 5 % of the time. Steps with a rebuild
-   are not counted. With DEM_THREADS_FIXED (tests) the number is that of the desc. --- */
-#ifdef DEM_THREADS_FIXED
-enum { DEMI_CREW_FIXED = 1 };
-#else
-enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
-#endif
+   thread that does not run. So steps are timed, and half the present number, one, and twice the
+   present number are tried in turns. A trial ends early once it has lost the time of four steps,
+   and the next one waits for twenty times what it has lost, so trials take at most some 5 % of the
+   time. Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
+   desc. --- */
 enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */
 static int demi_crew_varies(const dem_world *h) {
-    return !DEMI_CREW_FIXED && !h->team && h->desc.threads > 1;
+    return !h->crew.fixed && !h->team && h->desc.threads > 1;
 }
 static void demi_crew_begin(dem_world *h) {
     int k;
@@ -25076,7 +25079,17 @@ static void demi_crew_begin(dem_world *h) {
     h->crew.rebuilds = h->clock.rebuilds;
     if (demi_crew_varies(h)) h->crew.begun = demi_clock();
 }
-/* Ends a measurement with `now` threads on trial; they may be `best`. */
+/* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
+   steps have become slower, perhaps since another program keeps cores busy. */
+static int demi_crew_other(demi_crew *c, int most, int slow) {
+    int k, n = c->best;
+    for (k = 0; k < 3 && n == c->best; k++) {
+        c->turn = slow && !k ? 1 : (c->turn + 1)%3;
+        n = c->turn == 0 ? DEMI_MAX(c->best/2, 1) : c->turn == 1 ? 1 : DEMI_MIN(2*c->best, most);
+    }
+    return n;
+}
+/* Starts a measurement with `now` threads, which may be `best`. */
 static void demi_crew_try(demi_crew *c, int now) {
     c->now = now;
     c->steps = 0;
@@ -25087,7 +25100,6 @@ static void demi_crew_end(dem_world *w) {
     demi_crew *c = &w->crew;
     const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
     const int first = !(c->cost > 0), trial = c->now != c->best;
-    const int half = DEMI_MAX(c->best/2, 1), twice = DEMI_MIN(2*c->best, w->desc.threads);
     double lost;
     if (!demi_crew_varies(w)) return;
     if (!trial) c->since += took;
@@ -25110,10 +25122,8 @@ static void demi_crew_end(dem_world *w) {
         const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
         if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
         c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
-        if (first || slow || c->since > c->wait) {
-            c->fewer = twice == c->best || (half < c->best && (first || slow || !c->fewer));
-            demi_crew_try(c, c->fewer ? half : twice);
-        } else demi_crew_try(c, c->best);
+        demi_crew_try(c, first || slow || c->since > c->wait
+                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
     }
 }
 
@@ -34765,6 +34775,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
     w->crew.now = w->desc.threads;              /* until the first step */
+    w->crew.fixed = DEMI_CREW_FIXED;
     demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;

@@ -364,6 +364,7 @@
        DEM_STATIC           makes every function static; use it with DEM_IMPLEMENTATION
        DEM_LAW              name of your contact law, to have it inlined (docs/extending.md)
        DEM_NO_OPENMP        never uses OpenMP, even if the compiler offers it
+       DEM_THREADS_FIXED    always uses desc.threads threads, also where fewer are faster
        DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits
        DEM_NO_CLONES        gcc on x86-64 Linux: no second copy of the loops for AVX2: less code,
                             slower unless compiled for AVX2, same bits

@@ -665,8 +665,8 @@ typedef struct demi_calling { const char *who; int within; } demi_calling;
 
 /* How many threads a world uses, see demi_crew_end. Not part of the state. */
 typedef struct demi_crew {
-    int now, best, steps, fewer;   /* threads of this step; of steps outside trials; steps that were
-                                      measured; 1: the last trial was of fewer threads */
+    int now, best;                 /* threads of this step; of steps outside trials */
+    int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
     double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
     double since, wait;            /* s: since the last trial, until the next one */
     uint64_t rebuilds;             /* when this step began */

@@ -99,6 +99,12 @@ static void demi_parallel(dem_world *w, int threads, int count, demi_task task) 
     (void)threads;
     for (i = 0; i < count; i++) task(w, i);
 }
+/* 1: worlds use as many threads as their desc says. See >>team. */
+#ifdef DEM_THREADS_FIXED
+enum { DEMI_CREW_FIXED = 1 };
+#else
+enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+#endif
 /* Number of threads to use if desc.threads is 0. */
 static int demi_threads_available(void) {
 #if DEMI_OPENMP

@@ -44,19 +44,15 @@ static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_
 
 /* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
    scene, or if another program keeps a core busy, since each parallel loop then waits for the
-   thread that does not run. So steps are timed, and half and twice the present number are tried in
-   turns. A trial ends early once it has lost the time of four steps, and the next one waits for
-   twenty times what it has lost, so trials take at most some 5 % of the time. Steps with a rebuild
-   are not counted. With DEM_THREADS_FIXED (tests) the number is that of the desc. --- */
-#ifdef DEM_THREADS_FIXED
-enum { DEMI_CREW_FIXED = 1 };
-#else
-enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
-#endif
+   thread that does not run. So steps are timed, and half the present number, one, and twice the
+   present number are tried in turns. A trial ends early once it has lost the time of four steps,
+   and the next one waits for twenty times what it has lost, so trials take at most some 5 % of the
+   time. Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
+   desc. --- */
 enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */
 static int demi_crew_varies(const dem_world *h) {
-    return !DEMI_CREW_FIXED && !h->team && h->desc.threads > 1;
+    return !h->crew.fixed && !h->team && h->desc.threads > 1;
 }
 static void demi_crew_begin(dem_world *h) {
     int k;
@@ -67,7 +63,17 @@ static void demi_crew_begin(dem_world *h) {
     h->crew.rebuilds = h->clock.rebuilds;
     if (demi_crew_varies(h)) h->crew.begun = demi_clock();
 }
-/* Ends a measurement with `now` threads on trial; they may be `best`. */
+/* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
+   steps have become slower, perhaps since another program keeps cores busy. */
+static int demi_crew_other(demi_crew *c, int most, int slow) {
+    int k, n = c->best;
+    for (k = 0; k < 3 && n == c->best; k++) {
+        c->turn = slow && !k ? 1 : (c->turn + 1)%3;
+        n = c->turn == 0 ? DEMI_MAX(c->best/2, 1) : c->turn == 1 ? 1 : DEMI_MIN(2*c->best, most);
+    }
+    return n;
+}
+/* Starts a measurement with `now` threads, which may be `best`. */
 static void demi_crew_try(demi_crew *c, int now) {
     c->now = now;
     c->steps = 0;
@@ -78,7 +84,6 @@ static void demi_crew_end(dem_world *w) {
     demi_crew *c = &w->crew;
     const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
     const int first = !(c->cost > 0), trial = c->now != c->best;
-    const int half = DEMI_MAX(c->best/2, 1), twice = DEMI_MIN(2*c->best, w->desc.threads);
     double lost;
     if (!demi_crew_varies(w)) return;
     if (!trial) c->since += took;
@@ -101,9 +106,7 @@ static void demi_crew_end(dem_world *w) {
         const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
         if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
         c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
-        if (first || slow || c->since > c->wait) {
-            c->fewer = twice == c->best || (half < c->best && (first || slow || !c->fewer));
-            demi_crew_try(c, c->fewer ? half : twice);
-        } else demi_crew_try(c, c->best);
+        demi_crew_try(c, first || slow || c->since > c->wait
+                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
     }
 }
