@@ -45,6 +45,8 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
     if (!DEMI_GROW(to, to->surfaces, (size_t)first->surface_count)) return 0;
     for (i = 0; i < first->surface_count; i++) to->surfaces[i] = first->surfaces[i];
     to->surface_count = first->surface_count;
+    to->sheeted = first->sheeted;
+    to->effects.scales = first->effects.scales;
     return to->facets_valid = 1;
 }
 /* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
