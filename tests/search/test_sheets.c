@@ -88,6 +88,12 @@ static dem_body_state hit(int body, int kind, int impulses, int both, int thread
     return s;
 }
 
+/* Pushes grains towards the plane y = 0 from both sides. */
+static dem_vec3 inwards(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
+    (void)v; (void)radius; (void)time; (void)user;
+    return at(0, x.y > 0 ? -20*mass : 20*mass, 0);
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -139,13 +145,13 @@ int main(int argc, char **argv) {
             dem_motion motion = DEM_MOTION;
             dem_world *w;
             dem_material m;
-            desc.gravity = at(0, -9.81, 0);
+            desc.force = inwards;
             desc.threads = 1 + (k == 1);
             desc.impact_speed = 1;
             w = kept[k] = dem_world_create(&desc);
             m = scene_material(w, 1e6, 0.5, 0.3, 0);
             motion.kind = DEM_MOTION_ROTATING;
-            motion.axis = at(0, 0, 1);
+            motion.axis = at(0, 1, 0);
             motion.speed = 3;
             CHECK_EQ(dem_wall_motion_set(w, sheet(w, m, MESH, 0.1), &motion), DEM_OK);
             dem_wall_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.06), 1);
@@ -176,7 +182,7 @@ int main(int argc, char **argv) {
             const dem_vec3 b = demi_at(kept[3]->bodies.pos + 4*kept[3]->bodies.slot_index[i]);
             apart = fmax(apart, (double)demi_size(demi_sub(a, b)));
         }
-        CHECK(apart < (fine ? 1e-9 : 1e-4)*R);
+        CHECK(apart < (fine ? 1e-7 : 1e-2)*R);     /* rounding, after 600 steps of a heap */
         for (k = 0; k < 4; k++) dem_world_destroy(kept[k]);
     }
     return test_end();
