@@ -14218,33 +14218,37 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     return sides == corners;
 }
 /* True if a sheet crosses the line between the centres of two bodies, at a point in the bounding
-   spheres of both, extended by half a skin. to: m, from a to the image of b. The sheet is among the
-   candidates of either; ghosts have none. */
+   spheres of both, extended by half a skin. It is then among the candidates of both; fixed bodies
+   and ghosts have none. to: m, from a to the image of b. */
 static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
     const dem_real more = demi_cover(w)/2, length = demi_length(to);
-    const dem_real ra = w->bodies.pos[4*a + 3] + more, rb = w->bodies.pos[4*b + 3] + more;
-    int i;
-    for (i = 0; i < 2; i++) {
-        const int body = i ? b : a, first = w->walled[body] - 1;
-        const dem_real own = i ? rb : ra, other = i ? ra : rb;
-        const int d = first < 0 ? 0 : first/w->wall_stride;
-        const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
-        int k;
-        for (k = first; k < end && w->wall_body[k] == body; k++) {
-            const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
+    const int other = !w->walled[a], body = other ? b : a, first = w->walled[body] - 1;
+    const int d = first/w->wall_stride, end = d*w->wall_stride + w->domains[d].walls;
+    const dem_real own = w->bodies.pos[4*body + 3] + more;
+    const dem_real far = w->bodies.pos[4*(other ? a : b) + 3] + more;
+    const dem_real gone = more + (dem_real)(w->margin.gone + w->margin.walls_gone);
+    dem_vec3 x = to, way = to;
+    int k, had = -1;
+    for (k = first; k < end && w->wall_body[k] == body; k++) {
+        const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
+        dem_real at;
+        if (!wall->open || w->wall_gap[k] > gone) continue;
+        if (had < 0 || w->wall_id[k] != w->wall_id[had] || w->repeating || wall->step[0].x > 0) {
             const dem_real *R = wall->pose.rotation;
-            dem_vec3 x;
-            dem_real at;
-            if (!wall->open) continue;
             x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
                 demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
             if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
-            if (demi_element_crossed(wall, w->wall_element[k], x,
-                                     demi_unrotate(R, i ? demi_scale(to, -1) : to), &at) &&
-                at*length < own && (1 - at)*length < other) return 1;
+            way = demi_unrotate(R, other ? demi_scale(to, -1) : to);
+            had = k;
         }
+        if (demi_element_crossed(wall, w->wall_element[k], x, way, &at) &&
+            at*length < own && (1 - at)*length < far) return 1;
     }
     return 0;
+}
+/* True if a body has no wall candidates although it may touch walls. */
+static int demi_unlisted(const dem_world *w, int i) {
+    return demi_is_ghost(w, i) || !(w->bodies.inv_mass[i] > 0);
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */
@@ -14254,9 +14258,11 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     if (!w->sheeted) return end;
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
-        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
-            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
-            demi_at(w->image_shift + list->image[k])))) continue;
+        if (((w->walled[a] && (w->walled[b] || demi_unlisted(w, b))) ||
+             (w->walled[b] && demi_unlisted(w, a))) &&
+            demi_sheet_between(w, a, b, demi_add(demi_sub(
+                demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+                demi_at(w->image_shift + list->image[k])))) continue;
         out[left++] = k;
     }
     return left;
