@@ -112,7 +112,7 @@ static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32
 }
 /* The rings of the wall, and more between them: where the radius changes by more than a factor of
    four, so that the number of sides changes by two at most, and where facets would be more than 500
-   times as long as wide. */
+   times as long as wide (but at most 1000 of these on a piece). */
 static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     const int last = wall->ring_count - 1;
     const double least = DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
@@ -128,7 +128,8 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
         double t = 0, to;
         for (; t < 1 && !f->failed; t = to) {
             const double r = a + t*(b - a), next = b < a ? r/4 : DEMI_MAX(4*r, least);
-            to = DEMI_MIN(1, t + 500*wide/sqrt((b - a)*(b - a) + (h - g)*(h - g)));
+            const double size = sqrt((b - a)*(b - a) + (h - g)*(h - g));
+            to = DEMI_MIN(1, t + DEMI_MAX(500*wide/size, 1e-3));
             if (b < a ? next > b && r > least : next < b) to = DEMI_MIN(to, (next - a)/(b - a));
             if (to > 1 - 1e-9) to = 1;
             demi_revolved_ring(f, to < 1 ? a + to*(b - a) : b, to < 1 ? g + to*(h - g) : h,
