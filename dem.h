@@ -11736,10 +11736,10 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
    DEMI_WALLS) makes the facets, which stand still in the wall's frame and are used as those of any
    mesh or profile (>>facets, >>touch, >>polyhedra-walls).
 
-   The distance of facets from the curve is at most 5e-4 times the power of two below the radius of
-   the body's bounding sphere. Each body's facets therefore depend on that body alone. Circles
-   become polygons of the same area, whose numbers of sides are 24 times a power of two. Where a
-   surface of revolution narrows, they have fewer.
+   Let s be the largest power of two, in m, below the radius of the body's bounding sphere. Facets
+   deviate from the curve by at most 5e-4 s, for walls up to 20,000 times as large as s. Other
+   bodies do not change them. A circle becomes a polygon of equal area with 24, 48, 96, ... 12,288
+   sides. Smaller circles of a surface of revolution get fewer sides.
 
    A sieve without end is one cell, which repeats along two steps in its plane. Not tessellated:
    reduced holes, which [ALK07] defines for spheres, and sieves cut from a disc.
@@ -11841,11 +11841,12 @@ static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32
     if (before) demi_form_band(f, from, before, *at, sides);
 }
 /* The rings of the wall, and more between them: where the radius changes by more than a factor of
-   four, so that the number of sides changes by two at most, and where facets would be more than 500
-   times as long as wide (but at most 1000 of these on a piece). */
+   four, so that the number of sides doubles or halves at most, and where facets would be more than
+   500 times as long as wide (but at most 1000 of these on a piece). */
 static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     const int last = wall->ring_count - 1;
-    const double least = DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
+    /* just below the radius at which circles get twice as many sides */
+    const double least = 0.999*DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
     int32_t at = 0;
     int k, n = 0;
     demi_revolved_ring(f, (double)wall->ring_radius[0], (double)wall->ring_height[0], 0, &at, &n);
@@ -11857,7 +11858,7 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
             fabs(h - (double)wall->ring_height[0]) < 1e-9*(double)wall->radius;
         double t = 0, to;
         for (; t < 1 && !f->failed; t = to) {
-            const double r = a + t*(b - a), next = b < a ? r/4 : DEMI_MAX(4*r, least);
+            const double r = a + t*(b - a), next = b < a ? r/3.99 : DEMI_MAX(3.99*r, least);
             const double size = sqrt((b - a)*(b - a) + (h - g)*(h - g));
             to = DEMI_MIN(1, t + DEMI_MAX(500*wide/size, 1e-3));
             if (b < a ? next > b && r > least : next < b) to = DEMI_MIN(to, (next - a)/(b - a));
@@ -12236,7 +12237,7 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     for (i = 0; i < 2*all && ok && per == 2; i++)
         if (m.faces[s->corners[i]] != 2)
             s->ends[i/2] = (unsigned char)(s->ends[i/2] | 1 << i%2);
-    s->open = s->wraps;                         /* a sheet without end has no open edges */
+    s->open = s->wraps && !(s->step[0].x > 0);  /* a sheet without end has no open edges */
     for (i = 0; i < all && ok; i++) s->open |= s->ends[i] != 0;
     demi_meets_free(w, &m);
     return ok;
@@ -12269,8 +12270,8 @@ static int demi_surface_for(const dem_world *w, int wall, int i) {
                                      w->surfaces[j].lead == wall)) j++;
     return j < w->surface_count ? w->wall_count + j : demi_surface_number(w, wall);
 }
-/* `scale` (demi_wall) that body i needs of surface j, which is a wall, or of the wall that it
-   tessellates. A joined surface has 0. */
+/* The `scale` (demi_wall) that body i needs for the wall of surface j; 0: it needs no
+   tessellation. */
 static int demi_surface_scale(const dem_world *w, int j, int i) {
     const demi_wall *s = demi_surface_of(w, j);
     const demi_wall *wall = s->scale ? &w->walls[s->lead] : s;
@@ -14198,8 +14199,8 @@ static void demi_domain_adopt(dem_world *w, int d) {
 
 /* --- sheets: bodies on both sides of a surface without thickness do not touch --- */
 
-/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: where,
-   as a part of the segment. */
+/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: the
+   crossing point, as a fraction of the segment. */
 static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to,
                                 dem_real *at) {
     const dem_real *plane = wall->planes + 4*element;
@@ -14218,15 +14219,14 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet crosses the line between the centres of two bodies, at a point in the bounding
-   spheres of both, extended by half a skin. It is then among the candidates of both; fixed bodies
-   and ghosts have none. to: m, from a to the image of b. */
-static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
+/* True if a sheet among the candidates of a body crosses the line from its centre to another one,
+   at a point in the bounding spheres of both, extended by half a skin. to: m, to the image of the
+   other, whose radius is `radius`, m. */
+static int demi_sheet_before(const dem_world *w, int body, dem_vec3 to, dem_real radius) {
     const dem_real more = demi_cover(w)/2, length = demi_length(to);
-    const int other = !w->walled[a], body = other ? b : a, first = w->walled[body] - 1;
-    const int d = first/w->wall_stride, end = d*w->wall_stride + w->domains[d].walls;
+    const int first = w->walled[body] - 1, d = DEMI_MAX(first, 0)/w->wall_stride;
+    const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
     const dem_real own = w->bodies.pos[4*body + 3] + more;
-    const dem_real far = w->bodies.pos[4*(other ? a : b) + 3] + more;
     const dem_real gone = more + (dem_real)(w->margin.gone + w->margin.walls_gone);
     dem_vec3 x = to, way = to;
     int k, had = -1;
@@ -14239,17 +14239,26 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
             x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
                 demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
             if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
-            way = demi_unrotate(R, other ? demi_scale(to, -1) : to);
+            way = demi_unrotate(R, to);
             had = k;
         }
         if (demi_element_crossed(wall, w->wall_element[k], x, way, &at) &&
-            at*length < own && (1 - at)*length < far) return 1;
+            at*length < own && (1 - at)*length < radius + more) return 1;
     }
     return 0;
 }
-/* True if a body has no wall candidates although it may touch walls. */
+/* True for ghosts and fixed bodies: the search gives them no wall candidates. */
 static int demi_unlisted(const dem_world *w, int i) {
     return demi_is_ghost(w, i) || !(w->bodies.inv_mass[i] > 0);
+}
+/* True if a sheet lies between bodies a and b. It is among the candidates of both, unless one is a
+   ghost or fixed, or has facets of its own (>>tessellate). to: m, from a to the image of b. */
+static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
+    const int at_a = w->walled[a], at_b = w->walled[b], facets = w->effects.scales != 0;
+    if (at_a && (at_b || facets || demi_unlisted(w, b)) &&
+        demi_sheet_before(w, a, to, w->bodies.pos[4*b + 3])) return 1;
+    return at_b && (facets || (!at_a && demi_unlisted(w, a))) &&
+        demi_sheet_before(w, b, demi_scale(to, -1), w->bodies.pos[4*a + 3]);
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */
@@ -14259,11 +14268,9 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     if (!w->sheeted) return end;
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
-        if (((w->walled[a] && (w->walled[b] || demi_unlisted(w, b))) ||
-             (w->walled[b] && demi_unlisted(w, a))) &&
-            demi_sheet_between(w, a, b, demi_add(demi_sub(
-                demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
-                demi_at(w->image_shift + list->image[k])))) continue;
+        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
+            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+            demi_at(w->image_shift + list->image[k])))) continue;
         out[left++] = k;
     }
     return left;
@@ -25068,9 +25075,10 @@ static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_
 /* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
    scene, or if another program keeps a core busy, since each parallel loop then waits for the
    thread that does not run. So steps are timed, and half the present number, one, and twice the
-   present number are tried in turns. A trial ends early once it has lost the time of four steps,
-   and the next one waits for twenty times what it has lost, so trials take at most some 5 % of the
-   time. Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
+   present number are tried in turns. A trial ends when it has lost the time of four steps. After a
+   failed trial the world waits for 20 times the lost time, at least 400 steps, and longer each
+   time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
+   Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
    desc. --- */
 enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */

@@ -45,9 +45,10 @@ static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_
 /* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
    scene, or if another program keeps a core busy, since each parallel loop then waits for the
    thread that does not run. So steps are timed, and half the present number, one, and twice the
-   present number are tried in turns. A trial ends early once it has lost the time of four steps,
-   and the next one waits for twenty times what it has lost, so trials take at most some 5 % of the
-   time. Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
+   present number are tried in turns. A trial ends when it has lost the time of four steps. After a
+   failed trial the world waits for 20 times the lost time, at least 400 steps, and longer each
+   time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
+   Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
    desc. --- */
 enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */

@@ -324,8 +324,8 @@ static void demi_domain_adopt(dem_world *w, int d) {
 
 /* --- sheets: bodies on both sides of a surface without thickness do not touch --- */
 
-/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: where,
-   as a part of the segment. */
+/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: the
+   crossing point, as a fraction of the segment. */
 static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to,
                                 dem_real *at) {
     const dem_real *plane = wall->planes + 4*element;
@@ -344,15 +344,14 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet crosses the line between the centres of two bodies, at a point in the bounding
-   spheres of both, extended by half a skin. It is then among the candidates of both; fixed bodies
-   and ghosts have none. to: m, from a to the image of b. */
-static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
+/* True if a sheet among the candidates of a body crosses the line from its centre to another one,
+   at a point in the bounding spheres of both, extended by half a skin. to: m, to the image of the
+   other, whose radius is `radius`, m. */
+static int demi_sheet_before(const dem_world *w, int body, dem_vec3 to, dem_real radius) {
     const dem_real more = demi_cover(w)/2, length = demi_length(to);
-    const int other = !w->walled[a], body = other ? b : a, first = w->walled[body] - 1;
-    const int d = first/w->wall_stride, end = d*w->wall_stride + w->domains[d].walls;
+    const int first = w->walled[body] - 1, d = DEMI_MAX(first, 0)/w->wall_stride;
+    const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
     const dem_real own = w->bodies.pos[4*body + 3] + more;
-    const dem_real far = w->bodies.pos[4*(other ? a : b) + 3] + more;
     const dem_real gone = more + (dem_real)(w->margin.gone + w->margin.walls_gone);
     dem_vec3 x = to, way = to;
     int k, had = -1;
@@ -365,17 +364,26 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
             x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
                 demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
             if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
-            way = demi_unrotate(R, other ? demi_scale(to, -1) : to);
+            way = demi_unrotate(R, to);
             had = k;
         }
         if (demi_element_crossed(wall, w->wall_element[k], x, way, &at) &&
-            at*length < own && (1 - at)*length < far) return 1;
+            at*length < own && (1 - at)*length < radius + more) return 1;
     }
     return 0;
 }
-/* True if a body has no wall candidates although it may touch walls. */
+/* True for ghosts and fixed bodies: the search gives them no wall candidates. */
 static int demi_unlisted(const dem_world *w, int i) {
     return demi_is_ghost(w, i) || !(w->bodies.inv_mass[i] > 0);
+}
+/* True if a sheet lies between bodies a and b. It is among the candidates of both, unless one is a
+   ghost or fixed, or has facets of its own (>>tessellate). to: m, from a to the image of b. */
+static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
+    const int at_a = w->walled[a], at_b = w->walled[b], facets = w->effects.scales != 0;
+    if (at_a && (at_b || facets || demi_unlisted(w, b)) &&
+        demi_sheet_before(w, a, to, w->bodies.pos[4*b + 3])) return 1;
+    return at_b && (facets || (!at_a && demi_unlisted(w, a))) &&
+        demi_sheet_before(w, b, demi_scale(to, -1), w->bodies.pos[4*a + 3]);
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */
@@ -385,11 +393,9 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     if (!w->sheeted) return end;
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
-        if (((w->walled[a] && (w->walled[b] || demi_unlisted(w, b))) ||
-             (w->walled[b] && demi_unlisted(w, a))) &&
-            demi_sheet_between(w, a, b, demi_add(demi_sub(
-                demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
-                demi_at(w->image_shift + list->image[k])))) continue;
+        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
+            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+            demi_at(w->image_shift + list->image[k])))) continue;
         out[left++] = k;
     }
     return left;

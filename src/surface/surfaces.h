@@ -279,7 +279,7 @@ static int demi_surface_weigh(dem_world *w, demi_wall *s) {
     for (i = 0; i < 2*all && ok && per == 2; i++)
         if (m.faces[s->corners[i]] != 2)
             s->ends[i/2] = (unsigned char)(s->ends[i/2] | 1 << i%2);
-    s->open = s->wraps;                         /* a sheet without end has no open edges */
+    s->open = s->wraps && !(s->step[0].x > 0);  /* a sheet without end has no open edges */
     for (i = 0; i < all && ok; i++) s->open |= s->ends[i] != 0;
     demi_meets_free(w, &m);
     return ok;
@@ -312,8 +312,8 @@ static int demi_surface_for(const dem_world *w, int wall, int i) {
                                      w->surfaces[j].lead == wall)) j++;
     return j < w->surface_count ? w->wall_count + j : demi_surface_number(w, wall);
 }
-/* `scale` (demi_wall) that body i needs of surface j, which is a wall, or of the wall that it
-   tessellates. A joined surface has 0. */
+/* The `scale` (demi_wall) that body i needs for the wall of surface j; 0: it needs no
+   tessellation. */
 static int demi_surface_scale(const dem_world *w, int j, int i) {
     const demi_wall *s = demi_surface_of(w, j);
     const demi_wall *wall = s->scale ? &w->walls[s->lead] : s;

@@ -6,10 +6,10 @@
    DEMI_WALLS) makes the facets, which stand still in the wall's frame and are used as those of any
    mesh or profile (>>facets, >>touch, >>polyhedra-walls).
 
-   The distance of facets from the curve is at most 5e-4 times the power of two below the radius of
-   the body's bounding sphere. Each body's facets therefore depend on that body alone. Circles
-   become polygons of the same area, whose numbers of sides are 24 times a power of two. Where a
-   surface of revolution narrows, they have fewer.
+   Let s be the largest power of two, in m, below the radius of the body's bounding sphere. Facets
+   deviate from the curve by at most 5e-4 s, for walls up to 20,000 times as large as s. Other
+   bodies do not change them. A circle becomes a polygon of equal area with 24, 48, 96, ... 12,288
+   sides. Smaller circles of a surface of revolution get fewer sides.
 
    A sieve without end is one cell, which repeats along two steps in its plane. Not tessellated:
    reduced holes, which [ALK07] defines for spheres, and sieves cut from a disc.
@@ -111,11 +111,12 @@ static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32
     if (before) demi_form_band(f, from, before, *at, sides);
 }
 /* The rings of the wall, and more between them: where the radius changes by more than a factor of
-   four, so that the number of sides changes by two at most, and where facets would be more than 500
-   times as long as wide (but at most 1000 of these on a piece). */
+   four, so that the number of sides doubles or halves at most, and where facets would be more than
+   500 times as long as wide (but at most 1000 of these on a piece). */
 static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     const int last = wall->ring_count - 1;
-    const double least = DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
+    /* just below the radius at which circles get twice as many sides */
+    const double least = 0.999*DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
     int32_t at = 0;
     int k, n = 0;
     demi_revolved_ring(f, (double)wall->ring_radius[0], (double)wall->ring_height[0], 0, &at, &n);
@@ -127,7 +128,7 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
             fabs(h - (double)wall->ring_height[0]) < 1e-9*(double)wall->radius;
         double t = 0, to;
         for (; t < 1 && !f->failed; t = to) {
-            const double r = a + t*(b - a), next = b < a ? r/4 : DEMI_MAX(4*r, least);
+            const double r = a + t*(b - a), next = b < a ? r/3.99 : DEMI_MAX(3.99*r, least);
             const double size = sqrt((b - a)*(b - a) + (h - g)*(h - g));
             to = DEMI_MIN(1, t + DEMI_MAX(500*wide/size, 1e-3));
             if (b < a ? next > b && r > least : next < b) to = DEMI_MIN(to, (next - a)/(b - a));

@@ -50,7 +50,7 @@ static dem_wall sheet(dem_world *w, dem_material m, int kind, double end) {
     return dem_wall_mesh_add(w, m, &mesh);
 }
 /* What a body does that hits the sheet from above while another one, if `both`, does from below. */
-static dem_body_state hit(int body, int kind, int impulses, int both, int threads) {
+static dem_body_state hit(int body, int kind, int impulses, int both, int other) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_motion motion = DEM_MOTION;
     dem_world *w;
@@ -62,7 +62,6 @@ static dem_body_state hit(int body, int kind, int impulses, int both, int thread
     desc.response = impulses ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
     desc.dt = impulses ? DEM_R(1e-4) : DEM_R(2e-6);
     desc.allow_large_dt = 1;
-    desc.threads = threads;
     if (kind == PERIODIC) {
         desc.boundary[0] = desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
         desc.domain = box_of(-0.03, -1, -0.03, 0.03, 1, 0.03);
@@ -77,7 +76,7 @@ static dem_body_state hit(int body, int kind, int impulses, int both, int thread
         CHECK_EQ(dem_wall_motion_set(w, wall, &motion), DEM_OK);
     }
     for (i = 0; i < 1 + both; i++) {
-        b[i] = put(w, m, body, at(kind == SIEVE ? 0.027 : kind == PERIODIC ? 0.029 : 0.012 + 0.001*i, (i ? -1 : 1)*1.6*R,
+        b[i] = put(w, m, i ? other : body, at(kind == SIEVE ? 0.027 : kind == PERIODIC ? 0.029 : 0.012 + 0.001*i, (i ? -1 : 1)*1.6*R,
                                   kind == SIEVE ? 0.027 : 0.0123));
         CHECK(b[i].slot);
         scene_move(w, b[i], at(0.2, i ? 0.5 : -0.5, 0), at(0, 0, 0));
@@ -106,13 +105,23 @@ int main(int argc, char **argv) {
                     const double close = fine ? impulses ? 1e-5 : 1e-9 : 1e-3;
                     dem_body_state one, two;
                     if (kind == SIEVE && (body != EGG || impulses)) continue;      /* of facets: see >>tessellate */
-                    one = hit(body, kind, impulses, 0, 1);
-                    two = hit(body, kind, impulses, 1, 1);
+                    one = hit(body, kind, impulses, 0, body);
+                    two = hit(body, kind, impulses, 1, body);
                     CHECK(one.velocity.y > DEM_R(0.1));
                     CHECK((double)demi_size(demi_sub(one.velocity, two.velocity)) < close);
                     CHECK((double)demi_size(demi_sub(one.spin, two.spin))*R < close);
                     CHECK((double)demi_size(demi_sub(one.position, two.position)) < close*R);
                 }
+    }
+
+    TEST("sheets: a ball and an ellipsoid on both sides of a sieve without thickness do not touch, whichever is above") {
+        int above;
+        for (above = 0; above < 2; above++) {
+            const dem_body_state one = hit(above ? EGG : BALL, SIEVE, 0, 0, BALL);
+            const dem_body_state two = hit(above ? EGG : BALL, SIEVE, 0, 1, above ? BALL : EGG);
+            CHECK(one.velocity.y > DEM_R(0.1));
+            CHECK((double)demi_size(demi_sub(one.velocity, two.velocity)) < (fine ? 1e-9 : 1e-3));
+        }
     }
 
     TEST("sheets: balls beside a sheet's end touch each other, and those on both sides of it do not") {
