@@ -3215,6 +3215,14 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_ONE_BY_ONE(i) ((void)0)
 #endif
 
+/* In front of a short loop of constant length, which compilers do not unroll at -O2. */
+#if defined(__clang__)
+#define DEMI_UNROLL _Pragma("unroll")
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#define DEMI_UNROLL _Pragma("GCC unroll 16")
+#else
+#define DEMI_UNROLL
+#endif
 /* Expands DO(0) to DO(7). Compilers do not unroll such a loop at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
 
@@ -3641,13 +3649,23 @@ typedef struct demi_shape {
     dem_vec3 centre;               /* m, centre of mass in that frame */
 } demi_shape;
 
+/* What only few persistent contacts need (demi_kept_odd). */
+typedef struct demi_kept_more {
+    dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
+    dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
+    dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
+    dem_vec3 aside;                /* elastic force across the normal, over that along it */
+    dem_real inset;                /* the normal force acts at inset*arm_a */
+    dem_vec3 spread;               /* m, from the centre of pressure to this point */
+    dem_real couple;               /* m: moment about the normal, over the normal force */
+} demi_kept_more;
 /* A persistent contact: any contact except sphere on sphere. (The history of two spheres is in the
    pruned neighbour list.) It exists as long as the two touch. The contacts of a work group are in
    the order of body a, pairs before walls; forces are added in this order. In each step, touch
    builds the list kept_next from scratch and finds for each contact the one of the previous step
    (kept_now) that it continues. respond copies the history from that contact and computes the
-   forces. Then the two lists are swapped. So touch can start again with more room if the list was
-   too short. */
+   forces. Then the two lists are swapped, so touch can start again with more room. What all
+   contacts need comes first: reading it takes most of the time. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
@@ -3658,36 +3676,27 @@ typedef struct demi_kept {
     int32_t from;                  /* old contact of its group that it continues; -1: none */
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
+    int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
-    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force, as on the way through a reduced
-                                      hole (demi_kept_asked). deep: overlap over the smaller half
-                                      width along the normal (of a sphere: its radius) */
-    dem_real share, lift, grip;    /* weights of damping, elastic force, friction */
-    dem_real weight;               /* its weight before contacts are merged: demi_kept_share */
+    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
+                                      over the smaller half width (of a sphere: its radius) */
+    dem_real share, lift, grip;    /* weights of damping, elastic force, friction; */
+    dem_real weight;               /* before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
                                       all of it, see demi_kept_inherit */
-    dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
-    dem_real bend;                 /* 1/m: rotation of the normal per displacement of part_a in the
-                                      tangent plane */
-    dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
-    dem_real along;                /* rotate the normal by `along`, 1/m, instead */
-    dem_vec3 aside;                /* elastic force perpendicular to the normal, in units of the
-                                      elastic normal force of the law */
+    dem_real bend;                 /* 1/m: rotation of the normal per displacement across it */
     dem_real slope;                /* change of overlap per change of distance */
-    dem_real inset;                /* the normal force acts at inset*arm_a */
-    dem_vec3 spread;               /* m, from the centre of pressure to this point */
-    dem_real couple;               /* m: moment about the normal, over the normal force */
     dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
-    double lambda;                 /* start value for the parameter of Perram and Wertheim; 0:
-                                      unknown */
+    double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
     /* kept from step to step: respond writes these, touch does not */
     dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
     dem_real coef_r;               /* m, the r_eff that they were computed for; 0: none yet */
-    dem_real memory[DEMI_MEMORY];  /* contact history */
+    dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals */
+    demi_kept_more more;
 } demi_kept;
 
 /* Force (N), torque (Nm), power (W) and contacts that the grains of one work group exert on one
@@ -6522,7 +6531,7 @@ static dem_real demi_ellipsoid_thin(const demi_part *p) {
     return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
 }
 static double demi_ellipsoid_equal(const demi_part *p) {
-    return demi_pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
+    return (double)(p->shape->equal*p->scale);
 }
 /* Gaussian radius of curvature, a b c/h^2. */
 static double demi_ellipsoid_curve(const demi_part *p, double h) {
@@ -18018,11 +18027,20 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
 }
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
-/* Sets c->bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
+/* Returns what only few contacts need, for a contact that needs it from now on. */
+DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
+    if (c->odd) return &c->more;
+    c->odd = 1;
+    memset(&c->more, 0, sizeof c->more);
+    c->more.inset = 1;
+    return &c->more;
+}
+/* Sets bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
    point: of the wall's surface, for the image of the body that touches it. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
                            dem_vec3 point, demi_kept *c) {
     const dem_real *R = wall->pose.rotation;
+    demi_kept_more *more;
     demi_bend b;
     if (!demi_bends[wall->kind]) return;
     memset(&b, 0, sizeof b);
@@ -18032,8 +18050,11 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
     b.point = demi_unrotate(R, demi_sub(point, wall->pose.position));
     demi_bends[wall->kind](wall, among, count, &b);
     c->bend = b.turn;
-    c->along = b.along;
-    c->axis = demi_rotate(R, b.axis);
+    if (b.along < 0 || b.along > 0 || demi_dot(b.axis, b.axis) > 0) {
+        more = demi_kept_odd(c);
+        more->along = b.along;
+        more->axis = demi_rotate(R, b.axis);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -19652,7 +19673,7 @@ static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real le
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
         c->overlap = left*l;
         c->slope = l/(h + edge);
-        c->inset = 1 - left;
+        demi_kept_odd(c)->inset = 1 - left;
     }
 }
 /* A sphere and a polyhedron, at the nearest point; R* is the sphere's radius, as on a plane. */
@@ -19700,7 +19721,7 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(egg->q, at);
-    c->inset = 1;
+    demi_kept_odd(c)->inset = 1;
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -19749,6 +19770,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
     demi_solid a, b;
     demi_patch at;
+    demi_kept_more *more;
     demi_pressure s;
     double overlap;
     (void)lambda;
@@ -19767,10 +19789,11 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     c->slope = (dem_real)demi_shared_slope(at.force, r_eff, overlap);
     c->deep = (dem_real)s.deep;
     c->r_eff = (dem_real)r_eff;
-    c->couple = at.couple;
     c->corners = 4;
-    c->spread = at.spread[0];
-    c->aside = at.spread[1];       /* until demi_kept_spread */
+    more = demi_kept_odd(c);
+    more->couple = at.couple;
+    more->spread = at.spread[0];
+    more->aside = at.spread[1];    /* until demi_kept_spread */
     c->arm_a = demi_add(p->centre, at.point);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -19814,8 +19837,16 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     c = w->kept_next + w->kept_first[d] + domain->kept_next++;
     memset(c, 0, offsetof(demi_kept, coef));
     c->b = -1;
-    c->share = c->slope = c->inset = 1;
+    c->share = c->slope = 1;
     return c;
+}
+DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
+    return c->odd ? c->more.spread : demi_v(0, 0, 0);
+}
+/* Copies a new contact, for which no force has been computed yet. */
+static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
+    memcpy(to, from, offsetof(demi_kept, coef));
+    if (from->odd) to->more = from->more;
 }
 
 /* --- continuation: the index within its work group of the old contact that a new one continues, or
@@ -19928,15 +19959,16 @@ DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_
     *rate = 0;
     return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_kept_along(a, b, rate);
 }
-/* Adds to c->aside the tangential force on contact c's sphere that arises because c's normal
+/* Adds to `aside` the tangential force on contact c's sphere that arises because c's normal
    rotates towards or away from the normal `other` as the sphere moves: -(dE/dt)(dt/dcos)
    d(n.other)/dx. `push` is the product of the first two factors, over U'(d) of contact c. */
 DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
-    const dem_real along = demi_dot(other, c->axis);
+    demi_kept_more *m = demi_kept_odd(c);
+    const dem_real along = demi_dot(other, m->axis);
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
-    turn = demi_sub(turn, demi_scale(c->axis, along));
-    turn = demi_add(demi_scale(turn, c->bend), demi_scale(c->axis, along*c->along));
-    c->aside = demi_add(c->aside, demi_scale(turn, push));
+    turn = demi_sub(turn, demi_scale(m->axis, along));
+    turn = demi_add(demi_scale(turn, c->bend), demi_scale(m->axis, along*m->along));
+    m->aside = demi_add(m->aside, demi_scale(turn, push));
 }
 /* Exponent of R* in the stiffness of a contact: 1/2 for Hertz; for a linear law 2/5, or 0 if the
    stiffness is given. */
@@ -19962,17 +19994,18 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
     for (k = 0; k < n; k++) {
         const dem_real d = c[k].overlap, own = c[k].share*d/p;     /* E_k/U'(d_k) */
         if (!(d > 0)) continue;
-        c[k].lift = c[k].share*(1 + 2/p*c[k].rate*c[k].added*d*d/c[k].area);
+        c[k].lift = c[k].share*(1 + 2/p*c[k].more.rate*c[k].more.added*d*d/c[k].more.area);
         for (i = 0; i < n; i++) {
             const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap;
             dem_real far;                       /* E_i/(U'(d_k) A_i) */
             if (!(t > 0) || !(e > 0)) continue;
-            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*c[i].rate/c[i].area;
+            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
+                c[i].more.rate/c[i].more.area;
             c[k].lift -= far*2*t*c[k].weight*d;
             if (rate > 0)
                 demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
-                                  own*c[k].rate/c[k].area*c[i].weight*e*e));
+                                  own*c[k].more.rate/c[k].more.area*c[i].weight*e*e));
         }
     }
     for (k = 0; k < n; k++) {
@@ -20036,20 +20069,23 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         const dem_real d2 = c[i].overlap*c[i].overlap;
         dem_vec3 mean;                          /* common centre as seen from a, times A */
         dem_real A = d2, rate;
+        demi_kept_more *m;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].felt = c[i].spread;                /* polyhedra: the centre of pressure */
+        c[i].felt = demi_kept_spread_of(&c[i]);        /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
-        mean = demi_scale(demi_sub(c[i].arm_a, c[i].spread), d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, c[i].felt), d2);
         for (j = 0; j < n; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
-            mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a, c[j].spread), add));
+            mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a,
+                                                      demi_kept_spread_of(&c[j])), add));
         }
-        c[i].added = A/d2 - 1;
-        c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
-        c[i].share = c[i].weight*d2/c[i].area;
+        m = demi_kept_odd(&c[i]);
+        m->added = A/d2 - 1;
+        m->area = d2*demi_kept_room_of(m->added, &m->rate);
+        c[i].share = c[i].weight*d2/m->area;
         if (A > d2/2)                           /* else negative weights prevail */
             c[i].felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
@@ -20061,6 +20097,7 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
    in proportion to their own. now: the old list of the work group. */
 static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     int i, k;
+    if (n == 1) { c->held = -1; return; }       /* do not load the old one yet */
     for (k = 0; k < n; k++) {
         dem_real all = 0;
         if (c[k].from < 0) continue;
@@ -20070,27 +20107,30 @@ static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     }
 }
 /* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
-   pressure is spread; c->spread and c->aside are its half edges. Returns 0 if the list is full. */
+   pressure is spread; `spread` and `aside` are its half edges. Returns 0 if the list is full. */
 static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
-    const dem_vec3 one = c->spread, two = c->aside;
+    demi_kept_more *m = demi_kept_odd(c);
+    const dem_vec3 one = m->spread, two = m->aside;
+    dem_vec3 to = one;
     int k;
-    c->aside = demi_v(0, 0, 0);
+    m->aside = demi_v(0, 0, 0);
     c->share /= (dem_real)c->corners;
     for (k = c->corners - 1; k >= 0; k--) {
         demi_kept *at = k ? demi_kept_new(w, d) : c;
         if (!at) return 0;
-        if (k) memcpy(at, c, offsetof(demi_kept, coef));
+        if (k) demi_kept_copy(at, c);
         at->corner = k;
         if (k) at->from = demi_kept_same(w, d, old, olds, at);
-        at->spread = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
-                              demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
+        to = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
+                      demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
+        at->more.spread = to;
         if (k) {
-            at->arm_a = demi_add(c->arm_a, at->spread);
-            at->arm_b = demi_add(c->arm_b, at->spread);
+            at->arm_a = demi_add(c->arm_a, to);
+            at->arm_b = demi_add(c->arm_b, to);
         }
     }
-    c->arm_a = demi_add(c->arm_a, c->spread);
-    c->arm_b = demi_add(c->arm_b, c->spread);
+    c->arm_a = demi_add(c->arm_a, to);
+    c->arm_b = demi_add(c->arm_b, to);
     return 1;
 }
 /* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
@@ -20108,7 +20148,7 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         const dem_vec3 x = demi_d3_real(spots->x[k]);
         demi_kept *at = k ? demi_kept_new(w, d) : c;
         if (!at) return 0;
-        if (k) memcpy(at, c, offsetof(demi_kept, coef));
+        if (k) demi_kept_copy(at, c);
         at->corner = k;
         at->arm_a = demi_add(base_a, x);
         at->arm_b = demi_add(base_b, x);
@@ -20286,10 +20326,10 @@ static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, c
     c->overlap = place->overlap;
     c->deep = place->deep;
     c->slope = place->slope;
-    c->couple = place->couple;
-    c->spread = place->spread;
     c->corner = place->corner;
     c->corners = place->corners;
+    demi_kept_odd(c)->couple = place->couple;
+    c->more.spread = place->spread;
     c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
     c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
 }
@@ -20542,7 +20582,7 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     for (i = walled; i < all; i++) {
         if (c[i].a < 0) continue;
         c[i].arm_b = demi_v(0, 0, 0);
-        if (i > left) c[left] = c[i];
+        if (i > left) demi_kept_copy(&c[left], &c[i]);
         left++;
     }
     w->domains[d].kept_next = left;
@@ -20688,14 +20728,14 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
     const demi_kept *old = c->from < 0 ? c : now + c->from;
     const int fits = old != c && old->wall == c->wall &&
         !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
+    int e;
     if (c->b < 0 && !demi_shape_of(w, c->a))    /* not set by touch */
         c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
+    for (e = 0; e < w->memory_stride; e++) c->memory[e] = old != c ? old->memory[e] : 0;
     if (fits) {
-        memcpy(c->coef, old->coef, sizeof *c - offsetof(demi_kept, coef));
+        memcpy(c->coef, old->coef, offsetof(demi_kept, memory) - offsetof(demi_kept, coef));
         return old;
     }
-    memset(c->coef, 0, sizeof *c - offsetof(demi_kept, coef));
-    if (old != c) memcpy(c->memory, old->memory, sizeof c->memory);
     demi_kept_coefs(w, c, c->coef, c->root);
     c->coef_r = c->r_eff;
     return old;
@@ -20814,8 +20854,17 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, 
     int e;
     t->inv[side][q] = inv;
     demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
-    for (e = 0; e < 4; e++) t->q[side][e][q] = turns ? w->bodies.orient[4*who + e] : 0;
-    for (e = 0; e < 3; e++) t->I[side][e][q] = turns ? w->bodies.moment[4*who + e] : 1;
+    if (turns) {
+        DEMI_UNROLL
+        for (e = 0; e < 4; e++) t->q[side][e][q] = w->bodies.orient[4*who + e];
+        DEMI_UNROLL
+        for (e = 0; e < 3; e++) t->I[side][e][q] = w->bodies.moment[4*who + e];
+        return;
+    }
+    DEMI_UNROLL
+    for (e = 0; e < 4; e++) t->q[side][e][q] = 0;
+    DEMI_UNROLL
+    for (e = 0; e < 3; e++) t->I[side][e][q] = 1;
 }
 /* Fills row q from a contact and the old one that it continues. */
 static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
@@ -20836,6 +20885,7 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     }
     if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
     else demi_kept_fetch_pair(r, k, old, t, q);
+    DEMI_UNROLL
     for (e = 0; e < DEMI_COEFS; e++) t->rows.coef[e][q] = coef[e];
     t->rows.coef[DEMI_KN][q] *= slope;
     t->rows.coef[DEMI_CN][q] *= slope;
@@ -20847,8 +20897,8 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->share[q] = k->share;
     t->grip[q] = k->grip;
     t->lift[q] = k->lift - k->share;
-    t->couple[q] = k->couple;
-    t->outset[q] = 1 - k->inset;
+    t->couple[q] = k->odd ? k->more.couple : 0;
+    t->outset[q] = k->odd ? 1 - k->more.inset : 0;
     if (!t->shaped) return;
     demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
     demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
@@ -20952,9 +21002,13 @@ DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
 #pragma GCC pop_options
 #endif
 
+/* True if the elastic force is not along the normal. */
+DEM_INLINE int demi_kept_aslant(const demi_kept *k) {
+    return k->odd && demi_dot(k->more.aside, k->more.aside) > 0;
+}
 /* True if the weight of the elastic force differs from that of the dashpot. */
 DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
-    return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
+    return k->lift < k->share || k->lift > k->share || demi_kept_aslant(k);
 }
 /* Fills a dem_contact from row q for a law that is called contact by contact. */
 static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
@@ -21074,14 +21128,17 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.half_spin + 4*body);
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
+    if (!demi_shape_of(w, body)) return;
+    DEMI_FETCH(w->bodies.orient + 4*body);
+    DEMI_FETCH(w->bodies.moment + 4*body);
 }
-/* Adds the tangential force of merged contacts (c->aside). It acts on a at the centre of its
+/* Adds the tangential force of merged contacts (`aside`). It acts on a at the centre of its
    sphere, and on b at the point that the normal rotates about, 1/bend or 1/along away. */
 static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
     const demi_kept *c = t->contact[q];
-    const dem_vec3 aside = demi_scale(c->aside, t->still[q]);
+    const dem_vec3 aside = demi_scale(c->more.aside, t->still[q]);
     const dem_vec3 arm = demi_sub(demi_part_now(w, c->a, c->part_a).centre, c->arm_a);
-    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->along;
+    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->more.along;
     const dem_vec3 far = demi_sub(arm, demi_scale(c->normal, 1/turn));
     const dem_vec3 moment = demi_cross(far, aside);
     demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
@@ -21141,7 +21198,7 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
     for (q = 0; q < t->count; q++) {
         demi_kept *c = t->contact[q];
         for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
-        if (t->lifted && demi_dot(c->aside, c->aside) > 0) demi_kept_aside_add(w, t, q);
+        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
         c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
@@ -21168,12 +21225,10 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Prefetches the old contact that k continues. */
-DEM_INLINE void demi_kept_fetch_old(const demi_kept *k) {
-    DEMI_FETCH(&k->normal);
-    DEMI_FETCH(k->coef);
-    DEMI_FETCH(k->coef + 8);
-    DEMI_FETCH(k->memory);
+/* Prefetches the part of a contact that all of them use. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k) {
+    const char *at = (const char *)k, *end = (const char *)(k->memory + 4);
+    for (; at < end; at += 64) DEMI_FETCH(at);
 }
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
@@ -21198,9 +21253,11 @@ static void demi_kept_respond(dem_world *w, int d) {
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old;
+        if (i + 5 < domain->kept_next) demi_kept_ahead(c + 5);
         if (i + 2 < domain->kept_next) {
             demi_body_fetch(w, c[2].a);
-            if (c[2].from >= 0) demi_kept_fetch_old(now + c[2].from);
+            if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
+            if (c[2].from >= 0) demi_kept_ahead(now + c[2].from);
         }
         old = demi_kept_recall(w, now, c);
         if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */
@@ -31748,12 +31805,20 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
+/* Sets what a contact does not use to 0, since files and messages contain all of it. */
+static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
+    int e;
+    for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
+    if (!c->odd) memset(&c->more, 0, sizeof c->more);
+}
 /* Visits persistent contacts, with or without a list, and the contact history of spheres that is
    saved between two lists (demi_filed). */
 static void demi_visit_contacts(dem_world *w, demi_stream *s) {
-    int d;
+    int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
+        for (k = 0; k < domain->kept && !s->from; k++)
+            demi_kept_tidy(w, demi_kept_of(w, d) + k);
         if (domain->kept)
             demi_visit(s, demi_kept_of(w, d),
                        (size_t)domain->kept*sizeof(demi_kept));
@@ -35268,6 +35333,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
         for (k = 0; k < w->domains[d].kept && ok; k++) {
             demi_kept c = demi_kept_of(w, d)[k];
+            demi_kept_tidy(w, &c);
             if (w->stage.list_valid) {
                 c.a = (int32_t)w->bodies.slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];

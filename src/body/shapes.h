@@ -812,7 +812,7 @@ static dem_real demi_ellipsoid_thin(const demi_part *p) {
     return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
 }
 static double demi_ellipsoid_equal(const demi_part *p) {
-    return demi_pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
+    return (double)(p->shape->equal*p->scale);
 }
 /* Gaussian radius of curvature, a b c/h^2. */
 static double demi_ellipsoid_curve(const demi_part *p, double h) {

@@ -48,14 +48,14 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
     const demi_kept *old = c->from < 0 ? c : now + c->from;
     const int fits = old != c && old->wall == c->wall &&
         !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
+    int e;
     if (c->b < 0 && !demi_shape_of(w, c->a))    /* not set by touch */
         c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
+    for (e = 0; e < w->memory_stride; e++) c->memory[e] = old != c ? old->memory[e] : 0;
     if (fits) {
-        memcpy(c->coef, old->coef, sizeof *c - offsetof(demi_kept, coef));
+        memcpy(c->coef, old->coef, offsetof(demi_kept, memory) - offsetof(demi_kept, coef));
         return old;
     }
-    memset(c->coef, 0, sizeof *c - offsetof(demi_kept, coef));
-    if (old != c) memcpy(c->memory, old->memory, sizeof c->memory);
     demi_kept_coefs(w, c, c->coef, c->root);
     c->coef_r = c->r_eff;
     return old;
@@ -174,8 +174,17 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, 
     int e;
     t->inv[side][q] = inv;
     demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
-    for (e = 0; e < 4; e++) t->q[side][e][q] = turns ? w->bodies.orient[4*who + e] : 0;
-    for (e = 0; e < 3; e++) t->I[side][e][q] = turns ? w->bodies.moment[4*who + e] : 1;
+    if (turns) {
+        DEMI_UNROLL
+        for (e = 0; e < 4; e++) t->q[side][e][q] = w->bodies.orient[4*who + e];
+        DEMI_UNROLL
+        for (e = 0; e < 3; e++) t->I[side][e][q] = w->bodies.moment[4*who + e];
+        return;
+    }
+    DEMI_UNROLL
+    for (e = 0; e < 4; e++) t->q[side][e][q] = 0;
+    DEMI_UNROLL
+    for (e = 0; e < 3; e++) t->I[side][e][q] = 1;
 }
 /* Fills row q from a contact and the old one that it continues. */
 static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
@@ -196,6 +205,7 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     }
     if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
     else demi_kept_fetch_pair(r, k, old, t, q);
+    DEMI_UNROLL
     for (e = 0; e < DEMI_COEFS; e++) t->rows.coef[e][q] = coef[e];
     t->rows.coef[DEMI_KN][q] *= slope;
     t->rows.coef[DEMI_CN][q] *= slope;
@@ -207,8 +217,8 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->share[q] = k->share;
     t->grip[q] = k->grip;
     t->lift[q] = k->lift - k->share;
-    t->couple[q] = k->couple;
-    t->outset[q] = 1 - k->inset;
+    t->couple[q] = k->odd ? k->more.couple : 0;
+    t->outset[q] = k->odd ? 1 - k->more.inset : 0;
     if (!t->shaped) return;
     demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
     demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
@@ -312,9 +322,13 @@ DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
 #pragma GCC pop_options
 #endif
 
+/* True if the elastic force is not along the normal. */
+DEM_INLINE int demi_kept_aslant(const demi_kept *k) {
+    return k->odd && demi_dot(k->more.aside, k->more.aside) > 0;
+}
 /* True if the weight of the elastic force differs from that of the dashpot. */
 DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
-    return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
+    return k->lift < k->share || k->lift > k->share || demi_kept_aslant(k);
 }
 /* Fills a dem_contact from row q for a law that is called contact by contact. */
 static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
@@ -434,14 +448,17 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.half_spin + 4*body);
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
+    if (!demi_shape_of(w, body)) return;
+    DEMI_FETCH(w->bodies.orient + 4*body);
+    DEMI_FETCH(w->bodies.moment + 4*body);
 }
-/* Adds the tangential force of merged contacts (c->aside). It acts on a at the centre of its
+/* Adds the tangential force of merged contacts (`aside`). It acts on a at the centre of its
    sphere, and on b at the point that the normal rotates about, 1/bend or 1/along away. */
 static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
     const demi_kept *c = t->contact[q];
-    const dem_vec3 aside = demi_scale(c->aside, t->still[q]);
+    const dem_vec3 aside = demi_scale(c->more.aside, t->still[q]);
     const dem_vec3 arm = demi_sub(demi_part_now(w, c->a, c->part_a).centre, c->arm_a);
-    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->along;
+    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->more.along;
     const dem_vec3 far = demi_sub(arm, demi_scale(c->normal, 1/turn));
     const dem_vec3 moment = demi_cross(far, aside);
     demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
@@ -501,7 +518,7 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
     for (q = 0; q < t->count; q++) {
         demi_kept *c = t->contact[q];
         for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
-        if (t->lifted && demi_dot(c->aside, c->aside) > 0) demi_kept_aside_add(w, t, q);
+        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
         c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
@@ -528,12 +545,10 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Prefetches the old contact that k continues. */
-DEM_INLINE void demi_kept_fetch_old(const demi_kept *k) {
-    DEMI_FETCH(&k->normal);
-    DEMI_FETCH(k->coef);
-    DEMI_FETCH(k->coef + 8);
-    DEMI_FETCH(k->memory);
+/* Prefetches the part of a contact that all of them use. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k) {
+    const char *at = (const char *)k, *end = (const char *)(k->memory + 4);
+    for (; at < end; at += 64) DEMI_FETCH(at);
 }
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
@@ -558,9 +573,11 @@ static void demi_kept_respond(dem_world *w, int d) {
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old;
+        if (i + 5 < domain->kept_next) demi_kept_ahead(c + 5);
         if (i + 2 < domain->kept_next) {
             demi_body_fetch(w, c[2].a);
-            if (c[2].from >= 0) demi_kept_fetch_old(now + c[2].from);
+            if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
+            if (c[2].from >= 0) demi_kept_ahead(now + c[2].from);
         }
         old = demi_kept_recall(w, now, c);
         if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */

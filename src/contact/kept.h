@@ -30,8 +30,16 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     c = w->kept_next + w->kept_first[d] + domain->kept_next++;
     memset(c, 0, offsetof(demi_kept, coef));
     c->b = -1;
-    c->share = c->slope = c->inset = 1;
+    c->share = c->slope = 1;
     return c;
+}
+DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
+    return c->odd ? c->more.spread : demi_v(0, 0, 0);
+}
+/* Copies a new contact, for which no force has been computed yet. */
+static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
+    memcpy(to, from, offsetof(demi_kept, coef));
+    if (from->odd) to->more = from->more;
 }
 
 /* --- continuation: the index within its work group of the old contact that a new one continues, or
@@ -144,15 +152,16 @@ DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_
     *rate = 0;
     return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_kept_along(a, b, rate);
 }
-/* Adds to c->aside the tangential force on contact c's sphere that arises because c's normal
+/* Adds to `aside` the tangential force on contact c's sphere that arises because c's normal
    rotates towards or away from the normal `other` as the sphere moves: -(dE/dt)(dt/dcos)
    d(n.other)/dx. `push` is the product of the first two factors, over U'(d) of contact c. */
 DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
-    const dem_real along = demi_dot(other, c->axis);
+    demi_kept_more *m = demi_kept_odd(c);
+    const dem_real along = demi_dot(other, m->axis);
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
-    turn = demi_sub(turn, demi_scale(c->axis, along));
-    turn = demi_add(demi_scale(turn, c->bend), demi_scale(c->axis, along*c->along));
-    c->aside = demi_add(c->aside, demi_scale(turn, push));
+    turn = demi_sub(turn, demi_scale(m->axis, along));
+    turn = demi_add(demi_scale(turn, c->bend), demi_scale(m->axis, along*m->along));
+    m->aside = demi_add(m->aside, demi_scale(turn, push));
 }
 /* Exponent of R* in the stiffness of a contact: 1/2 for Hertz; for a linear law 2/5, or 0 if the
    stiffness is given. */
@@ -178,17 +187,18 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
     for (k = 0; k < n; k++) {
         const dem_real d = c[k].overlap, own = c[k].share*d/p;     /* E_k/U'(d_k) */
         if (!(d > 0)) continue;
-        c[k].lift = c[k].share*(1 + 2/p*c[k].rate*c[k].added*d*d/c[k].area);
+        c[k].lift = c[k].share*(1 + 2/p*c[k].more.rate*c[k].more.added*d*d/c[k].more.area);
         for (i = 0; i < n; i++) {
             const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap;
             dem_real far;                       /* E_i/(U'(d_k) A_i) */
             if (!(t > 0) || !(e > 0)) continue;
-            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*c[i].rate/c[i].area;
+            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
+                c[i].more.rate/c[i].more.area;
             c[k].lift -= far*2*t*c[k].weight*d;
             if (rate > 0)
                 demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
-                                  own*c[k].rate/c[k].area*c[i].weight*e*e));
+                                  own*c[k].more.rate/c[k].more.area*c[i].weight*e*e));
         }
     }
     for (k = 0; k < n; k++) {
@@ -252,20 +262,23 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         const dem_real d2 = c[i].overlap*c[i].overlap;
         dem_vec3 mean;                          /* common centre as seen from a, times A */
         dem_real A = d2, rate;
+        demi_kept_more *m;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].felt = c[i].spread;                /* polyhedra: the centre of pressure */
+        c[i].felt = demi_kept_spread_of(&c[i]);        /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
-        mean = demi_scale(demi_sub(c[i].arm_a, c[i].spread), d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, c[i].felt), d2);
         for (j = 0; j < n; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
-            mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a, c[j].spread), add));
+            mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a,
+                                                      demi_kept_spread_of(&c[j])), add));
         }
-        c[i].added = A/d2 - 1;
-        c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
-        c[i].share = c[i].weight*d2/c[i].area;
+        m = demi_kept_odd(&c[i]);
+        m->added = A/d2 - 1;
+        m->area = d2*demi_kept_room_of(m->added, &m->rate);
+        c[i].share = c[i].weight*d2/m->area;
         if (A > d2/2)                           /* else negative weights prevail */
             c[i].felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
@@ -277,6 +290,7 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
    in proportion to their own. now: the old list of the work group. */
 static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     int i, k;
+    if (n == 1) { c->held = -1; return; }       /* do not load the old one yet */
     for (k = 0; k < n; k++) {
         dem_real all = 0;
         if (c[k].from < 0) continue;
@@ -286,27 +300,30 @@ static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     }
 }
 /* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
-   pressure is spread; c->spread and c->aside are its half edges. Returns 0 if the list is full. */
+   pressure is spread; `spread` and `aside` are its half edges. Returns 0 if the list is full. */
 static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
-    const dem_vec3 one = c->spread, two = c->aside;
+    demi_kept_more *m = demi_kept_odd(c);
+    const dem_vec3 one = m->spread, two = m->aside;
+    dem_vec3 to = one;
     int k;
-    c->aside = demi_v(0, 0, 0);
+    m->aside = demi_v(0, 0, 0);
     c->share /= (dem_real)c->corners;
     for (k = c->corners - 1; k >= 0; k--) {
         demi_kept *at = k ? demi_kept_new(w, d) : c;
         if (!at) return 0;
-        if (k) memcpy(at, c, offsetof(demi_kept, coef));
+        if (k) demi_kept_copy(at, c);
         at->corner = k;
         if (k) at->from = demi_kept_same(w, d, old, olds, at);
-        at->spread = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
-                              demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
+        to = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
+                      demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
+        at->more.spread = to;
         if (k) {
-            at->arm_a = demi_add(c->arm_a, at->spread);
-            at->arm_b = demi_add(c->arm_b, at->spread);
+            at->arm_a = demi_add(c->arm_a, to);
+            at->arm_b = demi_add(c->arm_b, to);
         }
     }
-    c->arm_a = demi_add(c->arm_a, c->spread);
-    c->arm_b = demi_add(c->arm_b, c->spread);
+    c->arm_a = demi_add(c->arm_a, to);
+    c->arm_b = demi_add(c->arm_b, to);
     return 1;
 }
 /* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
@@ -324,7 +341,7 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         const dem_vec3 x = demi_d3_real(spots->x[k]);
         demi_kept *at = k ? demi_kept_new(w, d) : c;
         if (!at) return 0;
-        if (k) memcpy(at, c, offsetof(demi_kept, coef));
+        if (k) demi_kept_copy(at, c);
         at->corner = k;
         at->arm_a = demi_add(base_a, x);
         at->arm_b = demi_add(base_b, x);
@@ -502,10 +519,10 @@ static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, c
     c->overlap = place->overlap;
     c->deep = place->deep;
     c->slope = place->slope;
-    c->couple = place->couple;
-    c->spread = place->spread;
     c->corner = place->corner;
     c->corners = place->corners;
+    demi_kept_odd(c)->couple = place->couple;
+    c->more.spread = place->spread;
     c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
     c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
 }
@@ -758,7 +775,7 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     for (i = walled; i < all; i++) {
         if (c[i].a < 0) continue;
         c[i].arm_b = demi_v(0, 0, 0);
-        if (i > left) c[left] = c[i];
+        if (i > left) demi_kept_copy(&c[left], &c[i]);
         left++;
     }
     w->domains[d].kept_next = left;

@@ -86,7 +86,7 @@ static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real le
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
         c->overlap = left*l;
         c->slope = l/(h + edge);
-        c->inset = 1 - left;
+        demi_kept_odd(c)->inset = 1 - left;
     }
 }
 /* A sphere and a polyhedron, at the nearest point; R* is the sphere's radius, as on a plane. */
@@ -134,7 +134,7 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(egg->q, at);
-    c->inset = 1;
+    demi_kept_odd(c)->inset = 1;
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -183,6 +183,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
     demi_solid a, b;
     demi_patch at;
+    demi_kept_more *more;
     demi_pressure s;
     double overlap;
     (void)lambda;
@@ -201,10 +202,11 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     c->slope = (dem_real)demi_shared_slope(at.force, r_eff, overlap);
     c->deep = (dem_real)s.deep;
     c->r_eff = (dem_real)r_eff;
-    c->couple = at.couple;
     c->corners = 4;
-    c->spread = at.spread[0];
-    c->aside = at.spread[1];       /* until demi_kept_spread */
+    more = demi_kept_odd(c);
+    more->couple = at.couple;
+    more->spread = at.spread[0];
+    more->aside = at.spread[1];    /* until demi_kept_spread */
     c->arm_a = demi_add(p->centre, at.point);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;

@@ -552,11 +552,20 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
 }
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
-/* Sets c->bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
+/* Returns what only few contacts need, for a contact that needs it from now on. */
+DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
+    if (c->odd) return &c->more;
+    c->odd = 1;
+    memset(&c->more, 0, sizeof c->more);
+    c->more.inset = 1;
+    return &c->more;
+}
+/* Sets bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
    point: of the wall's surface, for the image of the body that touches it. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
                            dem_vec3 point, demi_kept *c) {
     const dem_real *R = wall->pose.rotation;
+    demi_kept_more *more;
     demi_bend b;
     if (!demi_bends[wall->kind]) return;
     memset(&b, 0, sizeof b);
@@ -566,6 +575,9 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
     b.point = demi_unrotate(R, demi_sub(point, wall->pose.position));
     demi_bends[wall->kind](wall, among, count, &b);
     c->bend = b.turn;
-    c->along = b.along;
-    c->axis = demi_rotate(R, b.axis);
+    if (b.along < 0 || b.along > 0 || demi_dot(b.axis, b.axis) > 0) {
+        more = demi_kept_odd(c);
+        more->along = b.along;
+        more->axis = demi_rotate(R, b.axis);
+    }
 }

@@ -138,13 +138,23 @@ typedef struct demi_shape {
     dem_vec3 centre;               /* m, centre of mass in that frame */
 } demi_shape;
 
+/* What only few persistent contacts need (demi_kept_odd). */
+typedef struct demi_kept_more {
+    dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
+    dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
+    dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
+    dem_vec3 aside;                /* elastic force across the normal, over that along it */
+    dem_real inset;                /* the normal force acts at inset*arm_a */
+    dem_vec3 spread;               /* m, from the centre of pressure to this point */
+    dem_real couple;               /* m: moment about the normal, over the normal force */
+} demi_kept_more;
 /* A persistent contact: any contact except sphere on sphere. (The history of two spheres is in the
    pruned neighbour list.) It exists as long as the two touch. The contacts of a work group are in
    the order of body a, pairs before walls; forces are added in this order. In each step, touch
    builds the list kept_next from scratch and finds for each contact the one of the previous step
    (kept_now) that it continues. respond copies the history from that contact and computes the
-   forces. Then the two lists are swapped. So touch can start again with more room if the list was
-   too short. */
+   forces. Then the two lists are swapped, so touch can start again with more room. What all
+   contacts need comes first: reading it takes most of the time. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
@@ -155,36 +165,27 @@ typedef struct demi_kept {
     int32_t from;                  /* old contact of its group that it continues; -1: none */
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
+    int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
-    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force, as on the way through a reduced
-                                      hole (demi_kept_asked). deep: overlap over the smaller half
-                                      width along the normal (of a sphere: its radius) */
-    dem_real share, lift, grip;    /* weights of damping, elastic force, friction */
-    dem_real weight;               /* its weight before contacts are merged: demi_kept_share */
+    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
+                                      over the smaller half width (of a sphere: its radius) */
+    dem_real share, lift, grip;    /* weights of damping, elastic force, friction; */
+    dem_real weight;               /* before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
                                       all of it, see demi_kept_inherit */
-    dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
-    dem_real bend;                 /* 1/m: rotation of the normal per displacement of part_a in the
-                                      tangent plane */
-    dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
-    dem_real along;                /* rotate the normal by `along`, 1/m, instead */
-    dem_vec3 aside;                /* elastic force perpendicular to the normal, in units of the
-                                      elastic normal force of the law */
+    dem_real bend;                 /* 1/m: rotation of the normal per displacement across it */
     dem_real slope;                /* change of overlap per change of distance */
-    dem_real inset;                /* the normal force acts at inset*arm_a */
-    dem_vec3 spread;               /* m, from the centre of pressure to this point */
-    dem_real couple;               /* m: moment about the normal, over the normal force */
     dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
-    double lambda;                 /* start value for the parameter of Perram and Wertheim; 0:
-                                      unknown */
+    double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
     /* kept from step to step: respond writes these, touch does not */
     dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
     dem_real coef_r;               /* m, the r_eff that they were computed for; 0: none yet */
-    dem_real memory[DEMI_MEMORY];  /* contact history */
+    dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals */
+    demi_kept_more more;
 } demi_kept;
 
 /* Force (N), torque (Nm), power (W) and contacts that the grains of one work group exert on one

@@ -60,6 +60,14 @@
 #define DEMI_ONE_BY_ONE(i) ((void)0)
 #endif
 
+/* In front of a short loop of constant length, which compilers do not unroll at -O2. */
+#if defined(__clang__)
+#define DEMI_UNROLL _Pragma("unroll")
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#define DEMI_UNROLL _Pragma("GCC unroll 16")
+#else
+#define DEMI_UNROLL
+#endif
 /* Expands DO(0) to DO(7). Compilers do not unroll such a loop at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
 

@@ -258,12 +258,20 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
+/* Sets what a contact does not use to 0, since files and messages contain all of it. */
+static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
+    int e;
+    for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
+    if (!c->odd) memset(&c->more, 0, sizeof c->more);
+}
 /* Visits persistent contacts, with or without a list, and the contact history of spheres that is
    saved between two lists (demi_filed). */
 static void demi_visit_contacts(dem_world *w, demi_stream *s) {
-    int d;
+    int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
+        for (k = 0; k < domain->kept && !s->from; k++)
+            demi_kept_tidy(w, demi_kept_of(w, d) + k);
         if (domain->kept)
             demi_visit(s, demi_kept_of(w, d),
                        (size_t)domain->kept*sizeof(demi_kept));

@@ -195,6 +195,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
         for (k = 0; k < w->domains[d].kept && ok; k++) {
             demi_kept c = demi_kept_of(w, d)[k];
+            demi_kept_tidy(w, &c);
             if (w->stage.list_valid) {
                 c.a = (int32_t)w->bodies.slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
