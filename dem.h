@@ -3684,8 +3684,7 @@ typedef struct demi_kept {
     dem_real weight;               /* before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
                                       all of it, see demi_kept_inherit */
-    dem_real bend;                 /* 1/m: rotation of the normal per displacement across it */
-    dem_real slope;                /* change of overlap per change of distance */
+    dem_real bend, slope;          /* per distance: turn of the normal, 1/m; change of overlap */
     dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
@@ -21367,6 +21366,8 @@ typedef struct demi_beside {
     dem_real gap, lift, pull, mass;
     dem_real turns;                /* m/s, <= 0: part of bias, see demi_impulse_turns */
     int bounces;                   /* 1: bias is that of restitution */
+    dem_real leaves;               /* m/s: of bodies that separate, the speed of approach at which
+                                      a push does no work; else 0 */
 } demi_beside;
 /* Rolling and spinning friction of a contact, if any material has them. */
 typedef struct demi_twist {
@@ -21768,6 +21769,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);
         beside->bounces = pair->restitution > 0 && hits < -rest && o.gap + closing*dt <= 0;
         if (beside->bounces) { c->bias = pair->restitution*closing; beside->turns = 0; }
+        beside->leaves = closing > rest ? pair->restitution*closing : 0;
         c->bias += beside->turns;
         beside->gap = o.gap;
         if (o.gap < 0)
@@ -23485,9 +23487,11 @@ static double demi_sum_energy(const dem_world *w, int what) {
 }
 /* Largest number of rounds of demi_impulses_tame. */
 enum { DEMI_TAMINGS = 4 };
-/* Newton's restitution and friction together may add energy if the slip reverses. Halves the
-   restitution of each impact that would do so; with `last` sets it to 0, which loses energy for any
-   shape. Returns the number of such impacts. */
+/* Mends the two kinds of contacts that may add energy, and returns their number. Newton's
+   restitution and friction together may, if the slip reverses: halves the restitution of such an
+   impact; with `last` sets it to 0, which loses energy for any shape. A contact that separates may,
+   if an impact elsewhere on the body throws it back and a push stops it at a lower speed than it
+   had: lets it approach at that speed, and bounce in the next step. */
 static int demi_impulses_tame(dem_world *w, int last) {
     demi_solver *s = &w->solver;
     int i, tamed = 0;
@@ -23495,6 +23499,10 @@ static int demi_impulses_tame(dem_world *w, int last) {
         demi_impulse *c = s->contacts + i;
         dem_vec3 before, after, p;
         dem_real gain;
+        if (s->beside[i].leaves > DEMI_MAX(c->bias, 0) && c->push > 0) {
+            c->bias = s->beside[i].leaves;
+            tamed++;
+        }
         if (!s->beside[i].bounces || !(c->bias < 0) || !(c->push > 0)) continue;
         before = demi_impulse_before(w, c);
         after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);

@@ -173,8 +173,7 @@ typedef struct demi_kept {
     dem_real weight;               /* before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
                                       all of it, see demi_kept_inherit */
-    dem_real bend;                 /* 1/m: rotation of the normal per displacement across it */
-    dem_real slope;                /* change of overlap per change of distance */
+    dem_real bend, slope;          /* per distance: turn of the normal, 1/m; change of overlap */
     dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */

@@ -180,9 +180,11 @@ static double demi_sum_energy(const dem_world *w, int what) {
 }
 /* Largest number of rounds of demi_impulses_tame. */
 enum { DEMI_TAMINGS = 4 };
-/* Newton's restitution and friction together may add energy if the slip reverses. Halves the
-   restitution of each impact that would do so; with `last` sets it to 0, which loses energy for any
-   shape. Returns the number of such impacts. */
+/* Mends the two kinds of contacts that may add energy, and returns their number. Newton's
+   restitution and friction together may, if the slip reverses: halves the restitution of such an
+   impact; with `last` sets it to 0, which loses energy for any shape. A contact that separates may,
+   if an impact elsewhere on the body throws it back and a push stops it at a lower speed than it
+   had: lets it approach at that speed, and bounce in the next step. */
 static int demi_impulses_tame(dem_world *w, int last) {
     demi_solver *s = &w->solver;
     int i, tamed = 0;
@@ -190,6 +192,10 @@ static int demi_impulses_tame(dem_world *w, int last) {
         demi_impulse *c = s->contacts + i;
         dem_vec3 before, after, p;
         dem_real gain;
+        if (s->beside[i].leaves > DEMI_MAX(c->bias, 0) && c->push > 0) {
+            c->bias = s->beside[i].leaves;
+            tamed++;
+        }
         if (!s->beside[i].bounces || !(c->bias < 0) || !(c->push > 0)) continue;
         before = demi_impulse_before(w, c);
         after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);

@@ -53,6 +53,8 @@ typedef struct demi_beside {
     dem_real gap, lift, pull, mass;
     dem_real turns;                /* m/s, <= 0: part of bias, see demi_impulse_turns */
     int bounces;                   /* 1: bias is that of restitution */
+    dem_real leaves;               /* m/s: of bodies that separate, the speed of approach at which
+                                      a push does no work; else 0 */
 } demi_beside;
 /* Rolling and spinning friction of a contact, if any material has them. */
 typedef struct demi_twist {
@@ -454,6 +456,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);
         beside->bounces = pair->restitution > 0 && hits < -rest && o.gap + closing*dt <= 0;
         if (beside->bounces) { c->bias = pair->restitution*closing; beside->turns = 0; }
+        beside->leaves = closing > rest ? pair->restitution*closing : 0;
         c->bias += beside->turns;
         beside->gap = o.gap;
         if (o.gap < 0)
