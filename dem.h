@@ -23486,7 +23486,7 @@ static double demi_sum_energy(const dem_world *w, int what) {
     return sum;
 }
 /* Largest number of rounds of demi_impulses_tame. */
-enum { DEMI_TAMINGS = 4 };
+enum { DEMI_TAMINGS = 8 };
 /* Mends the two kinds of contacts that may add energy, and returns their number. Newton's
    restitution and friction together may, if the slip reverses: halves the restitution of such an
    impact; with `last` sets it to 0, which loses energy for any shape. A contact that separates may,

@@ -258,15 +258,15 @@ typedef struct cell {
     double gain;                     /* largest, over the energy before */
 } cell;
 /* Throws the body of a lane down at the joint at 0.5 to 1 m/s, up to 70 degrees from the vertical,
-   with a spin of up to 400 rad/s; upwards with up to 1100 rad/s, as after an impact. It starts so
-   low that the impact follows soon, but with impulses not in the first step. Half of the throws
-   point at the joint, within 0.05 R, the others within R. */
+   with a spin of up to 400 rad/s; upwards with up to 1400 rad/s, as between several impacts. It
+   starts so low that the impact follows soon, but with impulses not in the first step. Half of the
+   throws point at the joint, within 0.05 R, the others within R. */
 static void lane_throws(dem_world *w, const cell *c, lane *l, uint64_t number) {
     uint64_t seed = l->seed = number;
     const double speed = 0.5 + 0.5*scene_random(&seed), lean = 1.22*scene_random(&seed);
     const double about = 2*pi*scene_random(&seed), down = speed*cos(lean), side = speed*sin(lean);
     const double aside = scene_random(&seed) < 0.5 ? 0.05*R : R;
-    const double spin = (c->upwards ? 1100 : 400)*scene_random(&seed);
+    const double spin = (c->upwards ? 1400 : 400)*scene_random(&seed);
     const double gap = R*((c->upwards ? 1 : c->impulses ? 0.15 : 0.01) + 0.1*scene_random(&seed));
     const double aim = scene_random(&seed);
     const dem_vec3 axis = any_direction(&seed);
@@ -334,9 +334,10 @@ static int lane_ends(const dem_world *w, cell *c, const lane *l) {
     c->impacts++;
     c->gain = fmax(c->gain, gain);
     if (gain > c->bound && c->gaining++ < 3)
-        printf("    a %s on %s by %s, dt %.3g s, throw %lu: gains %.3g, bound %.3g\n",
+        printf("    a %s on %s by %s, dt %.3g s, throw %lu: gains %.3g, bound %.3g, spin %.0f\n",
                body_name[c->body], surface_name[c->surface], c->impulses ? "impulses" : "springs",
-               c->dt, (unsigned long)l->seed, gain, c->bound);
+               c->dt, (unsigned long)l->seed, gain, c->bound,
+               (double)demi_length(demi_at(w->bodies.spin + 4*i)));
     return 1;
 }
 static void cell_run(cell *c, long wanted) {
