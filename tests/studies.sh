@@ -1,6 +1,7 @@
 # sh tests/studies.sh [long]: runs every command of the four studies that README.md and docs/*.md name, with --short, JOBS
 # at a time. long: runs the commands as they are written, once instead of --repeats times. Those that take an hour stay
 # short. A study that a program knows and no page runs is a failure, and so is one that a page names without a command.
+# It also checks the rows of docs/seeds*.md (tests/seeds.awk).
 JOBS=${JOBS:-1}
 export OMP_WAIT_POLICY=passive   # several programs share the cores: a thread that waits sleeps
 dir=build/out/studies
@@ -27,6 +28,7 @@ grep -ho -- '--study [a-z]*' $pages | sed 's/--study //' | sort -u | while read 
     grep -qx "$word" $dir/run || echo "--study $word: a page names it, and no page gives its command"
 done >> $dir/missed
 while read -r line; do miss "$line"; done < $dir/missed
+awk -f tests/seeds.awk docs/seeds*.md || miss "docs/seeds*.md: tests/seeds.awk complains"
 
 number=0
 while read -r line; do
