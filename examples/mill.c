@@ -8,12 +8,14 @@
        to this value; --stiffness true simulates the glass of the thesis.
      - The mill settles for half a revolution and is measured for half a revolution. In the thesis
        it was three, and one or more.
+   --first is the run of `make run`: beads of 5 mm in a slice that is thicker in proportion, so that there
+   are 0.36 times as many and each step is longer. Its replay begins after settling, when the charge flows.
    The thesis shows its lifters only as a picture of 259 points and 259 lines. Our
    examples/data/mill_300mm.profile has the same numbers of both, with 12 trapezoidal lifters that
    we chose: 9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
 
    build:  cc -O2 -std=c99 -fopenmp examples/mill.c dem.c -o build/mill -lm    (-fopenmp is optional)
-   run:    build/mill, build/mill --quick, build/mill --help
+   run:    build/mill, build/mill --first, build/mill --quick, build/mill --help
            over MPI: examples/mpi/mill.c
 
    The axis is z, gravity points to -y, and the mill rotates about +z: seen with x to the right it
@@ -41,7 +43,7 @@
                           within 5 % of its mean
      grains_missing       grains inserted less grains present, plus grains outside the shell
      hash                 of the final state: the same for any number of threads
-   --replay: a replay of the whole run. Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
+   --replay: a replay of the run, from --replay-from on. Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
    torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
 #include "../dem.h"
 #include "drum.h"
@@ -56,14 +58,14 @@
 
 static struct mill_options {
     double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt;
-    double contact_steps, revolutions, settle;
+    double contact_steps, revolutions, settle, replay_from;
     const char *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study;
     const char *out;
     const char *checkpoint, *resume, *write_profile;
-    int threads, slabs, frames, quick, brief, replay;
-} options = {0.3, 0.0068, 0.0015, 0.7, 0.37426, 0.154, 0.32, 500, 0, 20, 0.5, 0.5,
+    int threads, slabs, frames, first, quick, brief, replay;
+} options = {0.3, 0.0068, 0.0015, 0.7, 0.37426, 0.154, 0.32, 500, 0, 20, 0.5, 0.5, 0,
              "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill",
-             "build/out/mill", 0, 0, 0, 0, 0, 4, 0, 0, 0};
+             "build/out/mill", 0, 0, 0, 0, 0, 4, 0, 0, 0, 0};
 
 /* in the order of dem_integrator and dem_tangent_law */
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
@@ -100,9 +102,11 @@ static const study_option table[] = {
     {"slabs", STUDY_INT, &options.slabs, 0, 1024, "",
         "the drum dealt across x to as many slabs; 0: one world"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
+    {"first", STUDY_FLAG, &options.first, 0, 0, "", "coarser beads; the replay begins after settling"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "a smaller mill, under 20 s on two cores"},
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
+    {"replay-from", STUDY_REAL, &options.replay_from, 0, 1000, "", "revolutions before its first frame"},
     {"frames", STUDY_INT, &options.frames, 0, 100000, "",
         "VTP files of grains and mill over the run"},
     {"checkpoint", STUDY_TEXT, &options.checkpoint, 0, 0, "",
@@ -491,7 +495,7 @@ static int mill_turn(mill *m) { /* runs the mill */
     dem_slabs *slabs;
     study_replay f;
     int bad = 0;
-    int k = 0, first, total, count, since, frames = m->o.frames;
+    int k = 0, first, total, count, since = 0, opened, frames = m->o.frames;
     double begun, work = (double)m->grains*m->sample_steps;
     char what[64];
     m->sample_count = m->settled + (int)(m->o.revolutions*SAMPLES + 0.5);
@@ -508,10 +512,14 @@ static int mill_turn(mill *m) { /* runs the mill */
     snprintf(what, sizeof what, "mill: %d grains, %.3g revolutions", m->grains,
              total/(double)SAMPLES);
     study_progress(what, 0, 0);
-    f = study_replay_open(m->world, m->o.replay ? REPLAY_FRAMES : 0, (total - k)*m->sample_steps*m->dt,
-                  "A tumbling mill with lifters");
-    mill_replay(m, &f, k, (since = k, &since));
+    memset(&f, 0, sizeof f);
+    opened = (int)fmax(k, m->o.replay_from*SAMPLES + 0.5);
     for (begun = study_clock(), first = k; k < total && !bad; k++) {
+        if (k == opened) {
+            f = study_replay_open(m->world, m->o.replay ? REPLAY_FRAMES : 0, (total - k)*m->sample_steps*m->dt,
+                          "A tumbling mill with lifters");
+            mill_replay(m, &f, k, (since = k, &since));
+        }
         if (frames && (int64_t)k*frames%total < frames)
             frame_write(m, (int)((int64_t)k*frames/total));
         bad = mill_step(m, slabs);
@@ -1004,7 +1012,14 @@ int main(int argc, char **argv) {
         options.revolutions = 0.6;
         study_options(argc, argv, about, table, count);
     }
+    if (options.first) { /* beads of 5 mm; the slice remains 2.3 beads thick */
+        options.radius = 0.0025;
+        options.length = 0.01133;
+        options.replay_from = options.settle;
+        study_options(argc, argv, about, table, count);
+    }
     if (options.brief) {
+        options.replay_from = 0;
         options.diameter = 0.12;
         options.soften = 1000;
         options.settle = options.revolutions = 0.05;
