@@ -8,8 +8,8 @@
        to this value; --stiffness true simulates the glass of the thesis.
      - The mill settles for half a revolution and is measured for half a revolution. In the thesis
        it was three, and one or more.
-   --first is the run of `make run`: beads of 5 mm in a slice that is thicker in proportion, so that there
-   are 0.36 times as many and each step is longer. Its replay begins after settling, when the charge flows.
+   --first is the run of `make run`: beads of 6 mm in a slice that is twice as thick, so that there are a
+   quarter as many, with steps twice as long. Its replay begins after settling, when the charge flows.
    The thesis shows its lifters only as a picture of 259 points and 259 lines. Our
    examples/data/mill_300mm.profile has the same numbers of both, with 12 trapezoidal lifters that
    we chose: 9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
@@ -1012,9 +1012,9 @@ int main(int argc, char **argv) {
         options.revolutions = 0.6;
         study_options(argc, argv, about, table, count);
     }
-    if (options.first) { /* beads of 5 mm; the slice remains 2.3 beads thick */
-        options.radius = 0.0025;
-        options.length = 0.01133;
+    if (options.first) { /* beads of 6 mm; the slice remains 2.3 beads thick */
+        options.radius = 0.003;
+        options.length = 0.0136;
         options.replay_from = options.settle;
         study_options(argc, argv, about, table, count);
     }
