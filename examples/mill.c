@@ -43,8 +43,8 @@
                           within 5 % of its mean
      grains_missing       grains inserted less grains present, plus grains outside the shell
      hash                 of the final state: the same for any number of threads
-   --replay: a replay of the run, from --replay-from on. Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
-   torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
+   --replay: a replay of the run, from --replay-from on. Files: solidicity and velocity at 64, 128 and 256
+   cells, torque, power, grains (SVG); torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
 #include "../dem.h"
 #include "drum.h"
 #include "study.h"
@@ -1020,7 +1020,7 @@ int main(int argc, char **argv) {
     }
     if (options.brief) {
         options.replay_from = 0;
-        options.diameter = 0.12;
+        options.diameter = options.first ? 0.24 : 0.12; /* as many beads in either */
         options.soften = 1000;
         options.settle = options.revolutions = 0.05;
         options.frames = 0;
