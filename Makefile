@@ -60,7 +60,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -151,6 +151,9 @@ bench-parallel: build/parallel ## measure threads, sizes and searches beside pub
 
 bench-peers: $(BENCHES) $(BENCH_ALSO) ## run the same scenes in dem.h and in LAMMPS, LIGGGHTS and YADE, as far as they are installed
 	@sh bench/peers.sh
+
+peers-check: build/bench build/blocks build/beside ## run bench-peers in a short form: small scenes, one round, all codes that are installed
+	@SHORT=1 sh bench/peers.sh
 
 bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ## measure the speeds in docs/ again and write them; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)

@@ -1,9 +1,10 @@
-# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses] [ellipsoids]
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [peers_two] [blocks] [responses] [ellipsoids]
 #                   [lessons] [heap] [files]
 # Measures again and replaces tables and pictures in docs/ (without arguments: effects, accuracy, roofline, clusters).
 #   effects     what effects cost, in accuracy.md and README.md
 #   screener    times of the screener, in screener.md
-#   peers       the table of README.md
+#   peers       the table of README.md and the one in peers.md
+#   peers_two   two cores beside other codes, in peers.md
 #   blocks      beds of blocks beside other codes, in shapes.md
 #   responses   springs beside impulses, in impulses.md
 #   ellipsoids  Table 2 in ellipsoids.md, and the theory in docs/data
@@ -81,36 +82,64 @@ rates() {
             for (i = 1; i <= n; i++) { d = rate[scene[i], "double"]; s = rate[scene[i], "single"]; o = rate[scene[i], "double.O2"]
                 printf "| %s | %.1f | %.1f | %.2f | %s |\n", scene[i], d, s, d ? s/d : 0, o ? sprintf("%.1f", o) : "" } }'
 }
-# a row a scene and code, from what bench/peers.sh prints; empty where a code or a second core was missing
+# a row per scene and code, from what bench/peers.sh prints on one core
 peers() {
-    awk '/ = / && $1 ~ /^(bed|drum|gas)\.(double|single)\.vs_/ { value = $0; sub(/.* = /, "", value); sub(/\+-/, "±", value); ratio[$1] = value }
-        END { print "| scene | against | one core | two cores | one core, dem.h in single precision |"; print "|---|---|---|---|---|"
-            about["bed"] = "bed, 20,000 beads at rest"; about["drum"] = "drum with lifters, 18,000 beads"
+    awk '/ = / && / rounds\)$/ { split($0, p, / = | \(| to |, | rounds/); at[p[1]] = p[2] " | " p[3] " | " p[4] " | " p[5] }
+        END { print "| scene | compared with | speed of dem.h over the other | smallest | largest | rounds |"; print "|---|---|---|---|---|---|"
+            row("bed.double.vs_lammps", "bed, 20,000 spheres at rest", "LAMMPS"); row("bed.double.vs_liggghts", "the same", "LIGGGHTS")
+            row("million.double.vs_lammps", "bed, 980,000 spheres", "LAMMPS")
+            row("gas.double.vs_lammps", "gas, 32,768 spheres", "LAMMPS")
+            row("drum.double.vs_liggghts", "drum with lifters, 18,000 spheres, mesh of 240 triangles", "LIGGGHTS")
+            row("mesh.double.vs_liggghts", "the same drum, mesh of 61,440 triangles", "LIGGGHTS")
+            row("mixture.double.vs_lammps", "mixture 1:10, 20,000 spheres of 0.5 mm and 200 of 5 mm", "LAMMPS, `gran/hertz/history`")
+            row("mixture.double.vs_lammpslaw", "the same", "LAMMPS, the law of dem.h (`granular`)")
+            n = split("clumps3 clumps clumps10 clumps30", name, " "); split("3 8 10 30", spheres, " ")
+            for (i = 1; i <= n; i++) {
+                row(name[i] ".double.vs_liggghts", "1000 clumps of " spheres[i] " spheres", "LIGGGHTS")
+                row(name[i] ".unshared.vs_liggghts", "the same, `DEM_CLUSTER_CONTACTS_SEPARATE`", "LIGGGHTS") }
+            row("servo_plane.double.vs_rest", "bed below a plane, its motion set at every step", "dem.h, plane at rest")
+            row("servo_mesh.double.vs_rest", "bed below a mesh of 200 triangles, its motion set at every step", "dem.h, mesh at rest") }
+        function row(key, about, other) { if (key in at) printf "| %s | %s | %s |\n", about, other, at[key] }' "$1"
+}
+# the same, in full: times and states
+peers_details() {
+    awk '/^# .* ns per step and body/ { split($2, p, ".")
+            printf "%s| %s | %s | %s | %s | %s | %s | %s | %s |\n", rows++ ? "" : "| scene | code | ns per step and body, median | smallest | largest | contacts per body | mean overlap, µm | kinetic energy, J |\n|---|---|---|---|---|---|---|---|\n",
+                p[1], p[2] == "double" ? "dem.h" : p[2] == "unshared" ? "dem.h, separate contacts" : p[2] == "rest" ? "dem.h, lid at rest" : p[2] == "single" ? "dem.h, single precision" : p[2] == "O2" ? "dem.h, `-O2`" : p[2] == "lammpslaw" ? "LAMMPS, law of dem.h" : toupper(p[2]),
+                value("median"), value("smallest"), value("largest"), value("contacts/body"), value("overlap") + 0 ? value("overlap") : "", value("kinetic") }
+        /^# (LAMMPS|LIGGGHTS|YADE) / { sub(/^# /, ""); sub(/, compiled.*/, ")"); versions = versions (versions == "" ? "" : ", ") $0 }
+        END { printf "\nVersions: %s.\n", versions == "" ? "dem.h only" : versions }
+        function value(key,   i, v) { for (i = 3; i < NF; i++) if ($i == key) { v = $(i + 1); sub(/[,;]$/, "", v); return v }; return "" }' "$1"
+}
+# a row per scene and code, with two cores; empty where a code or a second core was missing
+peers_two() {
+    awk '/ = / && / rounds\)$/ { split($0, p, / = | \(| to |, | rounds/); at[p[1]] = p[2] " (" p[3] " to " p[4] ")" }
+        /^# load/ { print "<!-- busy -->" }
+        END { print "| scene | compared with | one core | two cores | one core, dem.h in single precision |"; print "|---|---|---|---|---|"
+            about["bed"] = "bed, 20,000 spheres at rest"; about["drum"] = "drum with lifters, 18,000 spheres"
             about["gas"] = "gas, 32,768 spheres"; name["lammps"] = "LAMMPS"; name["liggghts"] = "LIGGGHTS"
             n = split("bed.lammps bed.liggghts drum.liggghts gas.lammps", row, " ")
             for (i = 1; i <= n; i++) { split(row[i], p, ".")
-                printf "| %s | %s | %s | %s | %s |\n", about[p[1]], name[p[2]], ratio[p[1] ".double.vs_" p[2]],
-                    ratio[p[1] ".double.vs_" p[2] ".threads2"], ratio[p[1] ".single.vs_" p[2]] } }' "$1"
+                printf "| %s | %s | %s | %s | %s |\n", about[p[1]], name[p[2]], at[p[1] ".double.vs_" p[2]],
+                    at[p[1] ".double.vs_" p[2] ".threads2"], at[p[1] ".single.vs_" p[2]] } }' "$1"
 }
-# a row a scene and code, from the same: beds of blocks
+# a row per scene and code: beds of blocks
 blocks() {
-    awk '/^# (clumps|cubes)\./ { split($2, p, "."); rate[p[1], p[2]] = $3; for (i = 4; i < NF; i++) if ($i == "contacts/bead") touch[p[1], p[2]] = $(i + 1) }
-        /^# load/ { print "<!-- busy -->" }
-        /middle sank/ { sank[p[1], p[2]] = $6 }
-        / = / && $1 ~ /^(clumps|cubes)\./ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
+    awk '/^# .* ns per step and body/ { split($2, p, "."); time[p[1], p[2]] = 1e-3*value("median"); touch[p[1], p[2]] = value("contacts/body"); sank[p[1], p[2]] = value("sank") }
+        / = / && / rounds\)$/ { split($0, p, / = | \(| to |, | rounds/); at[p[1]] = p[2] " | " p[3] " to " p[4] }
         END {
-            print "| bed | code | time of a step and body, µs | contacts per body | centre of mass sank by, µm | time over that of dem.h | ± % | time over that of dem.h with separate contacts | ± % |"
+            print "| bed | code | time of a step and body, µs | contacts per body | centre of mass sank by, µm | time over that of dem.h | smallest to largest | time over that of dem.h with separate contacts | smallest to largest |"
             print "|---|---|---|---|---|---|---|---|---|"
             about["clumps"] = "clumps of 8 spheres"; about["cubes"] = "cubes"
             name["double"] = "dem.h"; name["unshared"] = "dem.h, `DEM_CLUSTER_CONTACTS_SEPARATE`"; name["liggghts"] = "LIGGGHTS, multispheres"
             name["yadeclumps"] = "YADE, clumps"; name["yadecubes"] = "YADE, polyhedra"
             n = split("clumps.double clumps.unshared clumps.liggghts clumps.yade cubes.double cubes.yade", row, " ")
             for (i = 1; i <= n; i++) { split(row[i], p, "."); s = p[1]; c = p[2]
-                if (!((s, c) in rate)) continue
-                split(ratio[s ".double.vs_" c], r, /[ (+%)-]+/)
-                split(ratio[s ".unshared.vs_" c], u, /[ (+%)-]+/)
-                printf "| %s | %s | %.3g | %.2f | %s | %s | %s | %s | %s |\n", about[s], name[c == "yade" ? c s : c], 1/rate[s, c], touch[s, c], sank[s, c],
-                    r[1], r[2], u[1], u[2] } }' "$1"
+                if (!((s, c) in time)) continue
+                printf "| %s | %s | %.3g | %.2f | %s | %s | %s |\n", about[s], name[c == "yade" ? c s : c], time[s, c], touch[s, c], sank[s, c],
+                    times(s ".double.vs_" c), times(s ".unshared.vs_" c) } }
+        function times(key) { return key in at ? at[key] : " | " }
+        function value(key,   i, v) { for (i = 3; i < NF; i++) if ($i == key) { v = $(i + 1); sub(/[,;]$/, "", v); return v }; return "" }' "$1"
 }
 # the cost of effects for the README: some rows of effects.csv, in words
 prices() {
@@ -229,16 +258,26 @@ for what in "$@"; do
         { echo '```'; grep '^slope' $at/readme/log; echo '```'; } > build/page.heap && splice README.md heap build/page.heap || exit 1 ;;
     files) files > build/page.files && splice web.md files build/page.files || exit 1 ;;
     peers)
-        SCENES="bed drum gas" sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
+        # processor times: other programs may run at the same time
+        LONG=1 SCENES="bed million gas drum mesh mixture clumps3 clumps clumps10 clumps30 servo_plane servo_mesh" CORES=1 sh bench/peers.sh \
+            > build/peers.out 2>&1 || { cat build/peers.out; exit 1; }
         cat build/peers.out
-        grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
-        peers build/peers.out > build/peers.md && splice README.md peers build/peers.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=peers" || exit 1 ;;
+        grep -q 'vs_l.* = ' build/peers.out || { echo "neither LAMMPS nor LIGGGHTS was found: the pages stay as they were"; exit 1; }
+        command="${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=peers"
+        peers build/peers.out > build/peers.md && splice README.md peers build/peers.md "$command" || exit 1
+        peers_details build/peers.out > build/peers.md && splice peers.md peers_details build/peers.md "$command" || exit 1 ;;
+    peers_two)
+        CLOCK=wall CORES="1 2" SCENES="bed drum gas" sh bench/peers.sh > build/peers_two.out 2>&1 || { cat build/peers_two.out; exit 1; }
+        cat build/peers_two.out
+        grep -q 'vs_l.* = ' build/peers_two.out || { echo "neither LAMMPS nor LIGGGHTS was found: peers.md stays as it was"; exit 1; }
+        peers_two build/peers_two.out > build/peers.md &&
+            splice peers.md peers_two build/peers.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=peers_two" || exit 1 ;;
     blocks)
-        SCENES="clumps cubes" CORES=1 sh bench/peers.sh > build/blocks.out || { cat build/blocks.out; exit 1; }
+        SCENES="clumps cubes" CORES=1 sh bench/peers.sh > build/blocks.out 2>&1 || { cat build/blocks.out; exit 1; }
         cat build/blocks.out
         grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
         { blocks build/blocks.out; measured "ROUNDS=${ROUNDS:-5} make bench-pages PAGES=blocks"; } > build/blocks.md
         splice shapes.md blocks build/blocks.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=blocks" || exit 1 ;;
-    *) echo "no page $what: effects, accuracy, roofline, clusters, shapes, screener, responses, ellipsoids, peers, blocks, lessons, heap or files"; exit 1 ;;
+    *) echo "no page $what: effects, accuracy, roofline, clusters, shapes, screener, responses, ellipsoids, peers, peers_two, blocks, lessons, heap or files"; exit 1 ;;
     esac
 done
