@@ -9980,7 +9980,7 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     switch (m->kind) {
     case DEM_MOTION_FIXED: break;
     case DEM_MOTION_TRANSLATING:
-        if (t <= 0) break;
+        if (t < 0) break;
         gone = demi_ramp(t, m->ramp, &part);
         pose->position = demi_add(pose->position, demi_scale(m->velocity, (dem_real)gone));
         pose->velocity = demi_scale(m->velocity, (dem_real)part);
@@ -9988,7 +9988,7 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_ROTATING: {
         const dem_vec3 axis = demi_unit(m->axis);
         double turn[9];
-        if (t <= 0) break;
+        if (t < 0) break;
         gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
                       fmod((double)m->speed*gone, 2*DEMI_PI));
@@ -10769,8 +10769,11 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (i < 0) return DEM_ERROR_ARGUMENT;
     result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
     if (result != DEM_OK) return result;
-    /* from its present pose on, a wall that moves alone has the same candidates */
-    alone = !w->repeating && demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i);
+    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
+       decides which of its periodic images are at rest relative to it */
+    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
+        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
+                           next.motion.kind != DEM_MOTION_ROTATING));
     dropped = alone || demi_list_drop(w);
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);
@@ -11854,7 +11857,8 @@ static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32
 static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     const int last = wall->ring_count - 1;
     /* just below the radius at which circles get twice as many sides */
-    const double least = 0.999*DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
+    const double sides = DEMI_FORM_LEAST;
+    const double least = 0.999*sides*sides*2*f->chord/(DEMI_PI*DEMI_PI);
     int32_t at = 0;
     int k, n = 0;
     demi_revolved_ring(f, (double)wall->ring_radius[0], (double)wall->ring_height[0], 0, &at, &n);

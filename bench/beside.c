@@ -141,7 +141,7 @@ static const char *state_name(int clumps) {
 }
 /* A line a body: x y z in nm; of the mixture the radius in nm, of clumps the orientation in 1e-9. */
 static void state_write(int clumps, const dem_world *w) {
-    const int count = dem_body_counts_get(w).present;
+    const int count = (int)dem_body_counts_get(w).present;
     FILE *file = study_open(state_name(clumps));
     int i;
     if (!file) return;
@@ -430,7 +430,7 @@ static void measure(void) {
     ended = clock();
     c = dem_counters_get(w);
     t = dem_totals_get(w);
-    count = dem_body_counts_get(w).present;
+    count = (double)dem_body_counts_get(w).present;
     printf("raw %.6f %.5f %.6g %.0f %.6g %.6g %.0f %.4f\n", (double)(ended - begun)/CLOCKS_PER_SEC,
            (clumps ? 1 : 2)*c.contacts/count, t.kinetic, (double)c.memory/count, high - t.centre[2], overlap_mean(w), count,
            (double)(c.rebuilds - before)/steps_asked);

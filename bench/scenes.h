@@ -81,8 +81,8 @@ typedef struct bench_choice {
     int who;                    /* 1: it asks who touches                                       */
     int reals;                  /* 1: grains carry a number                                     */
 } bench_choice;
-#define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_INTEGRATOR_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+#define BENCH_CHOICE {.normal = DEM_NORMAL_HERTZ, .tangent = DEM_TANGENT_AUTO, .rolling = DEM_ROLLING_AUTO, \
+    .integrator = DEM_INTEGRATOR_VELOCITY_VERLET, .search = DEM_SEARCH_AUTO}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 

@@ -152,7 +152,7 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     switch (m->kind) {
     case DEM_MOTION_FIXED: break;
     case DEM_MOTION_TRANSLATING:
-        if (t <= 0) break;
+        if (t < 0) break;
         gone = demi_ramp(t, m->ramp, &part);
         pose->position = demi_add(pose->position, demi_scale(m->velocity, (dem_real)gone));
         pose->velocity = demi_scale(m->velocity, (dem_real)part);
@@ -160,7 +160,7 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_ROTATING: {
         const dem_vec3 axis = demi_unit(m->axis);
         double turn[9];
-        if (t <= 0) break;
+        if (t < 0) break;
         gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
                       fmod((double)m->speed*gone, 2*DEMI_PI));

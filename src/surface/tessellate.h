@@ -116,7 +116,8 @@ static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32
 static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     const int last = wall->ring_count - 1;
     /* just below the radius at which circles get twice as many sides */
-    const double least = 0.999*DEMI_FORM_LEAST*DEMI_FORM_LEAST*2*f->chord/(DEMI_PI*DEMI_PI);
+    const double sides = DEMI_FORM_LEAST;
+    const double least = 0.999*sides*sides*2*f->chord/(DEMI_PI*DEMI_PI);
     int32_t at = 0;
     int k, n = 0;
     demi_revolved_ring(f, (double)wall->ring_radius[0], (double)wall->ring_height[0], 0, &at, &n);

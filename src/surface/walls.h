@@ -721,8 +721,11 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (i < 0) return DEM_ERROR_ARGUMENT;
     result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
     if (result != DEM_OK) return result;
-    /* from its present pose on, a wall that moves alone has the same candidates */
-    alone = !w->repeating && demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i);
+    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
+       decides which of its periodic images are at rest relative to it */
+    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
+        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
+                           next.motion.kind != DEM_MOTION_ROTATING));
     dropped = alone || demi_list_drop(w);
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);

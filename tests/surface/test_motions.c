@@ -252,5 +252,48 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "row 1");
         dem_world_destroy(world);
     }
+    TEST("a wall whose motion is set at every step carries grains as one that was set once, and lists last as long") {
+        int periodic, mesh, set, k;
+        for (periodic = 0; periodic < 2; periodic++)
+            for (mesh = 0; mesh < 2; mesh++) {
+                dem_body ball[2][9];
+                dem_world *world[2];
+                double off = 0;
+                for (set = 0; set < 2; set++) {
+                    dem_world_desc desc = DEM_WORLD_DESC;
+                    dem_motion motion = DEM_MOTION;
+                    dem_material m;
+                    dem_wall belt;
+                    desc.dt = DEM_R(2e-5);
+                    desc.threads = 1;
+                    desc.gravity.z = DEM_R(-9.81);
+                    desc.domain = dem_box_make(0, 0, -1, DEM_R(0.2), DEM_R(0.2), 1);
+                    if (periodic) desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+                    world[set] = dem_world_create(&desc);
+                    m = scene_material(world[set], 1e6, 0.5, 0.5, 0);
+                    belt = mesh ? scene_floor(world[set], m, 0, 0, 0.2, 0.2, 4, 4)
+                        : dem_wall_plane_add(world[set], m, at(0, 0, 0), at(0, 0, 1));
+                    for (k = 0; k < 9; k++)
+                        ball[set][k] = dem_sphere_add(world[set], m, DEM_R(0.01),
+                                                      at(0.05 + 0.05*(k%3), 0.05 + 0.05*(k/3), 0.0101 + 0.0002*k));
+                    motion.kind = DEM_MOTION_TRANSLATING;
+                    motion.velocity = at(0.3, 0.1, 0);
+                    CHECK_EQ(dem_wall_motion_set(world[set], belt, &motion), DEM_OK);
+                    for (k = 0; k < 8000; k++) {
+                        if (set) CHECK_EQ(dem_wall_motion_set(world[set], belt, &motion), DEM_OK);
+                        CHECK_EQ(scene_step(world[set], 1), DEM_OK);
+                    }
+                }
+                for (k = 0; k < 9; k++) {
+                    const dem_body_state a = scene_state(world[0], ball[0][k]), b = scene_state(world[1], ball[1][k]);
+                    off = fmax(off, (double)demi_length(demi_sub(a.velocity, b.velocity)));
+                    /* rolls without slip */
+                    CHECK_NEAR(a.velocity.x, 0.3*2/7, 1e-4);
+                }
+                CHECK_NEAR(off, 0, fine ? 1e-8 : 1e-3);
+                CHECK_NEAR(dem_counters_get(world[1]).rebuilds, (double)dem_counters_get(world[0]).rebuilds, 5);
+                for (set = 0; set < 2; set++) dem_world_destroy(world[set]);
+            }
+    }
     return test_end();
 }
