@@ -310,7 +310,7 @@ static void mesh_for_codes(void) {
 /* The bed, 7 x 7 times. */
 static dem_world *million_make(void) {
     const int tiles = tiles_of();
-    bench_choice choice = BENCH_CHOICE;
+    bench_choice choice = {0};
     bench_scene bed = bench_scene_read(data_folder, "bed"), all = bench_scene_make("bed", bed.count*tiles*tiles);
     dem_world *w;
     int i, n = 0, a, b;
@@ -329,7 +329,7 @@ static dem_world *million_make(void) {
 }
 /* The bed below a lid that touches its highest bead. */
 static dem_world *servo_make(dem_wall *lid) {
-    bench_choice choice = BENCH_CHOICE;
+    bench_choice choice = {0};
     bench_scene bed = bench_scene_read(data_folder, "bed");
     dem_world *w = bench_world(&bed, &choice);
     dem_body_state first;
@@ -414,7 +414,7 @@ static void measure(void) {
     } else if (!strcmp(scene_name, "million")) w = million_make();
     else if (!strcmp(scene_name, "servo")) w = servo_make(&lid);
     else {
-        bench_choice choice = BENCH_CHOICE;
+        bench_choice choice = {0};
         bench_scene drum = bench_scene_read(data_folder, "drum");
         choice.cuts = cuts_of();
         choice.skin = skin_asked;

@@ -77,7 +77,8 @@ side_of() { if [ $1 = clumps ]; then echo 0.05; else awk -v n=$(spheres_of $1) -
 for s in mixture mesh clumps3 clumps10 clumps30; do
     asked $s || continue
     case $s in clumps*) which="clumps --spheres $(spheres_of $s)" ;; *) which=$s ;; esac
-    [ $s = mesh ] || [ -s build/out/beside/$s${brief:+_short}.txt ] || {
+    state=build/out/beside/$s${brief:+_short}.txt
+    [ $s = mesh ] || { [ -s $state ] && [ ! bench/beside.c -nt $state ]; } || {
         echo "# making the start state of $s"
         build/beside --settle $which $brief > $dir/settle.out 2>&1 || { cat $dir/settle.out; exit 1; }; }
     build/beside --codes $dir --scene $which $brief || exit 1
@@ -86,7 +87,7 @@ case " $codes " in *" liggghts "*) for s in clumps clumps3 clumps10 clumps30; do
     asked $s && { $LIGGGHTS -in bench/peers/liggghts_clumps_put.in -log none -var data $dir/$s -var side $(side_of $s) \
         >$dir/put.out 2>&1 </dev/null || { echo "$s: liggghts failed; its output is $dir/put.out"; exit 1; }; }
 done ;; esac
-steps_of() { case $1 in gas) echo $((5*STEPS)) ;; mesh|servo_mesh) echo $(((STEPS + 4)/5)) ;; million) echo $(((STEPS + 24)/25)) ;; *) echo $STEPS ;; esac; }
+steps_of() { case $1 in gas) echo $((5*STEPS)) ;; mesh) echo $(((2*STEPS + 4)/5)) ;; servo_mesh) echo $(((STEPS + 4)/5)) ;; million) echo $(((STEPS + 24)/25)) ;; *) echo $STEPS ;; esac; }
 warm_of() { case $1 in million) echo 10 ;; mesh) echo 40 ;; clumps*|cubes) echo $WARM ;; *) echo 100 ;; esac; }
 
 # one run: SCENE CODE CORES [check]; appends "seconds contacts kinetic bytes sank overlap" to a file of times. check: runs
