@@ -31577,7 +31577,7 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 17 };
+enum { DEMI_CHECKPOINT_VERSION = 18 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
