@@ -74,6 +74,7 @@
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
+       >>servo             walls led to a target load
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
@@ -1945,37 +1946,47 @@ typedef enum dem_motion_kind {
     /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start */
     DEM_MOTION_OSCILLATING,
     DEM_MOTION_USER,               /* as `function` says */
-    DEM_MOTION_TABLE               /* through the poses of `table`, smoothly */
+    DEM_MOTION_TABLE,              /* through the poses of `table`, smoothly */
+    DEM_MOTION_SERVO               /* along `velocity`, to and fro, so that grains bear `load` */
 } dem_motion_kind;
-/* A pose of a wall at a time. */
+/* A pose or, for DEM_MOTION_SERVO, a load of a wall at a time. */
 typedef struct dem_motion_row {
     double time;                   /* s, after start; the first is 0, ascending */
     dem_vec3 position;             /* m, displacement from the pose in which the motion started */
     dem_quat rotation;             /* from that pose, about the displaced `point`; 0: not rotated */
+    dem_real load;                 /* N, or Pa: see `load` of dem_motion; used instead of a pose */
 } dem_motion_row;
 /* The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is
    called. */
 typedef struct dem_motion {
     dem_motion_kind kind;
-    dem_vec3 velocity;             /* m/s, of translating walls; of oscillating ones the
-                                      direction only */
+    /* m/s, of translating walls. Of oscillating ones it is the direction only, of servo walls the
+       direction in which they press and their largest speed. */
+    dem_vec3 velocity;
     /* m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques;
        axis 0 means along z. Rotating walls need an axis. */
     dem_vec3 point, axis;
     dem_real speed;                /* rad/s, of rotating walls */
     dem_real amplitude, frequency, phase;  /* m, Hz, rad: of oscillating walls */
-    /* s. Until then rotating and translating walls are at rest. A time in the past means now. */
+    /* s. Until then rotating, translating and servo walls are at rest. A time in the past means
+       now. */
     double start;
     dem_motion_fn function;        /* what DEM_MOTION_USER calls */
     void *user;                    /* passed to function */
-    /* s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3,
-       u = (time - start)/ramp, to its full value. 0 means at once. */
+    /* s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as
+       3 u^2 - 2 u^3, u = (time - start)/ramp, to its full value. 0 means at once. */
     double ramp;
+    /* N, of servo walls: the force with which the wall presses the grains along `velocity`. A table
+       replaces it: linear between rows, constant after the last. Servo walls whose motions are
+       equal are one piston and bear the load together. They need DEM_RESPONSE_SPRINGS. */
+    dem_real load;
+    dem_real area;                 /* m2, >= 0: load is a stress (Pa) on it; 0 means a force (N) */
+    dem_real travel;               /* m, >= 0, of servo walls: largest distance; 0 means no limit */
     /* The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity
        and spin are continuous (tangents of the parabola through three rows). The wall is at rest
        before the first row and after the last. With table_repeats = 1 the table starts again after
-       its last row without stopping; that row should have the pose of the first. From row to row
-       the wall rotates by less than pi. */
+       its last row, which should equal the first. From row to row the wall rotates by less than
+       pi. */
     const dem_motion_row *table;
     int table_count, table_repeats;
 } dem_motion;
@@ -2596,6 +2607,18 @@ DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capaci
 DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
 /* ---- measuring ---- */
+
+/* What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of
+   its velocity, in which it presses the grains; a piston of several walls has one state. */
+typedef struct dem_servo {
+    double target, force;          /* N: force to reach and force on the grains, now */
+    double speed, travel;          /* m/s; m, from the pose in which the motion began */
+    /* N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). The
+       speed is (target - force)/(2 (stiffness dt + 2 damping)), at most the largest one. */
+    double stiffness, damping, time;
+} dem_servo;
+/* Writes the state of a servo wall to servo. */
+DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall wall, dem_servo *servo);
 
 /* A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress
    over a window of time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller
@@ -3909,6 +3932,7 @@ typedef struct demi_wall {
     dem_pose mid;                  /* in the middle of the last step */
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
+    dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes
                                       a rebuild necessary */
     dem_box box;                   /* local box of the elements */
@@ -4203,15 +4227,8 @@ typedef struct demi_lookers {
    its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
    velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
    joint in the linear system of all joints. */
-struct demi_meeting;
-struct demi_impulse;
-struct demi_beside;
-struct demi_twist;
-struct demi_mover;
-struct demi_run_sums;
-struct demi_rod;
-struct demi_knot;
-struct demi_link_of;
+struct demi_meeting; struct demi_impulse; struct demi_beside; struct demi_twist;
+struct demi_mover; struct demi_run_sums; struct demi_rod; struct demi_knot; struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
     struct demi_impulse *contacts; /* this and the next three are in the order of colours */
@@ -4269,6 +4286,9 @@ typedef struct demi_team {
                                                                         those of their owners */
     dem_result (*grades)(dem_world *head, struct demi_grades *g);   /* adds other processes */
     dem_result (*feed)(dem_world *head);        /* inserts grains */
+    /* Sums `count` numbers that `part` finds for each member, in the order of members. */
+    dem_result (*sum)(dem_world *head, void (*part)(const dem_world *member, int of, double *out),
+                      int of, double *sums, int count);
 } demi_team;
 
 /* A world. Each group of fields belongs to the part named above it: that part writes them, and
@@ -9929,13 +9949,34 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     pose->velocity = demi_add(demi_v((dem_real)v[0], (dem_real)v[1], (dem_real)v[2]),
                               demi_cross(pose->spin, arm));
 }
+/* True if a motion follows a table. */
+static int demi_tabled(const dem_motion *m) {
+    return m->kind == DEM_MOTION_TABLE ||
+        (m->kind == DEM_MOTION_SERVO && (m->table || m->table_count));
+}
+/* Returns the load of a servo wall at a time, N: that of its desc or of its table, as it rises over
+   the ramp. */
+static double demi_servo_target(const dem_motion *m, double time) {
+    double t = time - m->start, part, load = (double)m->load;
+    int k = 0;
+    demi_ramp(t, m->ramp, &part);
+    if (demi_tabled(m)) {
+        const dem_motion_row *r = m->table;
+        const double end = r[m->table_count - 1].time;
+        t = DEMI_MAX(0, m->table_repeats ? fmod(t, end) : DEMI_MIN(t, end));
+        while (k + 2 < m->table_count && t >= r[k + 1].time) k++;
+        load = (double)r[k].load + ((double)r[k + 1].load - (double)r[k].load)*
+            (t - r[k].time)/(r[k + 1].time - r[k].time);
+    }
+    return load*part*(m->area > 0 ? (double)m->area : 1);
+}
 /* Copies the table of a motion for a wall. Quaternions are normalised, and each has the sign nearer
    to the one before. Returns 0 if memory ran out. */
 static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **out) {
     dem_motion_row *rows;
     int k;
     *out = 0;
-    if (m->kind != DEM_MOTION_TABLE) return 1;
+    if (!demi_tabled(m)) return 1;
     rows = (dem_motion_row *)demi_hold(w, DEMI_SCENE, (size_t)m->table_count, sizeof *rows);
     if (!rows) return 0;
     for (k = 0; k < m->table_count; k++) {
@@ -9961,7 +10002,7 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
     for (k = 0; k < m->table_count && bad < 0; k++) {
         const dem_motion_row *r = m->table + k;
         if (!demi_finite_double(r->time) || !demi_place(r->position) ||
-            !demi_quat_finite(r->rotation) ||
+            !demi_quat_finite(r->rotation) || !demi_finite(r->load) ||
             (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
     }
     if (bad < 0) return DEM_OK;
@@ -10011,6 +10052,11 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     }
     case DEM_MOTION_USER: m->function(time, pose, m->user); break;
     case DEM_MOTION_TABLE: demi_table_pose(wall, t, pose); break;
+    case DEM_MOTION_SERVO:
+        pose->velocity = demi_scale(demi_unit(m->velocity), (dem_real)wall->servo.speed);
+        pose->position = demi_add(pose->position, demi_scale(demi_unit(m->velocity), (dem_real)(
+            wall->servo.travel + wall->servo.speed*(time - wall->servo.time))));
+        break;
     }
 }
 
@@ -10026,15 +10072,23 @@ static int demi_pose_sane(const dem_pose *p) {
     DEMI_LIMITED(dem_motion, field, type, how, DEMI_FARTHEST, unit)
 static const demi_field_row demi_motion_rows[] = {
     DEMI_ROW_ENUM(dem_motion, kind, DEMI_FROM, 0,
-                  "fixed translating rotating oscillating user table"),
+                  "fixed translating rotating oscillating user table servo"),
     DEMI_MOVED(velocity, 'v', DEMI_ANY, "m/s"), DEMI_MOVED(point, 'v', DEMI_ANY, "m"),
     DEMI_MOVED(axis, 'v', DEMI_ANY, ""), DEMI_MOVED(speed, 'r', DEMI_ANY, "rad/s"),
     DEMI_MOVED(amplitude, 'r', DEMI_ANY, "m"), DEMI_MOVED(frequency, 'r', DEMI_ANY, "Hz"),
     DEMI_MOVED(phase, 'r', DEMI_ANY, "rad"), DEMI_MOVED(start, 'd', DEMI_ANY, "s"),
-    DEMI_MOVED(ramp, 'd', DEMI_FROM, "s"), DEMI_ROW_FREE(dem_motion, function),
+    DEMI_MOVED(ramp, 'd', DEMI_FROM, "s"), DEMI_MOVED(load, 'r', DEMI_ANY, "N"),
+    DEMI_MOVED(area, 'r', DEMI_FROM, "m2"), DEMI_MOVED(travel, 'r', DEMI_FROM, "m"),
+    DEMI_ROW_FREE(dem_motion, function),
     DEMI_ROW_FREE(dem_motion, user), DEMI_ROW_FREE(dem_motion, table),
     DEMI_ROW(dem_motion, table_count, 'i'), DEMI_ROW(dem_motion, table_repeats, 'i'),
     DEMI_ROW_END};
+
+#define DEMI_SERVED(field, how) DEMI_LIMITED(dem_servo, field, 'd', how, DBL_MAX, "")
+static const demi_field_row demi_servo_rows[] = {
+    DEMI_SERVED(target, DEMI_ANY), DEMI_SERVED(force, DEMI_ANY), DEMI_SERVED(speed, DEMI_ANY),
+    DEMI_SERVED(travel, DEMI_ANY), DEMI_SERVED(stiffness, DEMI_ANY),
+    DEMI_SERVED(damping, DEMI_ANY), DEMI_SERVED(time, DEMI_ANY), DEMI_ROW_END};
 
 /* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
    -1 if there is no bound. */
@@ -10086,6 +10140,19 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     return ok;
 }
 
+/* Returns a digest of the table of a wall's motion. */
+static uint64_t demi_digest_table(const void *item) {
+    const dem_motion *m = &((const demi_wall *)item)->motion;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; demi_tabled(m) && k < m->table_count; k++) {
+        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
+        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
+        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
+        if (m->kind == DEM_MOTION_SERVO) h = demi_hash(h, &m->table[k].load, sizeof m->table->load);
+    }
+    return h;
+}
 /* True if two walls are at rest relative to each other: both fixed, or moved alike. */
 static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
     const dem_motion *m = &a->motion, *o = &b->motion;
@@ -10095,6 +10162,11 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
     if (memcmp(&m->start, &o->start, sizeof m->start) ||
         memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
         memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
+    if (m->kind == DEM_MOTION_SERVO)
+        return !memcmp(&m->load, &o->load, sizeof m->load) &&
+            !memcmp(&m->area, &o->area, sizeof m->area) &&
+            !memcmp(&m->travel, &o->travel, sizeof m->travel) &&
+            m->table_repeats == o->table_repeats && demi_digest_table(a) == demi_digest_table(b);
     return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
         ? !memcmp(&m->point, &o->point, sizeof m->point) &&
           !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
@@ -10579,17 +10651,6 @@ static uint64_t demi_digest_elements(const void *item) {
     return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
                      sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
 }
-static uint64_t demi_digest_table(const void *item) {
-    const dem_motion *m = &((const demi_wall *)item)->motion;
-    uint64_t h = DEMI_HASH_START;
-    int k;
-    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
-        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
-        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
-        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
-    }
-    return h;
-}
 /* A field that only some kinds of sieves have. */
 static int demi_zero_sieve(const dem_world *w, const void *item, const demi_field_row *r) {
     (void)w;
@@ -10623,7 +10684,7 @@ static const demi_field_row demi_wall_rows[] = {
     DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
     DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
     DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'), DEMI_ROW_ENUM(demi_wall, motion.kind, 0, 0,
-                  "fixed translating rotating oscillating user table"),
+                  "fixed translating rotating oscillating user table servo"),
     DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
     DEMI_ROW_DIGEST("vertices", demi_digest_vertices), DEMI_ROW_DIGEST("elements",
     demi_digest_elements), DEMI_ROW_DIGEST("motion.table", demi_digest_table), DEMI_ROW_END};
@@ -10697,6 +10758,23 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
 }
 
+/* Checks what only a servo wall needs. */
+static dem_result demi_servo_check(dem_world *w, dem_wall id, const dem_motion *m) {
+    if (!demi_response_is(w, DEMI_LASTING))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
+                         "DEM_MOTION_SERVO, which needs contacts with a stiffness, but contacts of "
+                         "this world are impulses; use DEM_RESPONSE_SPRINGS, or a heavy body "
+                         "instead of the wall", (int)id.id);
+    if (!(demi_dot(m->velocity, m->velocity) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
+                         "is zero, but gives the direction in which it presses and its largest "
+                         "speed; set it", (int)id.id);
+    if (w->desc.planar && fabs((double)m->velocity.z) > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
+                         "has the z component %g m/s, must be 0 in a planar world, where no grain "
+                         "can bear its load", (int)id.id, (double)m->velocity.z);
+    return DEM_OK;
+}
 /* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     char of[24];
@@ -10717,7 +10795,9 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          "DEM_MOTION_USER "
                          "and no function; "
                          "set motion.function", (int)id.id);
-    return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
+    if (motion->kind == DEM_MOTION_SERVO && demi_servo_check(w, id, motion) != DEM_OK)
+        return DEM_ERROR_ARGUMENT;
+    return demi_tabled(motion) ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
 }
 /* Sets *next to wall `wall` (of this id, which need not exist yet) with a new motion. If that
    fails, *next is unchanged. */
@@ -10734,6 +10814,8 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     laid.motion.table = rows;
     if (!(demi_dot(motion->axis, motion->axis) > 0)) laid.motion.axis = demi_v(0, 0, 1);
     laid.motion.start = DEMI_MAX(motion->start, w->clock.time);
+    memset(&laid.servo, 0, sizeof laid.servo);
+    laid.servo.time = laid.motion.start;
     laid.symmetric = demi_wall_symmetric(&laid);
     was = demi_calls(w, "dem_wall_motion_set", 1);
     demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
@@ -25228,7 +25310,7 @@ static double demi_motion_speed(const demi_wall *wall) {
     dem_vec3 spin;
     switch (m->kind) {
     case DEM_MOTION_FIXED: return 0;
-    case DEM_MOTION_TRANSLATING: return (double)demi_length(m->velocity);
+    case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
     case DEM_MOTION_ROTATING:
         spin = demi_scale(demi_unit(m->axis), m->speed);
         return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
@@ -25281,20 +25363,27 @@ static double demi_dt_stable(double omega2, double rate) {
 /* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
    rolling, N m. Damping: likewise, N s/m and N m s. */
 typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
+/* Returns k and c of the built-in normal law at an overlap, m, during loading; the rest is 0. */
+static demi_stiffness demi_stiffness_normal(const dem_world *w, const dem_real *coef,
+                                            double overlap) {
+    demi_stiffness s = {0, 0, 0, 0, 0, 0};
+    s.k = (double)coef[DEMI_KN];
+    s.c = (double)coef[DEMI_CN];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) {
+        s.k *= 1.5*sqrt(overlap);
+        s.c *= sqrt(sqrt(overlap));
+    }
+    return s;
+}
 /* Returns the derivatives of a contact's force with respect to displacement and velocity at an
    overlap (m); the stability of a step depends on them. A user-defined law: desc.law_stiffness. */
 static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef, double m_eff,
                                         double overlap) {
     const double root = sqrt(overlap), r = (double)coef[DEMI_R_EFF];
     const double arm = (double)coef[DEMI_MU_ROLL]*r;
-    demi_stiffness s;
-    s.k = (double)coef[DEMI_KN];
-    s.kt = (double)coef[DEMI_KT]; s.c = (double)coef[DEMI_CN]; s.ct = (double)coef[DEMI_CT];
-    if (demi_normal_is(w, DEMI_HERTZIAN)) {
-        s.k *= 1.5*root; s.kt *= root;
-        s.c *= sqrt(root); s.ct *= sqrt(root);
-    }
-    s.kr = s.cr = 0;
+    demi_stiffness s = demi_stiffness_normal(w, coef, overlap);
+    s.kt = (double)coef[DEMI_KT]; s.ct = (double)coef[DEMI_CT];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) { s.kt *= root; s.ct *= sqrt(root); }
     if (demi_rolling_laws[demi_rolling_meant(w)].traits & DEMI_SPRUNG) {
         s.kr = 2.25*s.k*arm*arm;
         s.cr = 0.6*sqrt(s.kr*1.4*m_eff*r*r);
@@ -25964,7 +26053,8 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
         double speed;
         if (kind == DEMI_WALL_NONE || kind == DEMI_WALL_PLANE || kind == DEMI_WALL_CYLINDER ||
             wall->motion.kind == DEM_MOTION_FIXED || !(radius > 0)) continue;
-        speed = demi_wall_speed(wall);
+        speed = wall->motion.kind == DEM_MOTION_SERVO ? demi_motion_speed(wall)
+                                                      : demi_wall_speed(wall);
         if (!(speed*dt > radius)) continue;
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
                          "to %.3g m/s, %.3g radii of the smallest grain (%g m) in a step of %g s, "
@@ -26074,6 +26164,146 @@ static dem_result demi_dt_check(dem_world *h) {
     }
     demi_dt_share(h);
     return result;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>servo
+   Servo walls (DEM_MOTION_SERVO): before each step the speed of the wall is chosen from the force
+   that grains exert on it, so that the force approaches a target. The wall has no inertia. Owns
+   `servo` of walls; reads their loads and the persistent contacts of the last step. In a team the
+   sums extend over all members, in their order, and the walls of the first member move.
+
+   The law. Let K and C be the sums of the normal stiffness and damping of the contacts of the wall,
+   F the present force, T the target. The speed towards the grains is
+       v = a (T - F)/(K dt + 2 C),   a = DEMI_SERVO_GAIN, |v| at most the largest speed.
+   With C = 0 this is the servo of the triaxial cell of YADE, which moves by (1 - damping)(T - F)/K
+   in a step (TriaxialStressController, stiffness summed over the contacts of the wall), and of PFC
+   (gain a/(k N dt) for N contacts of stiffness k). Why 2 C: if grains rest, F changes in a step by
+   K v dt, and by C times the change of v. The error then has the characteristic polynomial
+       z^2 - (1 - A - B) z - B,   A = a K dt/(K dt + 2 C), B = a C/(K dt + 2 C),
+   whose roots are inside the unit circle if A + 2 B = a < 2 [Jury]. A law without 2 C is unstable
+   from step to step unless C < K dt. If grains move, the wall acts on them as a dashpot of
+   (K dt + 2 C)/a in series with the contacts, which takes energy at any gain.
+   --------------------------------------------------------------------------------------------- */
+#define DEMI_SERVO_GAIN 0.5        /* a: a quarter of the limit, because K grows with the overlap */
+
+/* Returns the force along the direction of wall `of` that wall i exerts on the grains of w, N; 0 if
+   it is not part of the same piston. first: the world whose walls move. */
+static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
+    const demi_wall *walls = first->walls;
+    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_together(&walls[i], &walls[of])) return 0;
+    return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
+}
+/* Returns the sum over the piston. */
+static double demi_servo_force(const dem_world *first, const dem_world *w, int of) {
+    double sum = 0;
+    int i;
+    for (i = 0; i < w->wall_count; i++) sum += demi_servo_force_of(first, w, of, i);
+    return sum;
+}
+/* Books the work that follows from a change of the wall's speed, m/s. The step has booked F v dt
+   with the speed before, but half of the impulse F dt acts after the change. */
+static void demi_servo_book(dem_world *w, const dem_world *first, int of, double change) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const double work = demi_servo_force_of(first, w, of, i)*change*(double)w->clock.dt/2;
+        w->walls[i].loads.work += work;
+        if (w->desc.ledger) w->booked.energy[DEMI_E_WALLS] += work;
+    }
+}
+/* `part` of `sum` in demi_team: that force, and the sums of stiffness and damping over the contacts
+   of the group, as the built-in laws have them or by desc.law_stiffness. A body that is not a
+   sphere counts with its whole mass, so its damping is an upper bound. */
+enum { DEMI_SERVO_FORCE, DEMI_SERVO_STIFFNESS, DEMI_SERVO_DAMPING, DEMI_SERVO_SUMS };
+static void demi_servo_part(const dem_world *w, int of, double *out) {
+    const dem_world *first = w->team ? w->team->members[0] : w;
+    const demi_wall *walls = first->walls;
+    int d;
+    out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
+    out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
+        for (; c < end && w->domains[d].kept_walls; c++) {
+            const double slope = (double)c->slope;
+            dem_real coef[DEMI_COEFS];
+            demi_stiffness s;
+            if (c->b >= 0 || walls[c->wall].group != walls[of].group ||
+                (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
+            memcpy(coef, c->coef, sizeof coef);
+            coef[DEMI_CN] += c->root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
+            s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
+            if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
+            if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;
+            out[DEMI_SERVO_STIFFNESS] += s.k*slope*slope*(double)c->lift;
+            out[DEMI_SERVO_DAMPING] += s.c*slope*(double)c->share;
+        }
+    }
+}
+/* Sums over all members, see `sum` of demi_team. */
+static dem_result demi_servo_sum(dem_world *h, int of, double *sums) {
+    if (h->team) return h->team->sum(h, demi_servo_part, of, sums, DEMI_SERVO_SUMS);
+    demi_servo_part(h, of, sums);
+    return DEM_OK;
+}
+/* Chooses the speed of wall w for the step that begins now. */
+static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double *sums) {
+    const dem_motion *m = &wall->motion;
+    const double dt = (double)h->clock.dt, most = (double)demi_length(m->velocity);
+    const double far = m->travel > 0 ? (double)m->travel : DEMI_FARTHEST;
+    dem_servo *s = &wall->servo;
+    double error, gives;
+    s->travel += s->speed*(h->clock.time - s->time);
+    s->time = h->clock.time;
+    s->target = demi_servo_target(m, s->time);
+    s->force = sums[DEMI_SERVO_FORCE];
+    s->stiffness = sums[DEMI_SERVO_STIFFNESS];
+    s->damping = sums[DEMI_SERVO_DAMPING];
+    error = DEMI_SERVO_GAIN*(s->target - s->force);
+    gives = s->stiffness*dt + 2*s->damping;
+    s->speed = fabs(error) < most*gives ? error/gives : error > 0 ? most : error < 0 ? -most : 0;
+    if (fabs(s->travel + s->speed*dt) > far)
+        s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
+}
+/* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
+static dem_result demi_servos_lead(dem_world *h) {
+    dem_world *first = demi_member(h, 0);
+    double sums[DEMI_SERVO_SUMS], before;
+    dem_result result = DEM_OK;
+    int i, k;
+    for (i = 0; i < first->wall_count && result == DEM_OK; i++) {
+        demi_wall *wall = &first->walls[i];
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
+            h->clock.time < wall->motion.start) continue;
+        if (wall->group != i) { wall->servo = first->walls[wall->group].servo; continue; }
+        result = demi_servo_sum(h, i, sums);
+        if (result != DEM_OK) break;
+        before = wall->servo.speed;
+        demi_servo_choose(h, wall, sums);
+        for (k = 0; k < demi_members(h); k++)
+            demi_servo_book(demi_member(h, k), first, i, wall->servo.speed - before);
+    }
+    return result;
+}
+/* Returns the state of a servo wall at the present time. */
+static dem_servo demi_servo_now(const dem_world *w, int wall) {
+    const dem_motion *m = &w->walls[wall].motion;
+    dem_servo s = w->walls[wall].servo;
+    s.travel += w->clock.time > s.time ? s.speed*(w->clock.time - s.time) : 0;
+    s.target = w->clock.time < m->start ? 0 : demi_servo_target(m, w->clock.time);
+    s.force = demi_servo_force(w, w, wall);
+    return s;
+}
+DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
+    int i;
+    if (demi_null_look(world, "dem_wall_servo_get", servo, "servo")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, "dem_wall_servo_get", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
+        return demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "dem_wall_servo_get: the motion "
+                         "of wall %d is not DEM_MOTION_SERVO; set it with dem_wall_motion_set",
+                         (int)id.id);
+    *servo = demi_servo_now(world, i);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -27333,7 +27563,8 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
 /* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
     if (!h->stage.moved) {
-        dem_result result = demi_all(h, demi_member_move);
+        dem_result result = demi_servos_lead(h);
+        if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
     }
@@ -31577,7 +31808,7 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 18 };
+enum { DEMI_CHECKPOINT_VERSION = 19 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -31854,6 +32085,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->ahead, sizeof wall->ahead);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
+        demi_visit(s, &wall->servo, sizeof wall->servo);
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }
@@ -32519,7 +32751,8 @@ static int demi_walls_check(const demi_reader *r) {
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
             return demi_lie(r, "pose of wall", i);
-        if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k))
+        if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
+            demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k))
             return demi_lie(r, "motion of wall", i);
     }
     return 1;
@@ -35036,6 +35269,17 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 (double)ch->torque_axial,
                 (double)ch->power);
     }
+    for (i = 0; i < w->wall_count; i++) {
+        const dem_motion *m = &w->walls[i].motion;
+        dem_servo s;
+        if (w->walls[i].kind == DEMI_WALL_NONE || m->kind != DEM_MOTION_SERVO) continue;
+        s = demi_servo_now(w, i);
+        fprintf(out, "servo %-3d  presses along (%.3g, %.3g, %.3g) m/s with %.6g N, target %.6g N, "
+                "error %.3g N; speed %.4g m/s, %.6g m from its start%s\n", (int)w->walls[i].id,
+                (double)m->velocity.x, (double)m->velocity.y, (double)m->velocity.z, s.force,
+                s.target, s.force - s.target, s.speed, s.travel, m->travel > 0 &&
+                fabs(s.travel) >= (double)m->travel*(1 - 1e-6) ? ", the limit of its travel" : "");
+    }
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
@@ -35519,6 +35763,21 @@ static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *mem
     return DEM_OK;
 }
 
+/* `sum` of demi_team. Maxima over processes pass on the numbers of each slab, so that the bits of
+   their sum do not depend on processes. count: at most DEMI_SLAB_BINS. */
+static dem_result demi_slabs_sum(dem_world *h, void (*part)(const dem_world *, int, double *),
+                                 int of, double *sums, int count) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
+    double *v = s->values;
+    dem_result result;
+    int i, k;
+    for (i = 0; i < s->count*count; i++) v[i] = -DBL_MAX;
+    for (k = 0; k < s->local; k++) part(s->slabs[k].world, of, v + (s->first + k)*count);
+    result = demi_slabs_reduce(s, v, s->count*count, 0);
+    for (i = 0; i < count; i++) sums[i] = 0;
+    for (i = 0; i < s->count*count; i++) sums[i%count] += v[i];
+    return result;
+}
 /* Exchanges the outboxes that lead to other processes, in the directions `ways` (DEMI_UP,
    DEMI_DOWN or both). sized: 1 if the sizes of the inboxes are set, because the receivers know what
    will arrive; 0: the sizes are exchanged first and the inboxes get room. */
@@ -36452,6 +36711,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     s->team.give = demi_slabs_give;
     s->team.grades = demi_slabs_grades;
     s->team.feed = demi_slabs_feed;
+    s->team.sum = demi_slabs_sum;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return demi_slabs_feeds_copy(h, w);
 }
@@ -36659,6 +36919,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
     for (i = 0; i < w->wall_count; i++) {
         w->walls[i].pose = from->walls[i].pose;
+        w->walls[i].servo = from->walls[i].servo;
         w->walls[i].mid = from->walls[i].mid;
     }
     for (i = 0; i < w->feed_count; i++) {

@@ -74,6 +74,7 @@
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
+       >>servo             walls led to a target load
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
@@ -216,6 +217,7 @@
 #include "scene/feed.h"
 #include "run/team.h"
 #include "run/advice.h"
+#include "run/servo.h"
 #include "run/ledger.h"
 #include "run/responses.h"
 #include "run/fields.h"

@@ -325,6 +325,18 @@ DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
 /* ---- measuring ---- */
 
+/* What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of
+   its velocity, in which it presses the grains; a piston of several walls has one state. */
+typedef struct dem_servo {
+    double target, force;          /* N: force to reach and force on the grains, now */
+    double speed, travel;          /* m/s; m, from the pose in which the motion began */
+    /* N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). The
+       speed is (target - force)/(2 (stiffness dt + 2 damping)), at most the largest one. */
+    double stiffness, damping, time;
+} dem_servo;
+/* Writes the state of a servo wall to servo. */
+DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall wall, dem_servo *servo);
+
 /* A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress
    over a window of time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller
    than grains need a long window; or it is spread about its centre by coarse graining (width).

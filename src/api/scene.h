@@ -562,37 +562,47 @@ typedef enum dem_motion_kind {
     /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start */
     DEM_MOTION_OSCILLATING,
     DEM_MOTION_USER,               /* as `function` says */
-    DEM_MOTION_TABLE               /* through the poses of `table`, smoothly */
+    DEM_MOTION_TABLE,              /* through the poses of `table`, smoothly */
+    DEM_MOTION_SERVO               /* along `velocity`, to and fro, so that grains bear `load` */
 } dem_motion_kind;
-/* A pose of a wall at a time. */
+/* A pose or, for DEM_MOTION_SERVO, a load of a wall at a time. */
 typedef struct dem_motion_row {
     double time;                   /* s, after start; the first is 0, ascending */
     dem_vec3 position;             /* m, displacement from the pose in which the motion started */
     dem_quat rotation;             /* from that pose, about the displaced `point`; 0: not rotated */
+    dem_real load;                 /* N, or Pa: see `load` of dem_motion; used instead of a pose */
 } dem_motion_row;
 /* The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is
    called. */
 typedef struct dem_motion {
     dem_motion_kind kind;
-    dem_vec3 velocity;             /* m/s, of translating walls; of oscillating ones the
-                                      direction only */
+    /* m/s, of translating walls. Of oscillating ones it is the direction only, of servo walls the
+       direction in which they press and their largest speed. */
+    dem_vec3 velocity;
     /* m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques;
        axis 0 means along z. Rotating walls need an axis. */
     dem_vec3 point, axis;
     dem_real speed;                /* rad/s, of rotating walls */
     dem_real amplitude, frequency, phase;  /* m, Hz, rad: of oscillating walls */
-    /* s. Until then rotating and translating walls are at rest. A time in the past means now. */
+    /* s. Until then rotating, translating and servo walls are at rest. A time in the past means
+       now. */
     double start;
     dem_motion_fn function;        /* what DEM_MOTION_USER calls */
     void *user;                    /* passed to function */
-    /* s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3,
-       u = (time - start)/ramp, to its full value. 0 means at once. */
+    /* s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as
+       3 u^2 - 2 u^3, u = (time - start)/ramp, to its full value. 0 means at once. */
     double ramp;
+    /* N, of servo walls: the force with which the wall presses the grains along `velocity`. A table
+       replaces it: linear between rows, constant after the last. Servo walls whose motions are
+       equal are one piston and bear the load together. They need DEM_RESPONSE_SPRINGS. */
+    dem_real load;
+    dem_real area;                 /* m2, >= 0: load is a stress (Pa) on it; 0 means a force (N) */
+    dem_real travel;               /* m, >= 0, of servo walls: largest distance; 0 means no limit */
     /* The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity
        and spin are continuous (tangents of the parabola through three rows). The wall is at rest
        before the first row and after the last. With table_repeats = 1 the table starts again after
-       its last row without stopping; that row should have the pose of the first. From row to row
-       the wall rotates by less than pi. */
+       its last row, which should equal the first. From row to row the wall rotates by less than
+       pi. */
     const dem_motion_row *table;
     int table_count, table_repeats;
 } dem_motion;

@@ -398,6 +398,7 @@ typedef struct demi_wall {
     dem_pose mid;                  /* in the middle of the last step */
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
+    dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes
                                       a rebuild necessary */
     dem_box box;                   /* local box of the elements */
@@ -692,15 +693,8 @@ typedef struct demi_lookers {
    its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
    velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
    joint in the linear system of all joints. */
-struct demi_meeting;
-struct demi_impulse;
-struct demi_beside;
-struct demi_twist;
-struct demi_mover;
-struct demi_run_sums;
-struct demi_rod;
-struct demi_knot;
-struct demi_link_of;
+struct demi_meeting; struct demi_impulse; struct demi_beside; struct demi_twist;
+struct demi_mover; struct demi_run_sums; struct demi_rod; struct demi_knot; struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
     struct demi_impulse *contacts; /* this and the next three are in the order of colours */
@@ -758,6 +752,9 @@ typedef struct demi_team {
                                                                         those of their owners */
     dem_result (*grades)(dem_world *head, struct demi_grades *g);   /* adds other processes */
     dem_result (*feed)(dem_world *head);        /* inserts grains */
+    /* Sums `count` numbers that `part` finds for each member, in the order of members. */
+    dem_result (*sum)(dem_world *head, void (*part)(const dem_world *member, int of, double *out),
+                      int of, double *sums, int count);
 } demi_team;
 
 /* A world. Each group of fields belongs to the part named above it: that part writes them, and

@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 18 };
+enum { DEMI_CHECKPOINT_VERSION = 19 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -295,6 +295,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->ahead, sizeof wall->ahead);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
+        demi_visit(s, &wall->servo, sizeof wall->servo);
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }

@@ -370,7 +370,8 @@ static int demi_walls_check(const demi_reader *r) {
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
             return demi_lie(r, "pose of wall", i);
-        if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k))
+        if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
+            demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k))
             return demi_lie(r, "motion of wall", i);
     }
     return 1;

@@ -268,6 +268,17 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 (double)ch->torque_axial,
                 (double)ch->power);
     }
+    for (i = 0; i < w->wall_count; i++) {
+        const dem_motion *m = &w->walls[i].motion;
+        dem_servo s;
+        if (w->walls[i].kind == DEMI_WALL_NONE || m->kind != DEM_MOTION_SERVO) continue;
+        s = demi_servo_now(w, i);
+        fprintf(out, "servo %-3d  presses along (%.3g, %.3g, %.3g) m/s with %.6g N, target %.6g N, "
+                "error %.3g N; speed %.4g m/s, %.6g m from its start%s\n", (int)w->walls[i].id,
+                (double)m->velocity.x, (double)m->velocity.y, (double)m->velocity.z, s.force,
+                s.target, s.force - s.target, s.speed, s.travel, m->travel > 0 &&
+                fabs(s.travel) >= (double)m->travel*(1 - 1e-6) ? ", the limit of its travel" : "");
+    }
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;

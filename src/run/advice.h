@@ -15,7 +15,7 @@ static double demi_motion_speed(const demi_wall *wall) {
     dem_vec3 spin;
     switch (m->kind) {
     case DEM_MOTION_FIXED: return 0;
-    case DEM_MOTION_TRANSLATING: return (double)demi_length(m->velocity);
+    case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
     case DEM_MOTION_ROTATING:
         spin = demi_scale(demi_unit(m->axis), m->speed);
         return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
@@ -68,20 +68,27 @@ static double demi_dt_stable(double omega2, double rate) {
 /* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
    rolling, N m. Damping: likewise, N s/m and N m s. */
 typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
+/* Returns k and c of the built-in normal law at an overlap, m, during loading; the rest is 0. */
+static demi_stiffness demi_stiffness_normal(const dem_world *w, const dem_real *coef,
+                                            double overlap) {
+    demi_stiffness s = {0, 0, 0, 0, 0, 0};
+    s.k = (double)coef[DEMI_KN];
+    s.c = (double)coef[DEMI_CN];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) {
+        s.k *= 1.5*sqrt(overlap);
+        s.c *= sqrt(sqrt(overlap));
+    }
+    return s;
+}
 /* Returns the derivatives of a contact's force with respect to displacement and velocity at an
    overlap (m); the stability of a step depends on them. A user-defined law: desc.law_stiffness. */
 static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef, double m_eff,
                                         double overlap) {
     const double root = sqrt(overlap), r = (double)coef[DEMI_R_EFF];
     const double arm = (double)coef[DEMI_MU_ROLL]*r;
-    demi_stiffness s;
-    s.k = (double)coef[DEMI_KN];
-    s.kt = (double)coef[DEMI_KT]; s.c = (double)coef[DEMI_CN]; s.ct = (double)coef[DEMI_CT];
-    if (demi_normal_is(w, DEMI_HERTZIAN)) {
-        s.k *= 1.5*root; s.kt *= root;
-        s.c *= sqrt(root); s.ct *= sqrt(root);
-    }
-    s.kr = s.cr = 0;
+    demi_stiffness s = demi_stiffness_normal(w, coef, overlap);
+    s.kt = (double)coef[DEMI_KT]; s.ct = (double)coef[DEMI_CT];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) { s.kt *= root; s.ct *= sqrt(root); }
     if (demi_rolling_laws[demi_rolling_meant(w)].traits & DEMI_SPRUNG) {
         s.kr = 2.25*s.k*arm*arm;
         s.cr = 0.6*sqrt(s.kr*1.4*m_eff*r*r);
@@ -751,7 +758,8 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
         double speed;
         if (kind == DEMI_WALL_NONE || kind == DEMI_WALL_PLANE || kind == DEMI_WALL_CYLINDER ||
             wall->motion.kind == DEM_MOTION_FIXED || !(radius > 0)) continue;
-        speed = demi_wall_speed(wall);
+        speed = wall->motion.kind == DEM_MOTION_SERVO ? demi_motion_speed(wall)
+                                                      : demi_wall_speed(wall);
         if (!(speed*dt > radius)) continue;
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
                          "to %.3g m/s, %.3g radii of the smallest grain (%g m) in a step of %g s, "

@@ -713,7 +713,8 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
 /* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
     if (!h->stage.moved) {
-        dem_result result = demi_all(h, demi_member_move);
+        dem_result result = demi_servos_lead(h);
+        if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
     }

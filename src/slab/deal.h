@@ -275,6 +275,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     s->team.give = demi_slabs_give;
     s->team.grades = demi_slabs_grades;
     s->team.feed = demi_slabs_feed;
+    s->team.sum = demi_slabs_sum;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return demi_slabs_feeds_copy(h, w);
 }
@@ -482,6 +483,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
     for (i = 0; i < w->wall_count; i++) {
         w->walls[i].pose = from->walls[i].pose;
+        w->walls[i].servo = from->walls[i].servo;
         w->walls[i].mid = from->walls[i].mid;
     }
     for (i = 0; i < w->feed_count; i++) {

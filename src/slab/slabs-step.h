@@ -87,6 +87,21 @@ static dem_result demi_slabs_all(dem_world *h, dem_result (*task)(dem_world *mem
     return DEM_OK;
 }
 
+/* `sum` of demi_team. Maxima over processes pass on the numbers of each slab, so that the bits of
+   their sum do not depend on processes. count: at most DEMI_SLAB_BINS. */
+static dem_result demi_slabs_sum(dem_world *h, void (*part)(const dem_world *, int, double *),
+                                 int of, double *sums, int count) {
+    dem_slabs *s = (dem_slabs *)(void *)h;
+    double *v = s->values;
+    dem_result result;
+    int i, k;
+    for (i = 0; i < s->count*count; i++) v[i] = -DBL_MAX;
+    for (k = 0; k < s->local; k++) part(s->slabs[k].world, of, v + (s->first + k)*count);
+    result = demi_slabs_reduce(s, v, s->count*count, 0);
+    for (i = 0; i < count; i++) sums[i] = 0;
+    for (i = 0; i < s->count*count; i++) sums[i%count] += v[i];
+    return result;
+}
 /* Exchanges the outboxes that lead to other processes, in the directions `ways` (DEMI_UP,
    DEMI_DOWN or both). sized: 1 if the sizes of the inboxes are set, because the receivers know what
    will arrive; 0: the sizes are exchanged first and the inboxes get room. */

@@ -101,13 +101,34 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     pose->velocity = demi_add(demi_v((dem_real)v[0], (dem_real)v[1], (dem_real)v[2]),
                               demi_cross(pose->spin, arm));
 }
+/* True if a motion follows a table. */
+static int demi_tabled(const dem_motion *m) {
+    return m->kind == DEM_MOTION_TABLE ||
+        (m->kind == DEM_MOTION_SERVO && (m->table || m->table_count));
+}
+/* Returns the load of a servo wall at a time, N: that of its desc or of its table, as it rises over
+   the ramp. */
+static double demi_servo_target(const dem_motion *m, double time) {
+    double t = time - m->start, part, load = (double)m->load;
+    int k = 0;
+    demi_ramp(t, m->ramp, &part);
+    if (demi_tabled(m)) {
+        const dem_motion_row *r = m->table;
+        const double end = r[m->table_count - 1].time;
+        t = DEMI_MAX(0, m->table_repeats ? fmod(t, end) : DEMI_MIN(t, end));
+        while (k + 2 < m->table_count && t >= r[k + 1].time) k++;
+        load = (double)r[k].load + ((double)r[k + 1].load - (double)r[k].load)*
+            (t - r[k].time)/(r[k + 1].time - r[k].time);
+    }
+    return load*part*(m->area > 0 ? (double)m->area : 1);
+}
 /* Copies the table of a motion for a wall. Quaternions are normalised, and each has the sign nearer
    to the one before. Returns 0 if memory ran out. */
 static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **out) {
     dem_motion_row *rows;
     int k;
     *out = 0;
-    if (m->kind != DEM_MOTION_TABLE) return 1;
+    if (!demi_tabled(m)) return 1;
     rows = (dem_motion_row *)demi_hold(w, DEMI_SCENE, (size_t)m->table_count, sizeof *rows);
     if (!rows) return 0;
     for (k = 0; k < m->table_count; k++) {
@@ -133,7 +154,7 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
     for (k = 0; k < m->table_count && bad < 0; k++) {
         const dem_motion_row *r = m->table + k;
         if (!demi_finite_double(r->time) || !demi_place(r->position) ||
-            !demi_quat_finite(r->rotation) ||
+            !demi_quat_finite(r->rotation) || !demi_finite(r->load) ||
             (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
     }
     if (bad < 0) return DEM_OK;
@@ -183,6 +204,11 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     }
     case DEM_MOTION_USER: m->function(time, pose, m->user); break;
     case DEM_MOTION_TABLE: demi_table_pose(wall, t, pose); break;
+    case DEM_MOTION_SERVO:
+        pose->velocity = demi_scale(demi_unit(m->velocity), (dem_real)wall->servo.speed);
+        pose->position = demi_add(pose->position, demi_scale(demi_unit(m->velocity), (dem_real)(
+            wall->servo.travel + wall->servo.speed*(time - wall->servo.time))));
+        break;
     }
 }
 
@@ -198,15 +224,23 @@ static int demi_pose_sane(const dem_pose *p) {
     DEMI_LIMITED(dem_motion, field, type, how, DEMI_FARTHEST, unit)
 static const demi_field_row demi_motion_rows[] = {
     DEMI_ROW_ENUM(dem_motion, kind, DEMI_FROM, 0,
-                  "fixed translating rotating oscillating user table"),
+                  "fixed translating rotating oscillating user table servo"),
     DEMI_MOVED(velocity, 'v', DEMI_ANY, "m/s"), DEMI_MOVED(point, 'v', DEMI_ANY, "m"),
     DEMI_MOVED(axis, 'v', DEMI_ANY, ""), DEMI_MOVED(speed, 'r', DEMI_ANY, "rad/s"),
     DEMI_MOVED(amplitude, 'r', DEMI_ANY, "m"), DEMI_MOVED(frequency, 'r', DEMI_ANY, "Hz"),
     DEMI_MOVED(phase, 'r', DEMI_ANY, "rad"), DEMI_MOVED(start, 'd', DEMI_ANY, "s"),
-    DEMI_MOVED(ramp, 'd', DEMI_FROM, "s"), DEMI_ROW_FREE(dem_motion, function),
+    DEMI_MOVED(ramp, 'd', DEMI_FROM, "s"), DEMI_MOVED(load, 'r', DEMI_ANY, "N"),
+    DEMI_MOVED(area, 'r', DEMI_FROM, "m2"), DEMI_MOVED(travel, 'r', DEMI_FROM, "m"),
+    DEMI_ROW_FREE(dem_motion, function),
     DEMI_ROW_FREE(dem_motion, user), DEMI_ROW_FREE(dem_motion, table),
     DEMI_ROW(dem_motion, table_count, 'i'), DEMI_ROW(dem_motion, table_repeats, 'i'),
     DEMI_ROW_END};
+
+#define DEMI_SERVED(field, how) DEMI_LIMITED(dem_servo, field, 'd', how, DBL_MAX, "")
+static const demi_field_row demi_servo_rows[] = {
+    DEMI_SERVED(target, DEMI_ANY), DEMI_SERVED(force, DEMI_ANY), DEMI_SERVED(speed, DEMI_ANY),
+    DEMI_SERVED(travel, DEMI_ANY), DEMI_SERVED(stiffness, DEMI_ANY),
+    DEMI_SERVED(damping, DEMI_ANY), DEMI_SERVED(time, DEMI_ANY), DEMI_ROW_END};
 
 /* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
    -1 if there is no bound. */

@@ -38,6 +38,19 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
     return ok;
 }
 
+/* Returns a digest of the table of a wall's motion. */
+static uint64_t demi_digest_table(const void *item) {
+    const dem_motion *m = &((const demi_wall *)item)->motion;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; demi_tabled(m) && k < m->table_count; k++) {
+        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
+        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
+        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
+        if (m->kind == DEM_MOTION_SERVO) h = demi_hash(h, &m->table[k].load, sizeof m->table->load);
+    }
+    return h;
+}
 /* True if two walls are at rest relative to each other: both fixed, or moved alike. */
 static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
     const dem_motion *m = &a->motion, *o = &b->motion;
@@ -47,6 +60,11 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
     if (memcmp(&m->start, &o->start, sizeof m->start) ||
         memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
         memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
+    if (m->kind == DEM_MOTION_SERVO)
+        return !memcmp(&m->load, &o->load, sizeof m->load) &&
+            !memcmp(&m->area, &o->area, sizeof m->area) &&
+            !memcmp(&m->travel, &o->travel, sizeof m->travel) &&
+            m->table_repeats == o->table_repeats && demi_digest_table(a) == demi_digest_table(b);
     return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
         ? !memcmp(&m->point, &o->point, sizeof m->point) &&
           !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
@@ -531,17 +549,6 @@ static uint64_t demi_digest_elements(const void *item) {
     return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
                      sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
 }
-static uint64_t demi_digest_table(const void *item) {
-    const dem_motion *m = &((const demi_wall *)item)->motion;
-    uint64_t h = DEMI_HASH_START;
-    int k;
-    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
-        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
-        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
-        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
-    }
-    return h;
-}
 /* A field that only some kinds of sieves have. */
 static int demi_zero_sieve(const dem_world *w, const void *item, const demi_field_row *r) {
     (void)w;
@@ -575,7 +582,7 @@ static const demi_field_row demi_wall_rows[] = {
     DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
     DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
     DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'), DEMI_ROW_ENUM(demi_wall, motion.kind, 0, 0,
-                  "fixed translating rotating oscillating user table"),
+                  "fixed translating rotating oscillating user table servo"),
     DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
     DEMI_ROW_DIGEST("vertices", demi_digest_vertices), DEMI_ROW_DIGEST("elements",
     demi_digest_elements), DEMI_ROW_DIGEST("motion.table", demi_digest_table), DEMI_ROW_END};
@@ -649,6 +656,23 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
 }
 
+/* Checks what only a servo wall needs. */
+static dem_result demi_servo_check(dem_world *w, dem_wall id, const dem_motion *m) {
+    if (!demi_response_is(w, DEMI_LASTING))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
+                         "DEM_MOTION_SERVO, which needs contacts with a stiffness, but contacts of "
+                         "this world are impulses; use DEM_RESPONSE_SPRINGS, or a heavy body "
+                         "instead of the wall", (int)id.id);
+    if (!(demi_dot(m->velocity, m->velocity) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
+                         "is zero, but gives the direction in which it presses and its largest "
+                         "speed; set it", (int)id.id);
+    if (w->desc.planar && fabs((double)m->velocity.z) > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
+                         "has the z component %g m/s, must be 0 in a planar world, where no grain "
+                         "can bear its load", (int)id.id, (double)m->velocity.z);
+    return DEM_OK;
+}
 /* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     char of[24];
@@ -669,7 +693,9 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          "DEM_MOTION_USER "
                          "and no function; "
                          "set motion.function", (int)id.id);
-    return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
+    if (motion->kind == DEM_MOTION_SERVO && demi_servo_check(w, id, motion) != DEM_OK)
+        return DEM_ERROR_ARGUMENT;
+    return demi_tabled(motion) ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
 }
 /* Sets *next to wall `wall` (of this id, which need not exist yet) with a new motion. If that
    fails, *next is unchanged. */
@@ -686,6 +712,8 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     laid.motion.table = rows;
     if (!(demi_dot(motion->axis, motion->axis) > 0)) laid.motion.axis = demi_v(0, 0, 1);
     laid.motion.start = DEMI_MAX(motion->start, w->clock.time);
+    memset(&laid.servo, 0, sizeof laid.servo);
+    laid.servo.time = laid.motion.start;
     laid.symmetric = demi_wall_symmetric(&laid);
     was = demi_calls(w, "dem_wall_motion_set", 1);
     demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
