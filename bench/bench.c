@@ -216,6 +216,8 @@ static const effect_row effect_rows[] = {
      {.feed = 50000}, {0}, {.feed = 1e-3}},
     {"outlet", "drum", "removal of beads that fly through the middle", "no outlet",
      {.outlet = 1}, {0}, {.outlet = 2}},
+    {"servo", "bed", "a servo wall that presses the bed with 500 Pa", "the same wall at rest",
+     {.lid = 2}, {.lid = 1}, {0}},
     {"integrator.leapfrog", "bed", "the path of velocity Verlet", "velocity Verlet",
      {.integrator = DEM_INTEGRATOR_LEAPFROG}, {0}, {0}},
     {"integrator.position_verlet", "bed", "the path of velocity Verlet", "velocity Verlet",

@@ -80,7 +80,9 @@ typedef struct bench_choice {
     double range;               /* its range, in radii                                          */
     int who;                    /* 1: it asks who touches                                       */
     int reals;                  /* 1: grains carry a number                                     */
+    int lid;                    /* BED is pressed by a plane: 1: at rest after that; 2: the servo goes on */
 } bench_choice;
+enum { BENCH_LID_STEPS = 8000 };
 #define BENCH_CHOICE {.normal = DEM_NORMAL_HERTZ, .tangent = DEM_TANGENT_AUTO, .rolling = DEM_ROLLING_AUTO, \
     .integrator = DEM_INTEGRATOR_VELOCITY_VERLET, .search = DEM_SEARCH_AUTO}
 
@@ -431,8 +433,29 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     }
     return world;
 }
+/* Lowers a plane on BED as a servo wall until it presses with about its target, 500 Pa. */
+STUDY_FN int bench_lid(dem_world *world, const bench_scene *s, int lid) {
+    dem_motion motion = DEM_MOTION;
+    dem_body_state first;
+    dem_wall wall;
+    double top = 0;
+    int i;
+    if (dem_body_get(world, dem_body_id_get(world, 0), &first) != DEM_OK) return 0;
+    for (i = 0; i < s->count; i++) top = fmax(top, s->x[3*i + 2] + s->radius);
+    wall = dem_wall_plane_add(world, first.material, dem_vec3_make(0, 0, (dem_real)top), dem_vec3_make(0, 0, -1));
+    motion.kind = DEM_MOTION_SERVO;
+    motion.velocity.z = DEM_R(-0.2);
+    motion.load = 500;
+    motion.area = (dem_real)(s->side[0]*s->side[1]);
+    if (dem_wall_motion_set(world, wall, &motion) != DEM_OK || dem_world_step(world, BENCH_LID_STEPS) != DEM_OK) return 0;
+    return lid == 2 || dem_wall_motion_set(world, wall, &DEM_MOTION) == DEM_OK;
+}
 STUDY_FN dem_world *bench_world(const bench_scene *s, const bench_choice *choice) {
-    return bench_world_at(s, choice, BENCH_DRUM_ANGLE);
+    dem_world *world = bench_world_at(s, choice, BENCH_DRUM_ANGLE);
+    if (!world || !choice->lid || bench_lid(world, s, choice->lid)) return world;
+    study_fail("%s: %s", s->name, dem_world_error_get(world));
+    dem_world_destroy(world);
+    return 0;
 }
 
 #endif /* BENCH_SCENES_H */

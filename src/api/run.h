@@ -330,8 +330,9 @@ DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 typedef struct dem_servo {
     double target, force;          /* N: force to reach and force on the grains, now */
     double speed, travel;          /* m/s; m, from the pose in which the motion began */
-    /* N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). The
-       speed is (target - force)/(2 (stiffness dt + 2 damping)), at most the largest one. */
+    /* N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). They
+       set the gain. The speed changes from u to v with stiffness dt (v - 0.9 u) + damping (v - u) =
+       (target - force)/2, and is at most the largest one (>>servo). */
     double stiffness, damping, time;
 } dem_servo;
 /* Writes the state of a servo wall to servo. */

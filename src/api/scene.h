@@ -576,8 +576,8 @@ typedef struct dem_motion_row {
    called. */
 typedef struct dem_motion {
     dem_motion_kind kind;
-    /* m/s, of translating walls. Of oscillating ones it is the direction only, of servo walls the
-       direction in which they press and their largest speed. */
+    /* m/s, of translating walls; of oscillating ones the direction only; of servo walls the
+       direction in which they press, and their largest speed */
     dem_vec3 velocity;
     /* m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques;
        axis 0 means along z. Rotating walls need an axis. */

@@ -5,19 +5,24 @@
    `servo` of walls; reads their loads and the persistent contacts of the last step. In a team the
    sums extend over all members, in their order, and the walls of the first member move.
 
-   The law. Let K and C be the sums of the normal stiffness and damping of the contacts of the wall,
-   F the present force, T the target. The speed towards the grains is
-       v = a (T - F)/(K dt + 2 C),   a = DEMI_SERVO_GAIN, |v| at most the largest speed.
-   With C = 0 this is the servo of the triaxial cell of YADE, which moves by (1 - damping)(T - F)/K
-   in a step (TriaxialStressController, stiffness summed over the contacts of the wall), and of PFC
-   (gain a/(k N dt) for N contacts of stiffness k). Why 2 C: if grains rest, F changes in a step by
-   K v dt, and by C times the change of v. The error then has the characteristic polynomial
-       z^2 - (1 - A - B) z - B,   A = a K dt/(K dt + 2 C), B = a C/(K dt + 2 C),
-   whose roots are inside the unit circle if A + 2 B = a < 2 [Jury]. A law without 2 C is unstable
-   from step to step unless C < K dt. If grains move, the wall acts on them as a dashpot of
-   (K dt + 2 C)/a in series with the contacts, which takes energy at any gain.
+   The law. Let K and C be the sums of normal stiffness and damping over the contacts of the wall, F
+   the present force, T the target, v and u the speeds towards the grains in the coming and in the
+   last step:
+       K dt (v - b u) + C (v - u) = a (T - F),   |v| at most the largest speed,
+   a = DEMI_SERVO_GAIN, b = DEMI_SERVO_KEPT. With C = b = 0 this is the servo of the triaxial cell
+   of YADE, which moves by (1 - damping)(T - F)/K in a step (TriaxialStressController: K is summed
+   over the contacts of the wall), and that of PFC, v = a (T - F)/(k N dt) for N contacts of
+   stiffness k. The terms of C make up for the change of the damping force, C (v - u): without them
+   the servo is unstable from step to step if C > K dt/a. The term of b makes it a PI controller.
+   While the target changes at a rate R, the error is R K dt (1 - b)/(a B) on a bed of stiffness B.
+   Stability. While grains rest, the error of contacts without damping obeys z^2 - (1 + b - a) z + b
+   = 0, whose roots are inside the unit circle if a < 2 + 2 b [Jury]: contacts may be 7 times as
+   stiff as K says, and four times as damped as C says. If grains move, the wall acts on them as a
+   dashpot K dt (1 - b)/a and a mass (b K dt + C) dt/a, which never supply energy. The mass is of
+   the order dt/t_c of that of the grains in contact.
    --------------------------------------------------------------------------------------------- */
-#define DEMI_SERVO_GAIN 0.5        /* a: a quarter of the limit, because K grows with the overlap */
+#define DEMI_SERVO_GAIN 0.5        /* a; below its limit, since K grows with new contacts */
+#define DEMI_SERVO_KEPT 0.9        /* b */
 
 /* Returns the force along the direction of wall `of` that wall i exerts on the grains of w, N; 0 if
    it is not part of the same piston. first: the world whose walls move. */
@@ -83,16 +88,17 @@ static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double 
     const double dt = (double)h->clock.dt, most = (double)demi_length(m->velocity);
     const double far = m->travel > 0 ? (double)m->travel : DEMI_FARTHEST;
     dem_servo *s = &wall->servo;
-    double error, gives;
+    double push, gives;
     s->travel += s->speed*(h->clock.time - s->time);
     s->time = h->clock.time;
     s->target = demi_servo_target(m, s->time);
     s->force = sums[DEMI_SERVO_FORCE];
     s->stiffness = sums[DEMI_SERVO_STIFFNESS];
     s->damping = sums[DEMI_SERVO_DAMPING];
-    error = DEMI_SERVO_GAIN*(s->target - s->force);
-    gives = s->stiffness*dt + 2*s->damping;
-    s->speed = fabs(error) < most*gives ? error/gives : error > 0 ? most : error < 0 ? -most : 0;
+    push = DEMI_SERVO_GAIN*(s->target - s->force) +
+        (DEMI_SERVO_KEPT*s->stiffness*dt + s->damping)*s->speed;
+    gives = s->stiffness*dt + s->damping;
+    s->speed = fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0;
     if (fabs(s->travel + s->speed*dt) > far)
         s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
 }

@@ -820,6 +820,7 @@ int main(int argc, char **argv) {
             motion.function = stand_still;
             motion.user = &user[i];
             motion.ramp = 0;
+            motion.load = motion.area = motion.travel = 0;
             motion.table = 0;
             motion.table_count = motion.table_repeats = 0;
             wall.id = 1;

@@ -332,7 +332,7 @@ static dem_world *mixture(int on, dem_boundary end, int threads, int each, scene
 }
 /* Where bits are compared: a gas, whose sums are of one or two forces and hide their order; a heap
    that runs to one side, whose borders move; bodies of all shapes on triangles and on a sieve. */
-enum { GAS, HEAP, OUTLETS, FED, FED_RING, SHAPES, SHAPES_RING, SIEVE, BITS };
+enum { GAS, HEAP, OUTLETS, FED, FED_RING, PRESSED, SHAPES, SHAPES_RING, SIEVE, BITS };
 /* The heap, with two outlets that let grains of it out: one stays, one shakes with a plane. */
 static dem_world *leaking(void) {
     dem_world *world = crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0);
@@ -381,8 +381,24 @@ static dem_world *rained_on(int ring) {
     CHECK_EQ(rain(world).id, 1);
     return world;
 }
+/* The heap below two servo walls: a plane, and one that comes from its side. */
+static dem_world *pressed(void) {
+    dem_world *world = crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0);
+    dem_material glass;
+    int i;
+    glass.id = 1;
+    for (i = 0; i < 2; i++) {
+        dem_motion press = DEM_MOTION;
+        press.kind = DEM_MOTION_SERVO;
+        press.velocity = i ? at(-0.2, 0, 0) : at(0, 0, -0.2);
+        press.load = DEM_R(0.05);
+        CHECK_EQ(dem_wall_motion_set(world, dem_wall_plane_add(world, glass, i ? at(0.06, 0, 0) : at(0, 0, 0.013),
+                                                               i ? at(-1, 0, 0) : at(0, 0, -1)), &press), DEM_OK);
+    }
+    return world;
+}
 static dem_world *bits_world(int scene, int threads) {
-    dem_world *world = scene == OUTLETS ? leaking() : scene == GAS ? gas(1, threads)
+    dem_world *world = scene == OUTLETS ? leaking() : scene == GAS ? gas(1, threads) : scene == PRESSED ? pressed()
         : scene == FED || scene == FED_RING ? rained_on(scene == FED_RING)
         : scene == HEAP ? crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0)
         : mixture(scene == SIEVE ? ON_SIEVE : ON_FLOOR, scene == SHAPES_RING
