@@ -1,0 +1,4612 @@
+"""dem.py gives dem.h to Python: ctypes and the standard library, nothing else. MIT licence.
+
+    import dem
+    world = dem.World(gravity=(0, 0, -9.81))
+    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5, friction=0.5)
+    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    world.run(0.5)
+    print(ball.state.position)
+
+make.py made this file from dem.h and base.py: change those, then `make python`. docs/python.md is the manual. The texts
+below are the comments of dem.h, which name C functions. Rules of names:
+
+    dem_world_step(world, 1)                world.step(1)           functions of a world are methods
+    dem_sphere_add(world, ...)              world.sphere(...)       _add, _get, _open, _create are dropped
+    dem_counters_get(world)                 world.counters          _get without arguments: a property
+    dem_wall_loads_get(world, wall, &l)     wall.loads              functions of an id are its methods
+    dem_body_get(world, body, &state)       body.state              named after the struct that it returns
+    dem_body_set(world, body, &state)       body.set(velocity=...)  only these fields change
+    dem_quat_multiply(a, b)                 dem.quat_multiply(a, b) others are functions of the module
+    dem_vec3_make(1, 2, 3)                  dem.Vec3(1, 2, 3), or the tuple (1, 2, 3)
+    DEM_NORMAL_LINEAR                       dem.NormalLaw.LINEAR, or the word "linear"
+    DEM_ERROR_TIME_STEP                     raises dem.TimeStepError, whose text is the error message
+    struct dem_motion                       dem.Motion, or keyword arguments: wall.motion_set(kind="rotating", ...)
+"""
+import ctypes
+import enum
+import hashlib
+import html
+import os
+import platform
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import warnings
+import weakref
+VERSION_MAJOR = 0
+VERSION_MINOR = 1
+VERSION_PATCH = 0
+BODY_REALS = 8
+LAW_MEMORY = 16
+SIEVES = 32
+POLYHEDRON_FACES = 100
+RINGS = 12
+CLASSES = 16
+OBSERVABLES = 8
+TRIALS = 8
+REPLAY_VALUES = 16
+OUTPUT_COLUMNS = 32
+EFFECTS = 16
+VERSION = VERSION_MAJOR*10000 + VERSION_MINOR*100 + VERSION_PATCH
+# inline functions of dem.h, which the library exports under other names
+_INLINE = r"""
+dem_quat dempy_quat_multiply(dem_quat a, dem_quat b) { return dem_quat_multiply(a, b); }
+dem_vec3 dempy_quat_rotate(dem_quat q, dem_vec3 v) { return dem_quat_rotate(q, v); }
+dem_vec3 dempy_quat_unrotate(dem_quat q, dem_vec3 v) { return dem_quat_unrotate(q, v); }
+dem_vec3 dempy_memory_rotate(const dem_contact *c, dem_vec3 v) { return dem_memory_rotate(c, v); }
+void dempy_law_load(const dem_contact *c, dem_contact_force *f, dem_real hold) { dem_law_load(c, f, hold); }
+void dempy_law_hertz(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_hertz(c, memory, f); }
+void dempy_law_linear(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_linear(c, memory, f); }
+void dempy_law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_hysteretic(c, memory, f); }
+void dempy_law_viscous(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_viscous(c, memory, f); }
+void dempy_law_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_step(c, memory, f); }
+void dempy_law_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_spring(c, memory, f); }
+void dempy_law_mindlin(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_mindlin(c, memory, f); }
+void dempy_law_mindlin_rescaled(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_mindlin_rescaled(c, memory, f); }
+void dempy_law_roll_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_step(c, memory, f); }
+void dempy_law_roll_constant(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_constant(c, memory, f); }
+void dempy_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_epsd(c, memory, f); }
+"""
+# ---- the shared library ------------------------------------------------------------------------
+
+Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
+_NAN = float("nan")
+_CHECKS = """
+#include <stddef.h>
+#define DEM_IMPLEMENTATION
+#include "dem.h"
+"""
+
+
+def _compiler(folder):
+    """The command that compiles a shared library: the compiler and those flags that it accepts."""
+    command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
+    if not shutil.which(command[0]):
+        raise ImportError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
+                          "package gcc), or set CC, or pass a library to dem.load" % command[0])
+    if Real is ctypes.c_float:
+        command.append("-DDEM_REAL=float")
+    probe = os.path.join(folder, "probe.c")
+    for flags, text in ((["-shared", "-fPIC"], "int one(void) { return 1; }\n"), (["-ffp-contract=off"], "int one;\n"),
+                        (["-fopenmp"], "#include <omp.h>\nint one(void) { return omp_get_max_threads(); }\n"),
+                        (["-Xpreprocessor", "-fopenmp", "-lomp"], "#include <omp.h>\nint one(void) { return omp_get_max_threads(); }\n")):
+        if "-lomp" in flags and "-fopenmp" in command:
+            continue
+        with open(probe, "w") as file:
+            file.write(text)
+        if not subprocess.run(command + [probe, "-o", probe + ".so"] + flags, capture_output=True).returncode:
+            command += flags
+    return command
+
+
+def build(header=None, folder=None):
+    """Compiles dem.h to a shared library, unless that has been done before, and returns its path.
+
+    header: path of dem.h. Without it: the environment variable DEM_H, or dem.h in the folder of dem.py, two folders
+    above, or in /usr/local/include. folder: where the library is kept. Without it: DEM_BUILD, or the folder build
+    beside dem.h, or ~/.cache/dem if that cannot be written. The environment variables CC (cc) and DEM_CFLAGS (-O2)
+    give the compiler and its flags; DEM_REAL=float compiles in single precision."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    places = [header or os.environ.get("DEM_H")] if header or "DEM_H" in os.environ else [
+        os.path.join(here, "dem.h"), os.path.join(here, "..", "..", "dem.h"), "/usr/local/include/dem.h"]
+    header = next((os.path.abspath(place) for place in places if os.path.isfile(place)), None)
+    if not header:
+        raise ImportError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
+    folder = folder or os.environ.get("DEM_BUILD") or os.path.join(os.path.dirname(header), "build")
+    try:
+        os.makedirs(folder, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        folder = os.path.join(os.path.expanduser("~"), ".cache", "dem")
+        os.makedirs(folder, exist_ok=True)
+    source = _CHECKS + _INLINE + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
+        "sizeof(%s)" % kind.c_name for kind in structs)
+    with open(header, "rb") as file:
+        text = file.read()
+    flags = [os.environ.get("CC", "cc"), os.environ.get("DEM_CFLAGS", "-O2"), str(Real), sys.platform, platform.machine()]
+    digest = hashlib.sha256(text + source.encode() + "\n".join(flags).encode()).hexdigest()[:16]
+    path = os.path.join(folder, "libdem-%s.so" % digest)
+    if os.path.exists(path):
+        return path
+    with tempfile.TemporaryDirectory(dir=folder) as work:
+        command = _compiler(work)
+        with open(os.path.join(work, "dem.c"), "w") as file:
+            file.write(source)
+        command += ["-I" + os.path.dirname(header), os.path.join(work, "dem.c"), "-o", os.path.join(work, "dem.so"), "-lm"]
+        if "-lomp" in command:
+            command.append(command.pop(command.index("-lomp")))
+        print("dem.py: compiling %s, once; this takes 10 to 30 s" % header, file=sys.stderr)
+        result = subprocess.run(command, capture_output=True, text=True)
+        if result.returncode:
+            raise ImportError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
+        os.replace(os.path.join(work, "dem.so"), path)      # complete or absent, also if several processes compile
+    return path
+
+
+class _Library:
+    """The functions of dem.h. The first use of one compiles and loads the library."""
+
+    def __getattr__(self, name):
+        with _LOADING:
+            if "dem_world_step" not in self.__dict__:
+                load()
+        return object.__getattribute__(self, name)
+
+
+_LOADING = threading.RLock()
+_lib = _Library()
+
+
+def load(path=None):
+    """Loads the library at `path`, or without a path the one that dem.build() returns. Other functions call it
+    automatically. A library of another version, precision or layout of structs raises ImportError."""
+    name = path or build()
+    library = ctypes.CDLL(name)
+    for function, result, arguments in _FUNCTIONS:
+        try:
+            entry = getattr(library, function)
+        except AttributeError:          # inline functions are in libraries that dem.build() has made
+            if function.startswith("dempy_"):
+                continue
+            raise ImportError("dem.py: %s has no function %s; it is not a library of this dem.h" % (name, function)) from None
+        entry.restype, entry.argtypes = result, arguments
+        _lib.__dict__[function] = entry
+    if hasattr(library, "dempy_sizes"):
+        sizes = (ctypes.c_size_t*(len(structs) + 1)).in_dll(library, "dempy_sizes")
+        for size, kind in zip(sizes, structs):
+            if size != ctypes.sizeof(kind):
+                raise ImportError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
+                                  % (kind.c_name, size, ctypes.sizeof(kind)))
+    world = library.dem_world_create_checked(WorldDesc(), VERSION, ctypes.sizeof(Real))
+    if not world:
+        raise ImportError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
+                          "dem.h that belongs to dem.py" % (name, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH,
+                                                            "single" if Real is ctypes.c_float else "double"))
+    library.dem_world_destroy(world)
+    _lib.__dict__["path"] = name
+
+
+# ---- values: Python objects to C and back -------------------------------------------------------
+
+class View:
+    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes."""
+
+    def __init__(self, kind, *shape, const=False):
+        self.kind, self.shape, self.const, self.c = kind, shape, const, ctypes.POINTER(kind)
+
+
+class Text:
+    """The kind of an array of characters."""
+
+    def __init__(self, size):
+        self.c = ctypes.c_char*size
+
+
+class Choices:
+    """The kind of an array of numbers of an enum."""
+
+    def __init__(self, kind, size):
+        self.kind, self.c = kind, ctypes.c_int*size
+
+
+class Function:
+    """The kind of a function that you pass in. wrap: makes a C function of a Python function."""
+
+    def __init__(self, wrap, result, *arguments):
+        self.wrap, self.result, self.arguments = wrap, result, arguments
+        self.c = ctypes.CFUNCTYPE(result, *arguments)
+
+
+def _number(value, kind):
+    """value as a number of an enum (which may be given by name) or of a C type; one character is its code."""
+    if isinstance(value, str):
+        if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
+            try:
+                return kind[value.upper()]
+            except KeyError:
+                raise ValueError("%s has no %r; it has %s" % (kind.__name__, value, ", ".join(
+                    member.name.lower() for member in kind))) from None
+        if len(value) == 1:
+            return ord(value)
+    return value
+
+
+def _c(kind):
+    return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
+
+
+def _convert(value, kind):
+    """value as the kind of a field: sequences become structs, arrays and pointers to copies."""
+    if isinstance(kind, View):
+        if value is None or isinstance(value, (kind.c, ctypes._Pointer)):
+            return value
+        if issubclass(kind.kind, Struct) and isinstance(value, kind.kind):
+            return ctypes.pointer(value)
+        return ctypes.cast(_array(value, kind.kind), kind.c)
+    if isinstance(kind, Text) or kind is str:
+        return value.encode() if isinstance(value, str) else value
+    if isinstance(kind, type) and issubclass(kind, Struct):
+        return kind.make(value)
+    if isinstance(kind, Choices):
+        return kind.c(*[_number(item, kind.kind) for item in value])
+    if isinstance(kind, type) and issubclass(kind, ctypes.Array):
+        if isinstance(value, kind):
+            return value
+        items = [_item(item, kind._type_) for item in (value if hasattr(value, "__len__") else (value,))]
+        if len(items) > kind._length_:
+            raise ValueError("%d values are given, at most %d are possible" % (len(items), kind._length_))
+        return kind(*items)
+    return _number(value, kind)
+
+
+def _item(value, kind):
+    """An element of an array: a struct, a pointer to one, or a number."""
+    if issubclass(kind, Struct):
+        return kind.make(value)
+    if issubclass(kind, ctypes._Pointer):
+        return kind() if value is None else ctypes.pointer(kind._type_.make(value))
+    return value
+
+
+def _array(value, kind, count=None, name="an array"):
+    """value as a C array of `kind`: the memory of a buffer of that kind itself, otherwise a copy. Nested sequences are
+    flattened. count: the length that is required."""
+    if value is None:
+        return None
+    if isinstance(value, ctypes.Array) and value._type_ is kind:
+        array = value
+    else:
+        array = None
+        if not issubclass(kind, Struct):
+            try:
+                view = memoryview(value)
+                if view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
+                    array = (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
+            except (TypeError, ValueError):
+                pass
+        if array is None:
+            items = list(_flat(value, kind))
+            array = (kind*len(items))(*items)
+    if count is not None and len(array) != count:
+        raise ValueError("%s has %d numbers instead of %d" % (name, len(array), count))
+    return array
+
+
+def _flat(value, kind):
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    for item in value:
+        if isinstance(item, Struct) and not isinstance(item, kind):
+            yield from _flat(item, kind)
+        elif hasattr(item, "__len__") and not isinstance(item, kind):
+            yield from _flat(item, kind)
+        else:
+            yield kind.make(item) if issubclass(kind, Struct) else item
+
+
+def _count(array, width, name):
+    """The number of rows of an array of rows of `width`."""
+    if array is None:
+        return 0
+    if len(array) % width:
+        raise ValueError("%s has %d numbers, which is no multiple of %d" % (name, len(array), width))
+    return len(array)//width
+
+
+def _view(pointer, kind, shape, owner, const):
+    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for null."""
+    if not pointer:
+        return None
+    count = 1
+    for length in shape:
+        count *= length
+    array = (kind*count).from_address(ctypes.addressof(pointer.contents)) if count else (kind*0)()
+    array.owner = owner                                     # the world lives as long as the view
+    if issubclass(kind, Struct):
+        return array
+    view = memoryview(array).cast("B").cast(array._type_._type_, *([list(shape)] if count else []))
+    return view.toreadonly() if const else view
+
+
+def _functions(struct):
+    """The Python functions of a struct, by their path in it; none of a struct that C has made."""
+    return getattr(struct, "_functions", None) or {}
+
+
+class Struct(ctypes.Structure):
+    """A struct of dem.h. Fields are keyword arguments; fields that are not given are 0."""
+    __slots__ = ("_functions", "_of", "_extra")
+    rows, c_name, counts = [], "", {}
+
+    def __init__(self, *values, **fields):
+        super().__init__()
+        self._functions, self._of, self._extra = {}, None, None
+        if len(values) > len(self.rows):
+            raise TypeError("%s has %d fields; %d values are given" % (type(self).__name__, len(self.rows), len(values)))
+        if values or fields:
+            self._put(dict(zip(self.kinds, values), **fields))
+
+    def _put(self, fields):
+        for name, value in fields.items():
+            if name not in self.kinds:
+                raise TypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+            try:
+                setattr(self, name, _convert(value, self.kinds[name]))
+            except (TypeError, ValueError) as error:
+                raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
+            for path, item in [((name,), value)] if isinstance(value, Struct) else [
+                    ((name, i), item) for i, item in enumerate(value) if isinstance(item, Struct)] if isinstance(value, (list, tuple)) else []:
+                for inner, function in _functions(item).items():        # C copies structs without their Python functions
+                    self._functions[path + inner] = function
+        for name, (field, width) in self.counts.items():    # a length follows from its array, unless it is given
+            if field in fields and fields[field] is not None and not fields.get(name):
+                given = fields[field]
+                size = len(_array(given, self.kinds[field].kind)) if isinstance(self.kinds[field], View) else len(
+                    given) if hasattr(given, "__len__") else 1
+                setattr(self, name, size//width)
+
+    @classmethod
+    def make(cls, value):
+        """This struct from an instance, a sequence, a dict, or None (zeros)."""
+        if isinstance(value, cls):
+            return value
+        if value is None:
+            return cls()
+        if isinstance(value, dict):
+            return cls(**value)
+        first = cls.rows[0][1]
+        if isinstance(value, Struct):
+            return cls(value)
+        value = tuple(value)
+        if isinstance(first, type) and issubclass(first, Struct) and len(value) == ctypes.sizeof(cls)//ctypes.sizeof(Real):
+            size = ctypes.sizeof(first)//ctypes.sizeof(Real)
+            return cls(*[value[i:i + size] for i in range(0, len(value), size)])     # a box from six numbers
+        if len(value) != len(cls.rows) and isinstance(first, type) and issubclass(first, Struct):
+            return cls(value)
+        return cls(*value)
+
+    @classmethod
+    def from_param(cls, value):
+        return cls.make(value)
+
+    def __iter__(self):
+        return (getattr(self, name) for name in self.kinds)
+
+    def __len__(self):
+        return len(self.rows)
+
+    def __getitem__(self, index):
+        return tuple(self)[index]
+
+    def __eq__(self, other):
+        return tuple(self) == tuple(other) if isinstance(other, (Struct, tuple, list)) else NotImplemented
+
+    __hash__ = None
+
+    def __repr__(self):
+        shown = []
+        for name in self.kinds:
+            value = getattr(self, name)
+            if isinstance(value, memoryview):
+                value = "<%s>" % " x ".join(map(str, value.shape))
+            elif isinstance(value, ctypes.Array):
+                value = list(value)
+            if value or not hasattr(value, "__len__"):
+                shown.append("%s=%r" % (name, value))
+        return "%s(%s)" % (type(self).__name__, ", ".join(shown))
+
+
+def _field(name, kind, doc):
+    """A property for a field whose C value is not what Python users expect."""
+    raw = "_" + name
+
+    def get(self):
+        value = getattr(self, raw)
+        if isinstance(kind, Function):
+            return _functions(self).get((name,)) or (value if value else None)
+        if isinstance(kind, View):
+            shape = []
+            for axis in kind.shape:
+                length = getattr(self, axis) if isinstance(axis, str) else axis
+                if isinstance(length, ctypes.Array):        # cells along three axes
+                    length = length[0]*length[1]*length[2]
+                shape.append(length)
+            return _view(value, kind.kind, shape, self, kind.const) if shape else value
+        if isinstance(kind, Choices):
+            return tuple(kind.kind(item) for item in value)
+        if isinstance(kind, Text):
+            return value.decode(errors="replace")
+        if kind is str:
+            return None if value is None else value.decode(errors="replace")
+        try:
+            return kind(value)
+        except ValueError:
+            return value
+
+    def put(self, value):
+        if isinstance(kind, Function):
+            if not hasattr(self, "_functions"):
+                raise TypeError("%s.%s: this struct is a part of another; make it with its function, then assign it" % (
+                    type(self).__name__, name))
+            self._functions.pop((name,), None)
+            if value is None:
+                setattr(self, raw, kind.c())
+            elif isinstance(value, ctypes._CFuncPtr):       # a function compiled in C
+                setattr(self, raw, ctypes.cast(value, kind.c))
+            elif callable(value):
+                self._functions[name,] = value
+            else:
+                raise TypeError("%s.%s: %r is no function" % (type(self).__name__, name, value))
+        else:
+            setattr(self, raw, _convert(value, kind))
+    return property(get, put, doc=doc)
+
+
+def _struct(cls):
+    """Gives a subclass of Struct the fields of its rows."""
+    fields, docs = [], []
+    cls._functions_ = {}
+    for name, kind, doc in cls.rows:
+        special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
+        c = ctypes.c_char_p if kind is str else _c(kind)
+        fields.append(("_" + name if special else name, c))
+        if isinstance(kind, Function):
+            cls._functions_[name] = kind
+        if special:
+            setattr(cls, name, _field(name, kind, doc))
+        if doc:
+            docs.append("%s: %s" % (name, doc))
+    cls.kinds = {name: kind for name, kind, _ in cls.rows}
+    cls._fields_ = fields
+    if docs:
+        cls.__doc__ = (cls.__doc__ or "") + "\n\n" + "\n".join(docs)
+    return cls
+
+
+class Id(Struct):
+    """The id of an object of a world. Two ids are equal if they name the same object."""
+    __slots__ = ()
+
+    def of(self, world):
+        """The same id, as a part of another world: of a copy that a function of yours sees, or of a checkpoint."""
+        copy = type(self).from_buffer_copy(self)
+        copy._functions, copy._of, copy._extra = {}, world, None
+        return copy
+
+    @property
+    def world(self):
+        if getattr(self, "_of", None) is None:
+            raise ValueError("this id belongs to no world yet; write id.of(world)")
+        return self._of
+
+    def __bool__(self):
+        return any(bytes(self))
+
+    def __eq__(self, other):
+        return type(self) is type(other) and bytes(self) == bytes(other)
+
+    def __hash__(self):
+        return hash((type(self), bytes(self)))
+
+
+# ---- errors -------------------------------------------------------------------------------------
+
+class Error(Exception):
+    """A call of dem.h has failed. The text is the error message of dem.h: the function, what is wrong with the value,
+    the limit, the likely cause, the remedy. result: the dem.Result."""
+    result = None
+
+
+class _Context:
+    """What the functions that a world calls share: the first exception, and the world."""
+
+    def __init__(self, world):
+        self.raised, self.kept, self.go_on, self.memory, self.reals = None, {}, None, 0, 0
+        self.world_of = weakref.ref(world)
+
+    def fail(self, error):
+        if self.raised is None:
+            self.raised = error
+
+    def world(self, pointer):
+        world = self.world_of()
+        return world if world is not None and world._at == pointer else World._borrow(pointer, self)
+
+
+class Handle:
+    """A world, a replay or slabs: memory that the library owns."""
+    _at = _context = None
+
+    def _text(self):
+        return ""
+
+    def _raise(self, kind):
+        raise kind(self._text() or "no message")
+
+    def _ok(self, result):
+        """Raises the exception of a function of yours, or that of a result other than OK."""
+        if self._context and self._context.raised is not None:
+            error, self._context.raised = self._context.raised, None
+            if result and hasattr(error, "add_note"):
+                error.add_note("dem.h: " + self._text())
+            raise error
+        if result:
+            self._raise(_ERRORS[result])
+
+    def _run(self, function, *arguments):
+        """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
+        caller gets KeyboardInterrupt."""
+        before = signal.getsignal(signal.SIGINT) if threading.get_ident() == threading.main_thread().ident else None
+        if not callable(before):
+            return function(*arguments)
+
+        def note(number, frame):
+            try:
+                before(number, frame)
+            except BaseException as error:
+                self._context.fail(error)
+        signal.signal(signal.SIGINT, note)
+        try:
+            return function(*arguments)
+        finally:
+            signal.signal(signal.SIGINT, before)
+
+    def _id(self, value):
+        self._ok(0)
+        if not value:
+            self._raise(Error)
+        value._of = self
+        return value
+
+    def _pointer(self, value):
+        self._ok(0)
+        if not value:
+            self._raise(Error)
+        return value
+
+    def _number(self, value):
+        """A count, or a fraction: -1 is an error."""
+        self._ok(0)
+        if value < 0:
+            self._raise(Error)
+        return value
+
+    def _filled(self, added, count, name):
+        """The number of bodies that a fill has added. Fewer than `count` are a warning, none are an error."""
+        self._ok(0)
+        if added < count or added == 0:
+            text = self._text()
+            if added == 0 and (count or text.startswith(name)):
+                self._raise(Error)
+            if added:
+                warnings.warn(text, stacklevel=3)
+        return added
+
+    def _bound(self, struct, key=None):
+        """A struct whose Python functions have become C functions, which live as long as the world."""
+        if not _functions(struct):
+            return struct
+        copy = type(struct).from_buffer_copy(struct)
+        copy._functions, copy._of, copy._extra = {}, None, struct
+        made = []
+        for path, function in struct._functions.items():
+            target = copy
+            for step in path[:-1]:
+                target = target[step] if isinstance(step, int) else getattr(target, step)
+            kind = target._functions_[path[-1]]
+            entry = kind.wrap(function, self._context, target)
+            setattr(target, "_" + path[-1], entry)
+            made.append(entry)
+        self._context.kept[key or len(self._context.kept)] = made, struct
+        return copy
+
+    def _callback(self, kind, function):
+        """A C function of a Python function, for one call."""
+        if function is None:
+            return kind.c()
+        if function is _go_on:
+            if not self._context.go_on:
+                self._context.go_on = kind.wrap(_go_on, self._context, None)
+            return self._context.go_on
+        if isinstance(function, ctypes._CFuncPtr):
+            return ctypes.cast(function, kind.c)
+        return kind.wrap(function, self._context, None)
+
+    def _with(self, struct):
+        """Ties a struct that the library has filled to the world, whose memory its views keep alive."""
+        struct._of, struct._extra = self, self._memory
+        return struct
+
+    def _print(self, function, out, *arguments):
+        """Calls a function that prints to a FILE, and prints its text to `out` (sys.stdout)."""
+        libc = ctypes.CDLL(None) if os.name == "posix" else ctypes.cdll.ucrtbase
+        libc.tmpfile.restype = ctypes.c_void_p
+        file = ctypes.c_void_p(libc.tmpfile())
+        if not file:
+            raise OSError("tmpfile() failed: is the folder for temporary files writable?")
+        try:
+            result = function(*arguments, file)
+            size = libc.ftell(file)
+            libc.rewind(file)
+            text = ctypes.create_string_buffer(max(size, 1))
+            size = libc.fread(text, 1, size, file)
+        finally:
+            libc.fclose(file)
+        print(text.raw[:size].decode(errors="replace"), end="", file=out or sys.stdout)
+        self._ok(0)
+        return result
+
+    def _taken(self, struct, free):
+        """A copy of a struct in memory of Python; frees the memory of the library."""
+        copy = type(struct).from_buffer_copy(struct)
+        copy._functions, copy._of, copy._extra = {}, None, []
+        for name, kind in struct.kinds.items():
+            pointer = getattr(struct, "_" + name) if isinstance(kind, View) else None
+            if pointer:
+                view = getattr(struct, name)
+                array = (kind.kind*(view.nbytes//ctypes.sizeof(kind.kind))).from_buffer_copy(view.cast("B"))
+                copy._extra.append(array)
+                setattr(copy, "_" + name, ctypes.cast(array, kind.c))
+        free(self._at, struct)
+        return copy
+
+    def close(self):
+        """Ends it and frees its memory; further calls raise an error. Leaving a `with` block does the same."""
+        at, self._at = self._at, None
+        if at is not None:
+            return self._free(at)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __del__(self):
+        try:
+            self.close()
+        except Exception:
+            pass
+
+
+def _go_on(world, done, seconds_left):
+    """The progress function of runs that are given none: lets Python handle Ctrl-C."""
+
+
+def tail(memory, first):
+    """The numbers of a contact history from number `first` on, for built-in laws that follow another one."""
+    part = (Real*(len(memory) - first)).from_address(ctypes.addressof(memory) + first*ctypes.sizeof(Real))
+    part.owner = memory
+    return part
+
+
+class Page:
+    """A replay file, which Jupyter shows inside a notebook: dem.Page("drum.html")."""
+
+    def __init__(self, path, height=560):
+        self.path, self.height = path, height
+
+    def _repr_html_(self):
+        with open(self.path, encoding="utf-8") as file:
+            return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
+                html.escape(file.read()), self.height)
+
+# ---- errors, one for each result ------------------------------------------------------------------
+
+
+class Result(enum.IntEnum):
+    """The result of a call. dem_world_error_get returns the message, dem_result_name_get the name."""
+    OK = 0
+    # a value is out of range, an id is invalid, or a call is not allowed here
+    ERROR_ARGUMENT = 1
+    # the allocator returned null
+    ERROR_MEMORY = 2
+    # a file cannot be opened, read, written or renamed
+    ERROR_FILE = 3
+    # the contents of a file are damaged, or of another format, version or scene
+    ERROR_FORMAT = 4
+    # the time step is too large for a contact, a spin, or the speed of a body or wall
+    ERROR_TIME_STEP = 5
+    # a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose
+    ERROR_UNSTABLE = 6
+    # a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
+    # tolerance (unsolved_stops)
+    ERROR_STOPPED = 7
+
+
+class NormalLaw(enum.IntEnum):
+    """The law of the normal force. Here delta is the overlap, m, and v the closing speed, m/s."""
+    # F = kn delta^(3/2) + cn delta^(1/4) v [HER82, TSU92]
+    HERTZ = 0
+    # F = kn delta + cn v. kn is given, or follows from Young's modulus and an impact speed.
+    LINEAR = 1
+    # [ALK07] eq 2.47: the contact loads along kn delta, unloads and reloads with slope kun, and attracts by at most
+    # kad delta. It needs no dashpot.
+    HYSTERETIC = 2
+
+
+class TangentLaw(enum.IntEnum):
+    """The law of friction. Every law except DEM_TANGENT_NONE limits the force by Coulomb's law."""
+    # DEM_TANGENT_SPRING if any pair has friction, otherwise DEM_TANGENT_NONE
+    AUTO = 0
+    # no tangential force
+    NONE = 1
+    # -ct v_t, without history
+    VISCOUS = 2
+    # [MIL]: -kt (v_t dt) - ct v_t, without history
+    STEP = 3
+    # [CS79]: -kt xi - ct v_t, where xi is the integral of v_t over the contact
+    SPRING = 4
+    # [DIR05]: the force grows by increments, with kt of the overlap in the middle of the step
+    MINDLIN = 5
+    # [THO13]: as DEM_TANGENT_MINDLIN, but the force is scaled down with kt during unloading
+    MINDLIN_RESCALED = 6
+
+
+class RollingLaw(enum.IntEnum):
+    """The law of rolling resistance."""
+    # DEM_ROLLING_EPSD if any pair has rolling friction, otherwise DEM_ROLLING_NONE
+    AUTO = 0
+    # no rolling resistance
+    NONE = 1
+    # [MIL] section 4.5: mu_r R* min(Fn, |w|), with the dimensions as printed there
+    STEP = 2
+    # [ZHO99]: a moment mu_r R* Fn against the relative spin; at rest any moment up to that
+    CONSTANT = 3
+    # [AI11]: an elastic-plastic spring and a dashpot, with history
+    EPSD = 4
+
+
+class Tension(enum.IntEnum):
+    """The dashpot at the end of a contact, where it would attract."""
+    # The dashpot may attract; the restitution is the given one.
+    ALLOWED = 0
+    # The contact ends at zero force. The restitution becomes higher than the given one: 0.66 gives about 0.69 [SP07].
+    CLIPPED = 1
+    # The contact ends at zero force and the damping is raised so that the restitution is the given one: the closed
+    # form of [SP07] solved for the dashpot, as in [THO13].
+    COMPENSATED = 2
+
+
+class Load(enum.IntEnum):
+    """The load L of Coulomb's limit mu L. The choices differ where the normal force has a dashpot."""
+    # L is the whole normal force, or 0 while it attracts: Coulomb's law at every instant. In an impact that slides
+    # throughout, the impulse of friction is larger than mu times the normal impulse: by 9 % at a restitution of 0.25,
+    # by 14 % at 0.1.
+    REPULSIVE = 0
+    # L is the elastic part of the normal force. In an impact that slides throughout, the impulse of friction is mu
+    # times the normal impulse for any restitution, as for rigid bodies.
+    ELASTIC = 1
+    # L is the magnitude of the normal force, as in LAMMPS, LIGGGHTS and MercuryDPM. The excess is 18 % at a
+    # restitution of 0.25 and 28 % at 0.1.
+    MAGNITUDE = 2
+
+
+class Slider(enum.IntEnum):
+    """How the tangential spring and dashpot share Coulomb's limit while a contact slides. The force is the same; the
+    energy that the spring holds differs.
+    """
+    # Spring and dashpot act in parallel behind one slider. This never creates energy.
+    PARALLEL = 0
+    # The spring alone takes the whole limit, as in [THO13] and its published impacts. Creates up to 3 % of an
+    # impact's energy at a restitution of 0.5 and 15 % at 0.1.
+    SPRING = 1
+    # The spring takes what the dashpot leaves of the limit, as in LAMMPS, MercuryDPM and MFiX. It stores energy that
+    # no slip supplied. Under Hertz's law with a dashpot the result depends on the time step: an oblique impact leaves
+    # at 0.247 of its speed at t_c/100, and at 0.221 at t_c/25600 and below.
+    REMAINDER = 2
+
+
+class Convention(enum.IntEnum):
+    """Conventions for effective quantities and overlaps."""
+    # E*, G*, R*, m* and the overlap as in the contact literature
+    STANDARD = 0
+    # [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2 and m/2 against walls. Only for reproducing that
+    # thesis.
+    MILL = 1
+
+
+class Integrator(enum.IntEnum):
+    """The scheme of time integration with springs. Impulses have their own, of second order."""
+    # second order; the default
+    VELOCITY_VERLET = 0
+    # first order, gains energy; the scheme named in the text of [MIL]
+    FORWARD_EULER = 1
+    # first order, bounded error of energy
+    SYMPLECTIC_EULER = 2
+    # the original Verlet scheme: x(t + dt) = 2 x(t) - x(t - dt) + a dt^2
+    POSITION_VERLET = 3
+    # velocities at half steps; the same trajectory as velocity Verlet
+    LEAPFROG = 4
+
+
+class Response(enum.IntEnum):
+    """How contacts respond."""
+    # Soft contacts: forces grow with the overlap, by the laws above. A time step is a fiftieth of a contact time.
+    SPRINGS = 0
+    # Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The laws above do not act;
+    # restitution, friction, static friction and, with Gauss-Seidel, rolling friction of the materials do. A time step
+    # is as long as the flow allows, 1e-3 s for grains of some millimetres.
+    IMPULSES = 1
+
+
+class Cone(enum.IntEnum):
+    """The friction law of impulses."""
+    # Coulomb's law: sliding contacts stay closed.
+    COULOMB = 0
+    # The convex relaxation of [TAS10]: a contact that slides at speed v opens by mu v dt.
+    CONVEX = 1
+
+
+class Solver(enum.IntEnum):
+    """The iterative solver for impulses (>>solvers). The page docs/impulses.md compares them."""
+    # one contact after another: robust, and needs the fewest sweeps; the default
+    GAUSS_SEIDEL = 0
+    # all contacts at once; for comparison
+    JACOBI = 1
+    # accelerated projected gradient descent [MAZ15]; for residuals far below the default
+    APGD = 2
+    # projected gradients with Barzilai-Borwein steps [HEY13]; for residuals far below the default
+    SPECTRAL = 3
+
+
+class Rotation(enum.IntEnum):
+    """How the orientations of bodies other than spheres are integrated. Every choice conserves angular momentum to
+    round-off in free flight and is of second order in dt under torques. docs/shapes.md compares errors and costs.
+    """
+    # [SPI24] with conserved angular momentum; the most accurate and the cheapest
+    SPIRAL = 0
+    # [FIN92], as used by [RUB15]; gains energy, for comparison
+    FINCHAM = 1
+    # symplectic splitting [DLM97]; the smallest change of energy, the most expensive
+    NO_SQUISH = 2
+
+
+class Overlap(enum.IntEnum):
+    """The overlap of two ellipsoids. Scaled about their centres by W0, the two touch in one point. hA and hB are their
+    support heights along the normal there.
+    """
+    # l (1 - W0), where l is the sum of the radii of spheres of equal volume. The force is the gradient of an energy,
+    # so built-in laws conserve energy.
+    CONSERVATIVE = 0
+    # [RUB15] section 3.2: the length inside both ellipsoids of a line through the contact point, there V2 V3
+    # (docs/theory_surfaces.md)
+    CHORD = 1
+    # (hA + hB)(1 - W0), along the normal
+    NORMAL = 2
+
+
+class ClusterContacts(enum.IntEnum):
+    """How several contacts between the spheres of two bodies count, if one body is a cluster."""
+    # Contacts with similar normals act as one contact. Stiffness and restitution do not depend on the number of
+    # spheres that touch [BER23].
+    MERGED = 0
+    # Each is a contact of its own. The stiffness grows with their number; elastic energy is conserved exactly.
+    SEPARATE = 1
+
+
+class Search(enum.IntEnum):
+    """The broad phase of contact detection. All choices find the same contacts."""
+    # a grid, or a hierarchical grid if radii differ enough; dem_world_report prints the choice
+    AUTO = 0
+    # every pair; the reference for the others
+    ALL_PAIRS = 1
+    # a uniform grid of cells
+    GRID = 2
+    # a linked linear list [ALK07] section 2.3.2: sorted ends of boxes on three axes
+    LINKED_LIST = 3
+    # a hierarchical grid [OGA12]: each class of radii has its own cells
+    HIERARCHICAL = 4
+    # bins [MAZ11]: each body is entered in every bin that its box touches
+    BINS = 5
+
+
+class Boundary(enum.IntEnum):
+    """The faces of the domain box, per axis: what they do to a body that leaves."""
+    # nothing: bodies may leave
+    OPEN = 0
+    # a body that leaves on one side enters on the other
+    PERIODIC = 1
+    # A body whose centre leaves is removed in that step and counted as left. Each removal rebuilds the neighbour
+    # list, so an outlet is cheaper where many bodies leave one by one.
+    OUTFLOW = 2
+
+
+class SizesKind(enum.IntEnum):
+    """The kind of a size distribution. F(r) is the fraction finer than radius r. All are truncated to min <= r <= max
+    and scaled to 1.
+    """
+    # F grows linearly with r
+    UNIFORM = 0
+    # log-normal, by median and spread
+    LOGNORMAL = 1
+    # Weibull or Rosin-Rammler: F = 1 - exp(-(r/scale)^modulus)
+    WEIBULL = 2
+    # the fraction that passes each of `count` sieves
+    SIEVE_CURVE = 3
+    # normal, by median and deviation
+    NORMAL = 4
+    # exponential beyond min with mean `scale` (docs/separator.md): F = 1 - exp(-(r - min)/(scale - min))
+    EXPONENTIAL = 5
+
+
+class ClusterMass(enum.IntEnum):
+    """How the mass properties of a cluster are found."""
+    # volume shared by several spheres counts once, integrated along parallel rays
+    UNION = 0
+    # every sphere counts in full
+    SUM = 1
+    # volume, centre and inertia are given
+    GIVEN = 2
+
+
+class MotionKind(enum.IntEnum):
+    """The kind of a wall's motion."""
+    # at rest
+    FIXED = 0
+    # with `velocity`
+    TRANSLATING = 1
+    # at `speed` about `axis` through `point`, right-handed
+    ROTATING = 2
+    # displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start
+    OSCILLATING = 3
+    # as `function` says
+    USER = 4
+    # through the poses of `table`, smoothly
+    TABLE = 5
+
+
+class EdgeRule(enum.IntEnum):
+    """How the segments of a profile share the force of a grain that touches several."""
+    # The profile acts as one surface, however it is divided (>>facets): a flat one exerts exactly the force of a
+    # plane.
+    RESOLVED = 0
+    # [MIL] Fig 5.19: each segment exerts the force along the normal of its own line times a^2 (3 - 2a), where a is
+    # its fraction of the chord inside the grain. Only for spheres and clusters, and without law_range.
+    FRACTION = 1
+
+
+class SieveKind(enum.IntEnum):
+    """The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra with infinite
+    sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids, and polyhedra on plates without thickness by
+    springs, touch facets (>>tessellate).
+    """
+    NONE = 0
+    # a square weave of round wires
+    WIRES = 1
+    # parallel round wires, across `along`
+    BARS = 2
+    # a plate with square holes
+    SQUARE = 3
+    # a plate with round holes
+    ROUND = 4
+    # a plate with slots, longer along `along`
+    SLOTS = 5
+    # [ALK07] 4.3.3: a plane through which a sphere falls without contact if it is near enough to the middle of a
+    # square hole (dem_sieve_desc.model). It is cheaper and never blinds, but the clearance decides what passes.
+    REDUCED = 6
+
+
+class JointKind(enum.IntEnum):
+    """Joints connect a body to another body, to a wall or to space. They need DEM_RESPONSE_IMPULSES and
+    DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints are solved together by a direct method;
+    those of closed loops have a softness of 1e-6 of the inverse effective mass. The joined points and axes coincide
+    in the middle of the next step, where contacts are found, too. Impulses of joints never add energy, for any number
+    of sweeps (docs/impulses.md). Two bodies that are joined have no contact with each other unless `collide` is 1.
+    """
+    NONE = 0
+    # a ball joint: keeps `point` of both together
+    POINT = 1
+    # a hinge or axle: keeps `axis` of both together too
+    REVOLUTE = 2
+
+
+class Motor(enum.IntEnum):
+    """The motor of a revolute joint."""
+    NONE = 0
+    # rotates a against b at `speed`, by at most `torque`
+    SPEED = 1
+    # exerts `torque` on a, and the opposite on b
+    TORQUE = 2
+
+
+class Severity(enum.IntEnum):
+    """How serious a finding of dem_world_check is."""
+    # possibly not intended
+    NOTE = 1
+    # most likely not intended
+    WARNING = 2
+    # the scene will not run, or makes no sense
+    ERROR = 3
+
+
+class OutputKind(enum.IntEnum):
+    """The action of an output."""
+    # calls a function
+    CALL = 0
+    # dem_vtp_write
+    VTP = 1
+    # dem_xyz_write
+    XYZ = 2
+    # dem_contacts_vtp_write
+    CONTACTS = 3
+    # dem_checkpoint_write
+    CHECKPOINT = 4
+    # appends the time and some values as a line to a CSV file
+    CSV = 5
+    # dem_surfaces_vtp_write
+    SURFACES = 6
+
+
+class EffectState(enum.IntEnum):
+    """The state of an effect."""
+    # the scene does not contain it; it costs nothing
+    OFF = 0
+    # the scene contains it, but it has not happened so far
+    IDLE = 1
+    ACTIVE = 2
+
+
+_ERRORS = {}
+
+
+class ArgumentError(Error, ValueError):
+    """a value is out of range, an id is invalid, or a call is not allowed here"""
+    result = Result.ERROR_ARGUMENT
+
+
+_ERRORS[1] = ArgumentError
+
+
+class MemoryError(Error, MemoryError):
+    """the allocator returned null"""
+    result = Result.ERROR_MEMORY
+
+
+_ERRORS[2] = MemoryError
+
+
+class FileError(Error, OSError):
+    """a file cannot be opened, read, written or renamed"""
+    result = Result.ERROR_FILE
+
+
+_ERRORS[3] = FileError
+
+
+class FormatError(Error, ValueError):
+    """the contents of a file are damaged, or of another format, version or scene"""
+    result = Result.ERROR_FORMAT
+
+
+_ERRORS[4] = FormatError
+
+
+class TimeStepError(Error):
+    """the time step is too large for a contact, a spin, or the speed of a body or wall"""
+    result = Result.ERROR_TIME_STEP
+
+
+_ERRORS[5] = TimeStepError
+
+
+class UnstableError(Error):
+    """a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose"""
+    result = Result.ERROR_UNSTABLE
+
+
+_ERRORS[6] = UnstableError
+
+
+class StoppedError(Error):
+    """a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
+    tolerance (unsolved_stops)
+    """
+    result = Result.ERROR_STOPPED
+
+
+_ERRORS[7] = StoppedError
+
+
+@_struct
+class Vec3(Struct):
+    """The id of a vec3."""
+    __slots__ = ()
+    c_name = 'dem_vec3'
+    rows = [
+        ('x', Real, ''),
+        ('y', Real, ''),
+        ('z', Real, ''),
+    ]
+
+
+@_struct
+class Box(Struct):
+    """An axis-aligned box from corner lo to corner hi."""
+    __slots__ = ()
+    c_name = 'dem_box'
+    rows = [
+        ('lo', Vec3, ''),
+        ('hi', Vec3, ''),
+    ]
+
+
+@_struct
+class Quat(Struct):
+    """A unit quaternion that rotates vectors from the frame of a body into the world frame. w is the scalar part."""
+    __slots__ = ()
+    c_name = 'dem_quat'
+    rows = [
+        ('w', Real, ''),
+        ('x', Real, ''),
+        ('y', Real, ''),
+        ('z', Real, ''),
+    ]
+
+
+@_struct
+class Pose(Struct):
+    """Position and motion of a rigid wall. A point with wall coordinates p is at position + rotation p in the world
+    frame.
+    """
+    __slots__ = ()
+    c_name = 'dem_pose'
+    rows = [
+        ('position', Vec3, "m, of the origin of the wall's frame"),
+        ('rotation', Real*9, '3 x 3 rotation matrix, row by row'),
+        ('velocity', Vec3, 'm/s, of `position`'),
+        ('spin', Vec3, 'rad/s, about `position`'),
+    ]
+
+
+@_struct
+class Material(Id):
+    """The id of a material."""
+    __slots__ = ()
+    c_name = 'dem_material'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    def set(self, *, density=None, young=None, poisson=None, restitution=None, friction=None,
+            friction_static=None, rolling_friction=None, stiffness=None, stiffness_ratio=None,
+            stiffness_unloading=None, stiffness_adhesion=None):
+        """Changes moduli, restitution and friction of a material, also while the world runs. Its pairs are mixed again,
+        except those that dem_pair_set has replaced. Contacts keep their history; a chosen time step is chosen again.
+        The density must stay the same, because bodies have their masses. A checkpoint that is written afterwards can
+        be read only by a world whose material has been changed in the same way.
+
+        Fields that are not given stay as they are.
+        density: kg/m3, required, > 0
+        young: Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness
+        poisson: >= 0 and < 0.5: nu; 0 is a physical value
+        restitution: Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic law
+            takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact without
+            adhesion.
+        friction: sliding friction mu, >= 0
+        friction_static: Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
+            Fn until the contact slides, then mu Fn until the slip stops or reverses.
+        rolling_friction: mu_r, >= 0: the moment is at most mu_r R* Fn
+        stiffness: N/m, kn of the linear and hysteretic law; 0 means from young and impact_speed [DIM04]
+        stiffness_ratio: kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu)
+        stiffness_unloading: N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness.
+        stiffness_adhesion: N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion
+        """
+        desc = self.desc
+        desc._put({name: value for name, value in (('density', density), ('young', young), ('poisson', poisson),
+            ('restitution', restitution), ('friction', friction), ('friction_static', friction_static),
+            ('rolling_friction', rolling_friction), ('stiffness', stiffness), ('stiffness_ratio', stiffness_ratio),
+            ('stiffness_unloading', stiffness_unloading), ('stiffness_adhesion', stiffness_adhesion),) if value is not
+            None})
+        self.world._ok(_lib.dem_material_set(self.world._at, self, desc))
+
+    @property
+    def desc(self):
+        """Writes the present values of a material to desc."""
+        desc = MaterialDesc()
+        self.world._ok(_lib.dem_material_get(self.world._at, self, desc))
+        self.world._with(desc)
+        return desc
+
+
+@_struct
+class Wall(Id):
+    """counts from 1"""
+    __slots__ = ()
+    c_name = 'dem_wall'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    @property
+    def reals(self):
+        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
+        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
+        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """
+        reals = (Real*max(self.world._context.reals, 1))()
+        self.world._ok(_lib.dem_wall_reals_get(self.world._at, self, ctypes.cast(reals, ctypes.POINTER(Real))))
+        return reals
+
+    def reals_set(self, reals):
+        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
+        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
+        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """
+        reals = _array(reals, Real, self.world._context.reals, 'reals')
+        self.world._ok(_lib.dem_wall_reals_set(self.world._at, self, reals))
+
+    def motion_set(self, *, kind=0, velocity=None, point=None, axis=None, speed=0, amplitude=0, frequency=0,
+            phase=0, start=0, function=None, user=None, ramp=0, table=None, table_count=0, table_repeats=0):
+        """Sets the motion of a wall, which begins at its present pose.
+
+        velocity: m/s, of translating walls; of oscillating ones the direction only
+        point: m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0
+            means along z. Rotating walls need an axis.
+        speed: rad/s, of rotating walls
+        amplitude: m, Hz, rad: of oscillating walls
+        start: s. Until then rotating and translating walls are at rest. A time in the past means now.
+        function: what DEM_MOTION_USER calls
+        user: passed to function
+        ramp: s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3, u = (time
+            - start)/ramp, to its full value. 0 means at once.
+        table: The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity and spin
+            are continuous (tangents of the parabola through three rows). The wall is at rest before the first row and
+            after the last. With table_repeats = 1 the table starts again after its last row without stopping; that
+            row should have the pose of the first. From row to row the wall rotates by less than pi.
+        """
+        motion = Motion(kind=kind, velocity=velocity, point=point, axis=axis, speed=speed, amplitude=amplitude,
+            frequency=frequency, phase=phase, start=start, function=function, user=user, ramp=ramp, table=table,
+            table_count=table_count, table_repeats=table_repeats)
+        motion = self.world._bound(motion, ('dem_wall_motion_set', self))
+        self.world._ok(_lib.dem_wall_motion_set(self.world._at, self, motion))
+
+    @property
+    def pose(self):
+        """Writes the present pose of a wall to pose."""
+        pose = Pose()
+        self.world._ok(_lib.dem_wall_pose_get(self.world._at, self, pose))
+        self.world._with(pose)
+        return pose
+
+    def remove(self):
+        """Removes a wall. Ids of other walls stay valid. It is an error if an outlet moves with it."""
+        self.world._ok(_lib.dem_wall_remove(self.world._at, self))
+
+    @property
+    def loads(self):
+        """Writes the loads of a wall to loads."""
+        loads = WallLoads()
+        self.world._ok(_lib.dem_wall_loads_get(self.world._at, self, loads))
+        self.world._with(loads)
+        return loads
+
+    def loads_reset(self):
+        """Sets the sums of a wall's loads to 0."""
+        self.world._ok(_lib.dem_wall_loads_reset(self.world._at, self))
+
+    def loads_csv_write(self, path):
+        """Appends the loads of a wall to a CSV file: time (s), force (N), torque (N m), axial torque (N m), power (W),
+        number of contacts. Writes the heading first if the file is new or empty.
+        """
+        self.world._ok(_lib.dem_wall_loads_csv_write(self.world._at, self, os.fsencode(path)))
+
+
+@_struct
+class Field(Id):
+    """counts from 1"""
+    __slots__ = ()
+    c_name = 'dem_field'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    @property
+    def data(self):
+        """Writes pointers to the sums of a field to `data`."""
+        data = FieldData()
+        self.world._ok(_lib.dem_field_get(self.world._at, self, data))
+        self.world._with(data)
+        return data
+
+    def cell(self, i, j, k):
+        """Computes the means of the cell (i, j, k), which count from 0."""
+        cell = FieldCell()
+        self.world._ok(_lib.dem_field_cell_get(self.world._at, self, i, j, k, cell))
+        self.world._with(cell)
+        return cell
+
+    def reset(self):
+        """Sets the sums of a field and its number of samples to 0; the window of time stays."""
+        self.world._ok(_lib.dem_field_reset(self.world._at, self))
+
+
+@_struct
+class Shape(Id):
+    """counts from 1"""
+    __slots__ = ()
+    c_name = 'dem_shape'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    @property
+    def info(self):
+        """Writes the properties of a shape to info."""
+        info = ShapeInfo()
+        self.world._ok(_lib.dem_shape_get(self.world._at, self, info))
+        self.world._with(info)
+        return info
+
+
+@_struct
+class Body(Id):
+    """slot counts from 1. A later body in the same slot has another generation."""
+    __slots__ = ()
+    c_name = 'dem_body'
+    rows = [
+        ('slot', ctypes.c_uint32, ''),
+        ('generation', ctypes.c_uint32, ''),
+    ]
+
+    def remove(self):
+        """Removes a body. Its id becomes invalid."""
+        self.world._ok(_lib.dem_body_remove(self.world._at, self))
+
+    @property
+    def state(self):
+        """Writes the state of a body to state."""
+        state = BodyState()
+        self.world._ok(_lib.dem_body_get(self.world._at, self, state))
+        self.world._with(state)
+        return state
+
+    def set(self, *, position=None, velocity=None, spin=None, fixed=None, orientation=None):
+        """Sets position, velocity, spin, orientation and fixed. Start from dem_body_get.
+
+        Fields that are not given stay as they are.
+        position: m, m/s, rad/s
+        fixed: 1: the body never moves, whatever forces act on it
+        orientation: Rotates the frame in which the shape was given into the world. dem_body_set accepts any length
+            but 0. Spheres have one if desc.orientations is 1.
+        """
+        state = self.state
+        state._put({name: value for name, value in (('position', position), ('velocity', velocity), ('spin', spin),
+            ('fixed', fixed), ('orientation', orientation),) if value is not None})
+        self.world._ok(_lib.dem_body_set(self.world._at, self, state))
+
+    @property
+    def reals(self):
+        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
+        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
+        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """
+        reals = (Real*max(self.world._context.reals, 1))()
+        self.world._ok(_lib.dem_body_reals_get(self.world._at, self, ctypes.cast(reals, ctypes.POINTER(Real))))
+        return reals
+
+    def reals_set(self, reals):
+        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
+        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
+        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """
+        reals = _array(reals, Real, self.world._context.reals, 'reals')
+        self.world._ok(_lib.dem_body_reals_set(self.world._at, self, reals))
+
+
+@_struct
+class ContactWho(Struct):
+    """The two bodies of a contact, for laws that request them by desc.law_who = 1."""
+    __slots__ = ()
+    c_name = 'dem_contact_who'
+    rows = [
+        ('a', Body, "b is the null id at a wall; c->wall is then the wall's id"),
+        ('b', Body, ""),
+        ('radius_a', Real,
+         'm, of the spheres that touch (member spheres of clusters); of other shapes the bounding radius; 0 '
+         'for a wall, except a wall of grains: the radius of its grains'),
+        ('radius_b', Real, ""),
+        ('mass_a', Real, 'kg, of the whole bodies; 0 for a wall'),
+        ('mass_b', Real, ""),
+        ('point', Vec3, 'm, contact point in the world frame; at a wall: on the surface of a'),
+        ('time', ctypes.c_double, 's, at the end of the step'),
+        ('reals_a', ctypes.POINTER(Real),
+         'present values of the user-defined numbers of a and of b or the wall, in the order of '
+         'desc.body_reals; null if desc.body_reals names none'),
+        ('reals_b', ctypes.POINTER(Real), ""),
+        ('rate_a', ctypes.POINTER(Real),
+         'The law adds the rates of change of these numbers here, per s. They are 0 when the law is called; '
+         'the pointers are null if reals_a is. If a contact has several contact points (member spheres of '
+         'clusters, facets), dem.h multiplies the rates of each by its weight'),
+        ('rate_b', ctypes.POINTER(Real), ""),
+    ]
+
+
+@_struct
+class Contact(Struct):
+    """All that a contact law sees. Velocities are those of body a relative to body b, or to the surface of the wall, at
+    the full step: use them for dashpots and friction. Displacements in the contact history grow by slip_step dt, the
+    displacement of the step just taken, so that springs conserve energy as well as the integrator does.
+    """
+    __slots__ = ()
+    c_name = 'dem_contact'
+    rows = [
+        ('overlap', Real, 'm, > 0 in contact; < 0 across a gap (laws with a range only)'),
+        ('range', Real, 'm, gap up to which the law is called here (desc.law_range); or 0'),
+        ('closing_speed', Real, 'm/s, positive while the two approach'),
+        ('normal', Vec3, 'unit vector from a to b'),
+        ('slip', Vec3, 'm/s, tangential velocity at the contact point, rotation included'),
+        ('spin', Vec3, 'rad/s, spin of a minus spin of b'),
+        ('slip_step', Vec3, 'm/s, mean of `slip` over the step just taken'),
+        ('spin_step', Vec3, 'rad/s, mean of `spin` over the step just taken'),
+        ('normal_rate', Vec3, '1/s, mean rate of change of the normal in that step'),
+        ('twist', Real, 'rad/s, mean rotation of the contact plane about the normal'),
+        ('r_eff', Real, 'm, 1/(1/Ra + 1/Rb), at a wall Ra; other shapes: equivalent radii'),
+        ('m_eff', Real,
+         'kg, 1/(1/ma + 1/mb), at a wall ma; with bodies other than spheres the mass that a normal force at '
+         'the contact point accelerates, rotation included'),
+        ('dt', Real, 's, the time step. 0: leave the contact history unchanged'),
+        ('kn', Real, 'built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others)'),
+        ('cn', Real, ""),
+        ('kt', Real, ""),
+        ('ct', Real, ""),
+        ('kun', Real, 'N/m, unloading of the hysteretic law; otherwise 0'),
+        ('friction', Real, 'of the pair of materials'),
+        ('friction_static', Real, ""),
+        ('rolling_friction', Real, ""),
+        ('sliding', Real, 'force->sliding of the last step; 0 when the contact begins'),
+        ('material_a', ctypes.c_int32, 'ids of materials'),
+        ('material_b', ctypes.c_int32, ""),
+        ('wall', ctypes.c_int32, 'id of the wall; 0: b is a body'),
+        ('tension', ctypes.c_int, 'dem_tension, dem_load, dem_slider of the world desc'),
+        ('friction_load', ctypes.c_int, ""),
+        ('slider', ctypes.c_int, ""),
+        ('who', ContactWho, 'zeros unless desc.law_who is 1'),
+        ('user', ctypes.c_void_p, 'desc.law_user'),
+        ('kad', Real, 'coefficients of single laws'),
+    ]
+
+
+@_struct
+class ContactEnergy(Struct):
+    """The energies of one contact, J. Losses and work are those of the step."""
+    __slots__ = ()
+    c_name = 'dem_contact_energy'
+    rows = [
+        ('dashpot', Real, 'lost to the normal dashpot, and to hysteresis'),
+        ('sag', Real, ""),
+        ('elastic', Real, 'stored in the normal spring now'),
+        ('shear_work', Real, 'work done against the tangential force'),
+        ('slide', Real, 'lost to sliding'),
+        ('shear_stored', Real, 'stored in the tangential spring now'),
+        ('roll', Real, 'lost to rolling resistance'),
+    ]
+
+
+@_struct
+class ContactForce(Struct):
+    """The result of a contact law. All fields are 0 when the law is called."""
+    __slots__ = ()
+    c_name = 'dem_contact_force'
+    rows = [
+        ('normal', Real, 'N, positive: repulsion'),
+        ('tangent', Vec3, 'N, on a at the contact point; b receives the opposite'),
+        ('moment', Vec3, 'N m, on a (rolling resistance); b receives the opposite'),
+        ('elastic', Real,
+         'From here to ct: what a normal law passes to the friction and rolling laws that follow it. A law '
+         'that calls none of these may leave them at 0.'),
+        ('load', Real, 'N, the part of `normal` that the spring exerts'),
+        ('slope', Real,
+         'N/m, d(elastic)/d(overlap): at the present overlap; and at the overlap in the middle of that part of'
+         ' the step in which the two touched. Hysteretic law: kn'),
+        ('slope_step', Real, ""),
+        ('kt', Real, 'N/m, tangential stiffness: likewise'),
+        ('kt_step', Real, ""),
+        ('ct', Real, 'N s/m, tangential dashpot'),
+        ('sliding', Real,
+         '1 while the contact slides, otherwise 0. The friction laws set it. If friction_static is larger than'
+         ' friction for any pair, contact history keeps it and c->sliding returns it'),
+        ('energy', ContactEnergy, 'for the ledger, which cannot know what a law leaves at 0'),
+    ]
+
+
+def _wrap_dem_allocator_alloc_fn(function, context, struct):
+
+    def call(size, user):
+        try:
+            return function(size)
+        except BaseException as error:
+            context.fail(error)
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)(call), AllocatorAllocFn.c)
+
+
+AllocatorAllocFn = Function(_wrap_dem_allocator_alloc_fn, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+AllocatorAllocFn.__doc__ = ''
+
+
+def _wrap_dem_allocator_free_fn(function, context, struct):
+
+    def call(memory, size, user):
+        try:
+            function(memory, size)
+        except BaseException as error:
+            context.fail(error)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)(call), AllocatorFreeFn.c)
+
+
+AllocatorFreeFn = Function(_wrap_dem_allocator_free_fn, None, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+AllocatorFreeFn.__doc__ = ''
+
+
+@_struct
+class Allocator(Struct):
+    """Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if there is no memory;
+    free_fn receives the size that was requested. One world, or one set of slabs, calls them from one thread at a
+    time.
+    """
+    __slots__ = ()
+    c_name = 'dem_allocator'
+    rows = [
+        ('alloc_fn', AllocatorAllocFn, ''),
+        ('free_fn', AllocatorFreeFn, ''),
+        ('user', ctypes.c_void_p, ''),
+    ]
+
+
+def _wrap_dem_law_fn(function, context, struct):
+    memory_type = ctypes.POINTER(Real*context.memory)
+
+    def call(c, memory, force):
+        try:
+            function(c[0], memory[0], force[0])
+        except BaseException as error:
+            context.fail(error)
+            ctypes.cast(force, ctypes.POINTER(Real))[0] = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(Contact), memory_type, ctypes.POINTER(ContactForce))(call), LawFn.c)
+
+
+LawFn = Function(_wrap_dem_law_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce))
+LawFn.__doc__ = 'A contact law: computes *force from *c. `memory` is the contact history: desc.law_memory reals. They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer than the range. A law with a range decides itself when a bond or bridge begins and ends, and stores that in its history. If c->dt is 0, dem.h only asks for the force: leave `memory` unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put tangential springs there, and scalars after them. A law must use nothing except its arguments and c->user. Several threads call it at once.'
+
+
+def _wrap_dem_law_rate_fn(function, context, struct):
+    rates_type = ctypes.POINTER(Real*2)
+
+    def call(c, rates):
+        try:
+            function(c[0], rates[0])
+        except BaseException as error:
+            context.fail(error)
+            rates[0][0] = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(Contact), rates_type)(call), LawRateFn.c)
+
+
+LawRateFn = Function(_wrap_dem_law_rate_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real))
+LawRateFn.__doc__ = 'For laws that change user-defined numbers (law_who): bounds the time step. rates[0] receives how fast this contact alone makes a number of body a approach that of its partner, rates[1] the same for body b: 1/s, >= 0, the largest of several numbers. Both are 0 when it is called. A step is stable while dt times the sum over the contacts of a body is below 1. In *c only overlap, range, normal, r_eff, m_eff, dt, user, material_a, material_b, wall and `who` (without point and rates) are set; velocities and coefficients are 0.'
+
+
+@_struct
+class BodyState(Struct):
+    """The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and ignores the rest."""
+    __slots__ = ()
+    c_name = 'dem_body_state'
+    rows = [
+        ('position', Vec3, 'm, m/s, rad/s'),
+        ('velocity', Vec3, ""),
+        ('spin', Vec3, ""),
+        ('force', Vec3, 'N, N m: of the last step, without gravity'),
+        ('torque', Vec3, ""),
+        ('radius', Real,
+         'm, kg, kg m2. For a body that is not a sphere: the radius of its bounding sphere and the smallest '
+         'principal moment.'),
+        ('mass', Real, ""),
+        ('inertia', Real, ""),
+        ('material', Material, ''),
+        ('fixed', ctypes.c_int, '1: the body never moves, whatever forces act on it'),
+        ('orientation', Quat,
+         'Rotates the frame in which the shape was given into the world. dem_body_set accepts any length but '
+         '0. Spheres have one if desc.orientations is 1.'),
+        ('shape', Shape, 'id 0 for a sphere'),
+        ('moments', Vec3, 'kg m2, about the principal axes'),
+        ('reals', ctypes.POINTER(Real), 'desc.body_reals, valid until the next step; null: none'),
+    ]
+
+
+def _wrap_dem_reals_fn(function, context, struct):
+    reals_type = ctypes.POINTER(Real*context.reals)
+    rates_type = ctypes.POINTER(Real*context.reals)
+
+    def call(reals, rates, body, id, time, dt, user):
+        try:
+            function(reals[0], rates[0], body[0], id, time, dt)
+        except BaseException as error:
+            context.fail(error)
+            reals[0][0] = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, reals_type, rates_type, ctypes.POINTER(BodyState), Body, ctypes.c_double, Real, ctypes.c_void_p)(call), RealsFn.c)
+
+
+RealsFn = Function(_wrap_dem_reals_fn, None, ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(BodyState), Body, ctypes.c_double, Real, ctypes.c_void_p)
+RealsFn.__doc__ = "Advances the user-defined numbers of a body by one step, in place: `reals` has as many entries as desc.body_reals has names. rates: per second, the sum of what the law added for all contacts of the body. *body is its state at the end of the step, at `time` (s); dt: s. Without this function dem.h takes Euler's step, reals += rates dt, which is stable for dt below 2 over the fastest rate of decay. It is called once per body and step, from several threads."
+
+
+ForceFn = Function(None, ctypes.c_void_p)
+ForceFn.__doc__ = 'A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m) and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of the coming step. It is called once per body and step, from several threads.'
+
+
+def _wrap_dem_body_force_fn(function, context, struct):
+
+    def call(body, id, time, force, torque, user):
+        try:
+            function(body[0], id, time, force[0], torque[0])
+        except BaseException as error:
+            context.fail(error)
+            ctypes.cast(force, ctypes.POINTER(Real))[0] = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.POINTER(Vec3), ctypes.POINTER(Vec3), ctypes.c_void_p)(call), BodyForceFn.c)
+
+
+BodyForceFn = Function(_wrap_dem_body_force_fn, None, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.POINTER(Vec3), ctypes.POINTER(Vec3), ctypes.c_void_p)
+BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a torque. It adds to *force (N) and *torque (N m, about the centre of mass, in the world frame), which are 0 when it is called. *body is the state as dem_body_get returns it; spheres have an orientation only with desc.orientations. time: s. id: the body, to find your own data by its slot. Otherwise as dem_force_fn.'
+
+
+@_struct
+class WorldDesc(Struct):
+    """The description of a world. dem_world_create_error_get checks it."""
+    __slots__ = ()
+    c_name = 'dem_world_desc'
+    rows = [
+        ('gravity', Vec3, 'm/s2'),
+        ('domain', Box,
+         'm. Required on axes whose boundary is periodic or outflow, not needed on open axes. A periodic axis '
+         'must be at least as long as four of the largest radii, two skins and two ranges of the law.'),
+        ('boundary', Choices(Boundary, 3), 'of the faces on the axes x, y and z'),
+        ('planar', ctypes.c_int,
+         '1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0 and '
+         'rotate about z only. The z component of gravity is ignored.'),
+        ('thickness', Real, 'm, of discs and polygons along z; 0 means 1 m'),
+        ('normal_law', NormalLaw, ''),
+        ('tangent_law', TangentLaw, ''),
+        ('rolling_law', RollingLaw, ''),
+        ('tension', Tension, ''),
+        ('friction_load', Load, ''),
+        ('slider', Slider, ''),
+        ('convention', Convention, ''),
+        ('law', LawFn, 'replaces the normal, tangential and rolling law; null means the laws above'),
+        ('law_user', ctypes.c_void_p, 'passed to law as c->user'),
+        ('law_memory', ctypes.c_int, 'reals of contact history per contact, 0 to 16'),
+        ('law_memory_names', str,
+         'Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means memory0, '
+         'memory1 and so on.'),
+        ('law_vectors', ctypes.c_int, 'leading triples of them that are vectors, 0 to law_memory/3'),
+        ('law_stiffness', Real,
+         'N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the built-in law.'),
+        ('law_range', Real,
+         'm, >= 0. law is also called for two bodies that do not touch while their gap is below law_range + '
+         'law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with radius 0, an ellipsoid with its '
+         'bounding sphere. Built-in laws that it calls need overlap > 0. 0 means no range. With both 0, law is'
+         ' called in contact only, at no extra cost.'),
+        ('law_range_radii', Real, '>= 0; see law_range; 0 means no such range'),
+        ('law_who', ctypes.c_int, '1 fills in c->who: ids, radii, masses, contact point, time'),
+        ('law_rate', LawRateFn,
+         'Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who and '
+         'body_reals. It is called before the first step and at least once in eight steps. A given dt above '
+         'the stable limit is an error; a chosen dt is at most half of it. Null means that these rates do not '
+         'limit dt.'),
+        ('body_reals', str,
+         'Names of numbers that every body and wall carries, such as "temperature charge": at most 8 words of '
+         'up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With law_who, law '
+         'reads them and returns their rates (per s). Null means no numbers.'),
+        ('body_reals_fn', RealsFn,
+         'Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers of '
+         'walls stay as set; dem_wall_loads sums what they would gain.'),
+        ('body_reals_user', ctypes.c_void_p, 'passed to body_reals_fn'),
+        ('force', ForceFn, 'force on a body; null means none'),
+        ('body_force', BodyForceFn, 'force and torque on a body; null means none'),
+        ('force_user', ctypes.c_void_p, 'passed to both'),
+        ('integrator', Integrator, ''),
+        ('dt', Real, 's, the time step; 0 means chosen from the scene, see dem_step_advice_get'),
+        ('allow_large_dt', ctypes.c_int, '1 allows dt above t_c/20, to show what happens then'),
+        ('impact_speed', Real,
+         'm/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness from '
+         "Young's modulus depend on it. 0 means the largest speed expected from grains, walls and height of "
+         'fall for the time step, and 1 m/s for the stiffness.'),
+        ('response', Response,
+         'DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order (docs/impulses.md) '
+         'for either value of integrator that it accepts, 0 and DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m)'
+         ' is then the gap below which contacts are solved; if it is 0, three times the distance that the '
+         'fastest body moves in a step, or less where a short period leaves no room, but always between 0.1 '
+         'and 1 of the largest radius. The fields that follow apply to impulses only.'),
+        ('cone', Cone, ''),
+        ('solver', Solver, ''),
+        ('sweeps', ctypes.c_int, 'most sweeps over all contacts in a step; 0 means 200'),
+        ('tolerance', Real,
+         'm/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when the root'
+         ' mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is '
+         'below 30 times that.'),
+        ('cold_start', ctypes.c_int, '1 begins with zero impulses, not those of the last step'),
+        ('unsolved_stops', ctypes.c_int,
+         '1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance. With 0 '
+         'it continues; dem_counters_get, the report and dem_progress_print count such steps.'),
+        ('search', Search, ''),
+        ('skin', Real,
+         'm, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is rebuilt in '
+         'every step.'),
+        ('rotation', Rotation, ''),
+        ('ellipsoid_overlap', Overlap, ''),
+        ('cluster_contacts', ClusterContacts, ''),
+        ('orientations', ctypes.c_int, '1 follows the orientations of spheres too'),
+        ('ledger', ctypes.c_int, '1 accounts for energy, see dem_ledger_get'),
+        ('threads', ctypes.c_int,
+         'Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are used '
+         'while that is faster; results are the same.'),
+        ('allocator', Allocator, 'memory functions; 0 means malloc and free'),
+    ]
+
+
+@_struct
+class MaterialDesc(Struct):
+    """A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients at most 1e9. With
+    impulses young may be 0 and restitution may be 0.
+    """
+    __slots__ = ()
+    c_name = 'dem_material_desc'
+    rows = [
+        ('density', Real, 'kg/m3, required, > 0'),
+        ('young', Real, 'Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness'),
+        ('poisson', Real, '>= 0 and < 0.5: nu; 0 is a physical value'),
+        ('restitution', Real,
+         'Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic law '
+         'takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact without'
+         ' adhesion.'),
+        ('friction', Real, 'sliding friction mu, >= 0'),
+        ('friction_static', Real,
+         'Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s Fn until'
+         ' the contact slides, then mu Fn until the slip stops or reverses.'),
+        ('rolling_friction', Real, 'mu_r, >= 0: the moment is at most mu_r R* Fn'),
+        ('stiffness', Real, 'N/m, kn of the linear and hysteretic law; 0 means from young and impact_speed [DIM04]'),
+        ('stiffness_ratio', Real, 'kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu)'),
+        ('stiffness_unloading', Real,
+         'N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness.'),
+        ('stiffness_adhesion', Real,
+         'N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion'),
+    ]
+
+
+@_struct
+class Pair(Struct):
+    """The contact properties of two materials. Unless dem_pair_set sets them, they are mixed from the materials, for
+    walls as for grains: - restitution, the three friction coefficients and stiffness_adhesion by the geometric mean:
+    a coefficient that is 0 in one of the two is 0 in the pair (friction_static 0 means friction); - moduli in series
+    as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G; - stiffness by the mean 2 ka kb/(ka + kb) if both
+    give one; otherwise it follows from E*, or is the given one if E* is unknown because a material has no young; -
+    stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu.
+    """
+    __slots__ = ()
+    c_name = 'dem_pair'
+    rows = [
+        ('young_eff', Real, 'Pa, E*'),
+        ('shear_eff', Real, 'Pa, G*'),
+        ('restitution', Real, '> 0 and <= 1: e'),
+        ('friction', Real, 'sliding friction mu, >= 0'),
+        ('friction_static', Real,
+         'mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both materials'
+         ' leave it 0.'),
+        ('rolling_friction', Real, 'mu_r: the moment is at most mu_r R* Fn'),
+        ('stiffness', Real, 'N/m, linear and hysteretic law; 0 means from E* and impact_speed for each pair of radii'),
+        ('stiffness_ratio', Real, 'kt/kn, linear and hysteretic law'),
+        ('tangent_damping', Real, 'factor on the tangential dashpot, >= 0; mixed: 1'),
+        ('normal_damping', Real,
+         'N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from restitution '
+         '(linear) or none (hysteretic)'),
+        ('spinning_friction', Real, 'The next three are for impulses only: 0 when mixed, and must be 0 with springs.'),
+        ('cohesion', Real,
+         'N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of the '
+         'smaller radius.'),
+        ('compliance', Real,
+         'm/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable for '
+         'any value; oscillations that the step does not resolve are damped.'),
+        ('stiffness_adhesion', Real, 'N/m, kad of the hysteretic law; its kun is stiffness/restitution^2'),
+    ]
+
+
+@_struct
+class Coefficients(Struct):
+    """The coefficients of the built-in laws for two spheres."""
+    __slots__ = ()
+    c_name = 'dem_coefficients'
+    rows = [
+        ('r_eff', Real, 'm, kg: effective radius and mass'),
+        ('m_eff', Real, ""),
+        ('kn', Real, 'see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v'),
+        ('cn', Real, ""),
+        ('kt', Real, ""),
+        ('ct', Real, ""),
+        ('kun', Real, 'N/m, hysteretic law; otherwise 0'),
+        ('damping_ratio', Real, 'beta = -ln e / sqrt(pi^2 + ln^2 e)'),
+        ('contact_time', Real, 's, at the impact speed; hysteretic law: [ALK07] eq 2.45'),
+        ('kad', Real, 'kad'),
+    ]
+
+
+def _wrap_dem_inside_fn(function, context, struct):
+
+    def call(centre, radius, user):
+        try:
+            return int(function(centre, radius) or context.raised is not None)
+        except BaseException as error:
+            context.fail(error)
+            return 1
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_int, Vec3, Real, ctypes.c_void_p)(call), InsideFn.c)
+
+
+InsideFn = Function(_wrap_dem_inside_fn, ctypes.c_int, Vec3, Real, ctypes.c_void_p)
+InsideFn.__doc__ = 'Returns nonzero if a body with this bounding radius (m) may have its centre here.'
+
+
+@_struct
+class Region(Struct):
+    """A region for new bodies."""
+    __slots__ = ()
+    c_name = 'dem_region'
+    rows = [
+        ('box', Box,
+         'm, required. Bodies lie wholly inside. If the box spans the domain on a periodic axis, it has no '
+         'faces there and centres may be anywhere.'),
+        ('cylinder', ctypes.c_int,
+         "'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis, elliptic "
+         'if the box is not square. Centres then lie in an ellipse whose half axes are smaller by the radius. '
+         '0 means the whole box.'),
+        ('inside', InsideFn, 'restricts the region further; null means no restriction'),
+        ('user', ctypes.c_void_p, 'passed to inside'),
+    ]
+
+
+@_struct
+class Sizes(Struct):
+    """A size distribution, by radius."""
+    __slots__ = ()
+    c_name = 'dem_sizes'
+    counts = {'count': ('radius', 1)}
+    rows = [
+        ('kind', SizesKind, ''),
+        ('by_count', ctypes.c_int, '1: F is a fraction of the number; 0 means of the mass'),
+        ('min', Real,
+         'm, 1e-15 <= min <= max < 1e15. 0 means the default of the kind. Log-normal: the median times exp(-6 '
+         'spread) and exp(6 spread); normal: 6 deviations from the median, min at least 1e-3 of the median; '
+         'sieve curve: its ends; Weibull and exponential: max where F = 1 - 1e-9. The others are required: min'
+         ' of Weibull and exponential, both of uniform.'),
+        ('max', Real, ""),
+        ('median', Real, 'm, log-normal and normal, > 0'),
+        ('spread', ctypes.c_double, 'log-normal, > 0 and < 10: standard deviation of ln r'),
+        ('scale', Real, 'm, > 0: of Weibull; exponential: the mean, > min'),
+        ('modulus', ctypes.c_double, 'Weibull, > 0.05 and < 1000'),
+        ('count', ctypes.c_int, 'number of sieves, 2 to 32'),
+        ('radius', Real*SIEVES, 'm, half the apertures, > 0, ascending'),
+        ('passing', ctypes.c_double*SIEVES,
+         'Fraction that passes each sieve, ascending, the last 1. F is linear between two sieves; grains that '
+         'pass the first have its radius.'),
+        ('deviation', Real, 'm, normal, > 0: standard deviation'),
+    ]
+
+
+@_struct
+class Bodies(Struct):
+    """The arrays of all bodies. Their order changes when the neighbour list is rebuilt; slots identify the bodies.
+    Pointers are valid until the next step or change.
+    """
+    __slots__ = ()
+    c_name = 'dem_bodies'
+    rows = [
+        ('count', ctypes.c_int, ''),
+        ('positions', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [m], (bounding) radius [m]'),
+        ('velocities', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [m/s], 0'),
+        ('spins', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [rad/s], 0'),
+        ('forces', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [N], 0; gravity is not included'),
+        ('torques', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [N m], 0'),
+        ('masses', View(Real, 'count', const=True), 'count [kg]'),
+        ('slots', View(ctypes.c_uint32, 'count', const=True), 'count: slot of dem_body less 1; see dem_body_id_get'),
+        ('materials', View(ctypes.c_int32, 'count', const=True), 'count: ids of dem_material'),
+        ('orientations', View(Real, 'count', 4, const=True),
+         'count x 4: w, x, y, z, from principal axes to the world; null if none is followed'),
+        ('shapes', View(ctypes.c_int32, 'count', const=True), 'count: ids of dem_shape, 0: sphere; null if all are'),
+        ('real_count', ctypes.c_int, 'numbers per body (desc.body_reals)'),
+        ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; null if there are none'),
+        ('rates', View(Real, 'count', 'real_count', const=True),
+         'count x real_count, per s, of the last step; null likewise'),
+    ]
+
+
+@_struct
+class ClusterDesc(Struct):
+    """A rigid cluster of spheres, in a frame of your choice."""
+    __slots__ = ()
+    c_name = 'dem_cluster_desc'
+    counts = {'count': ('positions', 3)}
+    rows = [
+        ('count', ctypes.c_int, 'required, 1 to 1000: number of spheres'),
+        ('positions', View(Real, 'count', 3, const=True), 'm, required: count x 3'),
+        ('radii', View(Real, const=True), 'm, > 0: one each; null means that all have `radius`'),
+        ('radius', Real, 'm, of all spheres if radii is null'),
+        ('mass', ClusterMass, ''),
+        ('rays', ctypes.c_int,
+         'DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are'
+         ' more than a quarter of the smallest radius apart.'),
+        ('volume', Real, 'The rest is for DEM_CLUSTER_GIVEN.'),
+        ('centre', Vec3, 'm3'),
+        ('inertia', Real*6,
+         'm5, moments of inertia about the centre per density: xx, yy, zz, xy, xz, yz. Off-diagonal ones are '
+         'elements of the tensor: xy is -(integral of x y).'),
+    ]
+
+
+@_struct
+class ShapeInfo(Struct):
+    """Properties of a shape."""
+    __slots__ = ()
+    c_name = 'dem_shape_info'
+    rows = [
+        ('spheres', ctypes.c_int, 'of a cluster; otherwise 0'),
+        ('corners', ctypes.c_int, 'of a polyhedron; otherwise 0'),
+        ('faces', ctypes.c_int, ""),
+        ('volume', Real, 'm3'),
+        ('centre', Vec3, 'm, centre of mass in the frame in which the shape was given'),
+        ('frame', Quat, 'rotates the principal axes into that frame'),
+        ('inertia', Vec3, 'm5, principal moments of inertia per density'),
+        ('semi_axes', Vec3, 'm, of the ellipsoid with the same moments'),
+        ('radius', Real, 'm, of the smallest sphere about the centre that contains it'),
+        ('pieces', ctypes.c_int, 'of a union; otherwise 0'),
+    ]
+
+
+@_struct
+class Ellipsoid(Struct):
+    """An ellipsoid outside any world, for analysis. In m; orientation of any length, 0 means none."""
+    __slots__ = ()
+    c_name = 'dem_ellipsoid'
+    rows = [
+        ('position', Vec3, ''),
+        ('semi_axes', Vec3, ''),
+        ('orientation', Quat, ''),
+    ]
+
+
+@_struct
+class EllipsoidContact(Struct):
+    """The contact of two ellipsoids."""
+    __slots__ = ()
+    c_name = 'dem_ellipsoid_contact'
+    rows = [
+        ('scale', Real, 'W0: scaled by it about their centres, the two touch in one point. < 1 if they overlap.'),
+        ('lambda_', Real, '0 to 1, maximises the function of Perram and Wertheim'),
+        ('point', Vec3, 'm, of that contact; unit vector from a to b'),
+        ('normal', Vec3, ""),
+        ('depth_normal', Real, 'm, overlaps as in dem_overlap; negative if the two are apart, where depth_chord is 0'),
+        ('depth_chord', Real, ""),
+        ('depth_conservative', Real, ""),
+        ('iterations', ctypes.c_int, 'evaluations of that function'),
+    ]
+
+
+@_struct
+class BodyCounts(Struct):
+    """Numbers of bodies. inserted = present + removed + left holds at all times. `left` counts those that left through
+    outflow boundaries and outlets.
+    """
+    __slots__ = ()
+    c_name = 'dem_body_counts'
+    rows = [
+        ('inserted', ctypes.c_uint64, ''),
+        ('present', ctypes.c_uint64, ''),
+        ('removed', ctypes.c_uint64, ''),
+        ('left', ctypes.c_uint64, ''),
+    ]
+
+
+@_struct
+class MotionRow(Struct):
+    """A pose of a wall at a time."""
+    __slots__ = ()
+    c_name = 'dem_motion_row'
+    rows = [
+        ('time', ctypes.c_double, 's, after start; the first is 0, ascending'),
+        ('position', Vec3, 'm, displacement from the pose in which the motion started'),
+        ('rotation', Quat, 'from that pose, about the displaced `point`; 0: not rotated'),
+    ]
+
+
+def _wrap_dem_motion_fn(function, context, struct):
+
+    def call(time, pose, user):
+        try:
+            function(time, pose[0])
+        except BaseException as error:
+            context.fail(error)
+            ctypes.cast(pose, ctypes.POINTER(Real))[0] = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)(call), MotionFn.c)
+
+
+MotionFn = Function(_wrap_dem_motion_fn, None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)
+MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step (for its end and its middle; with impulses also for the end of the next step), from one thread. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
+
+
+@_struct
+class Motion(Struct):
+    """The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is called."""
+    __slots__ = ()
+    c_name = 'dem_motion'
+    counts = {'table_count': ('table', 1)}
+    rows = [
+        ('kind', MotionKind, ''),
+        ('velocity', Vec3, 'm/s, of translating walls; of oscillating ones the direction only'),
+        ('point', Vec3,
+         'm; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0 '
+         'means along z. Rotating walls need an axis.'),
+        ('axis', Vec3, ""),
+        ('speed', Real, 'rad/s, of rotating walls'),
+        ('amplitude', Real, 'm, Hz, rad: of oscillating walls'),
+        ('frequency', Real, ""),
+        ('phase', Real, ""),
+        ('start', ctypes.c_double,
+         's. Until then rotating and translating walls are at rest. A time in the past means now.'),
+        ('function', MotionFn, 'what DEM_MOTION_USER calls'),
+        ('user', ctypes.c_void_p, 'passed to function'),
+        ('ramp', ctypes.c_double,
+         's, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3, u = '
+         '(time - start)/ramp, to its full value. 0 means at once.'),
+        ('table', View(MotionRow, const=True),
+         'The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity and '
+         'spin are continuous (tangents of the parabola through three rows). The wall is at rest before the '
+         'first row and after the last. With table_repeats = 1 the table starts again after its last row '
+         'without stopping; that row should have the pose of the first. From row to row the wall rotates by '
+         'less than pi.'),
+        ('table_count', ctypes.c_int, ''),
+        ('table_repeats', ctypes.c_int, ''),
+    ]
+
+
+@_struct
+class Mesh(Struct):
+    """A triangle mesh: vertex_count x 3 coordinates (m), triangle_count x 3 vertex numbers from 0."""
+    __slots__ = ()
+    c_name = 'dem_mesh'
+    counts = {'vertex_count': ('vertices', 3), 'triangle_count': ('triangles', 3)}
+    rows = [
+        ('vertex_count', ctypes.c_int, ''),
+        ('triangle_count', ctypes.c_int, ''),
+        ('vertices', View(Real, 'vertex_count', 3), ''),
+        ('triangles', View(ctypes.c_int32, 'triangle_count', 3), ''),
+    ]
+
+
+@_struct
+class Profile(Struct):
+    """A profile: vertex_count x 2 coordinates (m), segment_count x 2 vertex numbers from 0."""
+    __slots__ = ()
+    c_name = 'dem_profile'
+    counts = {'vertex_count': ('vertices', 2), 'segment_count': ('segments', 2)}
+    rows = [
+        ('vertex_count', ctypes.c_int, ''),
+        ('segment_count', ctypes.c_int, ''),
+        ('vertices', View(Real, 'vertex_count', 2), ''),
+        ('segments', View(ctypes.c_int32, 'segment_count', 2), ''),
+    ]
+
+
+@_struct
+class SieveDesc(Struct):
+    """A sieve: a plane with rows of holes, infinite or cut out as a disc. The cost per sphere does not depend on the
+    number of holes; that of a polyhedron on a plate grows with the holes below it.
+    """
+    __slots__ = ()
+    c_name = 'dem_sieve_desc'
+    rows = [
+        ('kind', SieveKind, 'required'),
+        ('point', Vec3, 'm, centre of a hole, at half the thickness'),
+        ('normal', Vec3, 'across the sieve; 0 means along z'),
+        ('along', Vec3,
+         'Direction of the rows of holes; 0 means along x, or y if x is near the normal. The same holds for a '
+         'direction within 0.001 rad of the normal.'),
+        ('aperture', Real, 'm, required, > 0: clear width, side or diameter of a hole'),
+        ('bar', Real, 'm, required, > 0: wire diameter, or width between two holes'),
+        ('length', Real, 'm, of slots, >= aperture; 0 means infinite'),
+        ('thickness', Real, 'm, of plates; 0 means a sheet with sharp rims'),
+        ('lift', Real,
+         'm, between the axes of the two layers of wires; 0 means one plane. `bar` puts one layer on the '
+         'other; real wires wind between the two.'),
+        ('staggered', ctypes.c_int, '1 puts round holes in a triangular pattern'),
+        ('radius', Real, 'm, of the disc; 0 means an infinite sieve'),
+        ('model', ctypes.c_int,
+         'Rule of reduced holes. A sphere smaller than the hole falls if its centre is within (1 - clearance) '
+         'b of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or aperture/2'
+         ' (model 2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end.'),
+        ('clearance', Real, 'reduced holes: 0 open, 1 closed; zeta of [ALK07]'),
+    ]
+
+
+@_struct
+class WallLoads(Struct):
+    """The loads of grains on a wall. Torques are about the point of its motion (of a wall without a motion: its own
+    point, or the origin for profiles, meshes and walls of grains).
+    """
+    __slots__ = ()
+    c_name = 'dem_wall_loads'
+    rows = [
+        ('force', Vec3, 'N, of the last step'),
+        ('torque', Vec3, 'N m, of the last step'),
+        ('torque_axial', Real, 'N m, component along the axis of its motion'),
+        ('power', Real, 'W, from the wall to the grains: -(force . v + torque . w)'),
+        ('contacts', ctypes.c_int, 'present number'),
+        ('touched', ctypes.c_int, '1 if a grain has touched the wall since it was added'),
+        ('impulse', ctypes.c_double*3, 'All that follow except `rate` are sums since dem_wall_loads_reset.'),
+        ('torque_impulse', ctypes.c_double, 'N s'),
+        ('work', ctypes.c_double, 'N m s, of torque_axial'),
+        ('time', ctypes.c_double, 'J, from the wall to the grains'),
+        ('rate', ctypes.c_double*BODY_REALS,
+         'per s, last step: what laws gave to its numbers (desc.body_reals), in their units'),
+        ('gained', ctypes.c_double*BODY_REALS, 'its sum over time'),
+    ]
+
+
+@_struct
+class Joint(Id):
+    """The motor of a revolute joint."""
+    __slots__ = ()
+    c_name = 'dem_joint'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    def motor_set(self, motor, speed, torque):
+        """Replaces the motor of a joint from the next step on. The values are those of dem_joint_desc."""
+        self.world._ok(_lib.dem_joint_motor_set(self.world._at, self, _number(motor, Motor), speed, torque))
+
+    @property
+    def state(self):
+        """Writes the state of a joint to state."""
+        state = JointState()
+        self.world._ok(_lib.dem_joint_get(self.world._at, self, state))
+        self.world._with(state)
+        return state
+
+    def remove(self):
+        """Removes a joint."""
+        self.world._ok(_lib.dem_joint_remove(self.world._at, self))
+
+
+@_struct
+class JointDesc(Struct):
+    """A joint. Its point and axis refer to the present poses of the bodies."""
+    __slots__ = ()
+    c_name = 'dem_joint_desc'
+    rows = [
+        ('kind', JointKind, 'required: how the two are joined'),
+        ('motor', Motor, ''),
+        ('a', Body, 'a is required; b null means `wall`, or space'),
+        ('b', Body, ""),
+        ('wall', Wall, 'if b is null: moves with it; null means space, at rest'),
+        ('collide', ctypes.c_int, '1: the two bodies may touch each other'),
+        ('point', Vec3, 'm, where the two are joined'),
+        ('axis', Vec3, 'of a revolute joint, not 0; planar worlds: along z'),
+        ('speed', Real, 'rad/s, of a against b about axis, right-handed; at most 1e12 in size'),
+        ('torque', Real,
+         'N m, on a about axis; at most 1e12 in size. DEM_MOTOR_SPEED: the largest torque, >= 0; 0 means no '
+         'limit.'),
+    ]
+
+
+@_struct
+class JointState(Struct):
+    """The state of a joint."""
+    __slots__ = ()
+    c_name = 'dem_joint_state'
+    rows = [
+        ('force', Vec3, 'N, N m about the joined point: on a (b has the opposite), of the last step, with the motor'),
+        ('torque', Vec3, ""),
+        ('motor_torque', Real, 'N m, on a about axis, of the last step'),
+        ('power', Real, 'W, from the motor to a and b; 0 without a motor'),
+        ('gap', Real, 'in the middle of the coming step: m between the points; sine of the angle of the axes'),
+        ('tilt', Real, ""),
+        ('turned', ctypes.c_double, 'rad, of a against b about axis since the joint was added'),
+        ('work', ctypes.c_double, 'J, of the motor'),
+    ]
+
+
+@_struct
+class Feed(Id):
+    """largest number of size classes"""
+    __slots__ = ()
+    c_name = 'dem_feed'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    @property
+    def state(self):
+        """Writes the state of a feed to state."""
+        state = FeedState()
+        self.world._ok(_lib.dem_feed_get(self.world._at, self, state))
+        self.world._with(state)
+        return state
+
+
+@_struct
+class Outlet(Id):
+    """id counts from 1"""
+    __slots__ = ()
+    c_name = 'dem_outlet'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    @property
+    def state(self):
+        """Writes the counts of an outlet to state."""
+        state = OutletState()
+        self.world._ok(_lib.dem_outlet_get(self.world._at, self, state))
+        self.world._with(state)
+        return state
+
+    def reset(self):
+        """Sets the counts of an outlet to 0. dem_body_counts stays; grains inside have not entered."""
+        self.world._ok(_lib.dem_outlet_reset(self.world._at, self))
+
+
+@_struct
+class FeedDesc(Struct):
+    """A feed adds grains while the world runs, at random free positions in a region (free as in dem_spheres_fill), at a
+    rate or all at once. A grain for which there is no room waits; none is lost. Most grains join the present
+    neighbour list. The list is rebuilt for the first grain of a new radius or material, and for every grain if the
+    world has bodies that are not spheres.
+    """
+    __slots__ = ()
+    c_name = 'dem_feed_desc'
+    counts = {'class_count': ('radius', 1)}
+    rows = [
+        ('material', Material, 'required'),
+        ('class_count', ctypes.c_int, 'required, 1 to 16: size classes'),
+        ('radius', Real*CLASSES, 'm, required'),
+        ('amount', ctypes.c_double*CLASSES,
+         '> 0: relative amounts of the classes, or with `limited` grains (kg with by_mass)'),
+        ('limited', ctypes.c_int, '1: the feed ends after `amount`, drawn without replacement'),
+        ('by_mass', ctypes.c_int, '1: amount and rate are in kg and kg/s instead of grains'),
+        ('rate', ctypes.c_double, '1/s, grains due; 0 means all as room permits, and needs limited'),
+        ('start', ctypes.c_double,
+         's, time of the world. A feed that is added later catches up with what was due since start.'),
+        ('end', ctypes.c_double, 's, 0 or >= start; 0 means no end'),
+        ('box', Box, 'm, required: centres lie inside (dem_region: whole bodies)'),
+        ('round', ctypes.c_int, '1: only the vertical elliptic cylinder inscribed in the box'),
+        ('velocity', Vec3, 'm/s, of new grains'),
+        ('spread', Real, 'm/s, largest random change of each component of velocity'),
+        ('seed', ctypes.c_uint64, 'of random positions, sizes and velocities'),
+        ('inside', InsideFn, 'restricts the box further, as in dem_region'),
+        ('inside_user', ctypes.c_void_p, 'passed to inside'),
+        ('materials', Material*CLASSES,
+         'A mixture: for each class, if not 0, its material; its shape, in random orientations and with the '
+         'volume of a sphere of `radius`; and the distribution of its radius (copied).'),
+        ('shapes', Shape*CLASSES, ''),
+        ('sizes', ctypes.POINTER(Sizes)*CLASSES, ''),
+    ]
+
+
+@_struct
+class FeedState(Struct):
+    """The state of a feed."""
+    __slots__ = ()
+    c_name = 'dem_feed_state'
+    rows = [
+        ('fed', ctypes.c_uint64*CLASSES, 'grains added, per class and in all'),
+        ('total', ctypes.c_uint64, ""),
+        ('mass', ctypes.c_double, 'kg, added'),
+        ('waiting', ctypes.c_uint64, 'grains due but without room; by mass at a rate: 0 or 1'),
+        ('done', ctypes.c_int, '1: no more grains will be added'),
+    ]
+
+
+@_struct
+class OutletDesc(Struct):
+    """An outlet removes the grains, fixed ones included, whose centre is in a region, and counts them; dem_body_counts
+    counts them as left. It checks whenever the neighbour list is rebuilt and every 64 steps: a grain is up to half a
+    skin or 64 steps inside before it is removed, so that many grains that leave one by one cost little. A region
+    thinner than half a skin may miss grains. Bodies that are not spheres count with the radius of their bounding
+    sphere. With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge through a
+    plane is what enters the box behind it.
+    """
+    __slots__ = ()
+    c_name = 'dem_outlet_desc'
+    counts = {'class_count': ('radius', 1)}
+    rows = [
+        ('frame', Wall, 'the region moves with this wall; null means at rest'),
+        ('box', Box, 'm, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)'),
+        ('beyond', Real, "m: only grains this far or farther from the frame's z axis"),
+        ('wanted_min', Real, 'm, radii meant to leave here; max 0 means no limit'),
+        ('wanted_max', Real, ""),
+        ('class_count', ctypes.c_int, 'size classes to count in, 0 to 16'),
+        ('radius', Real*CLASSES, 'm, ascending; a grain counts in the nearest class'),
+        ('material', Material, 'only grains of this material; id 0 means all'),
+        ('keep', ctypes.c_int, '1: grains stay and are only counted; at most 16 such'),
+    ]
+
+
+@_struct
+class OutletState(Struct):
+    """The counts of an outlet: grains that were removed or, with `keep`, that entered."""
+    __slots__ = ()
+    c_name = 'dem_outlet_state'
+    rows = [
+        ('count', ctypes.c_uint64*CLASSES, 'grains, per class and in all'),
+        ('total', ctypes.c_uint64, ""),
+        ('mass', ctypes.c_double*CLASSES, 'kg'),
+        ('total_mass', ctypes.c_double, ""),
+        ('sorted', ctypes.c_uint64, 'grains of wanted radii, and others: [ALK07] s_i and g_i'),
+        ('gangue', ctypes.c_uint64, ""),
+        ('sorted_mass', ctypes.c_double, 'kg'),
+        ('gangue_mass', ctypes.c_double, ""),
+        ('since', ctypes.c_double, 's: when counting began; when the last grain was counted'),
+        ('last', ctypes.c_double, ""),
+        ('back', ctypes.c_uint64*CLASSES,
+         '`keep` only: grains that went back, and grains that are inside now. Grains that were inside when '
+         'counting began have not entered.'),
+        ('held', ctypes.c_uint64*CLASSES, ""),
+        ('back_total', ctypes.c_uint64, ""),
+        ('held_total', ctypes.c_uint64, ""),
+        ('back_mass', ctypes.c_double*CLASSES, 'kg'),
+        ('held_mass', ctypes.c_double*CLASSES, ""),
+        ('back_total_mass', ctypes.c_double, ""),
+        ('held_total_mass', ctypes.c_double, ""),
+    ]
+
+
+@_struct
+class Advice(Struct):
+    """The time step that a scene allows, and what limits it."""
+    __slots__ = ()
+    c_name = 'dem_advice'
+    rows = [
+        ('dt', Real, 's, the proposed step: contact_time/50, or a fifth of the largest stable step if less'),
+        ('dt_max', Real,
+         's, the largest step that a run accepts: contact_time/20 [ALK07] eq 2.22, or the largest stable step '
+         'if less. Stability is that of contacts to come, with their dashpots, friction and rolling '
+         'resistance.'),
+        ('contact_time', Real, 's, duration of the shortest contact'),
+        ('rayleigh', Real,
+         's, the smallest Rayleigh time pi R sqrt(rho/G)/(0.1631 nu + 0.8766) of the smallest grains of each '
+         'material; for comparison only'),
+        ('speed', Real,
+         'm/s, the impact speed assumed: desc.impact_speed; if that is 0, the largest of the speeds of grains,'
+         ' feeds and walls and of a fall through the height of the scene, at least 1e-3'),
+        ('binds', Text(160), 'the contact that limits the step: materials, radii, speed'),
+    ]
+
+
+@_struct
+class Finding(Struct):
+    """One likely mistake in a scene."""
+    __slots__ = ()
+    c_name = 'dem_finding'
+    rows = [
+        ('severity', Severity, ''),
+        ('text', Text(240), 'what is wrong, its value, the likely cause, the remedy'),
+    ]
+
+
+@_struct
+class Counters(Struct):
+    """Counters of a world. Checkpoints store them."""
+    __slots__ = ()
+    c_name = 'dem_counters'
+    rows = [
+        ('steps', ctypes.c_uint64, 'steps taken; rebuilds of the neighbour list'),
+        ('rebuilds', ctypes.c_uint64, ""),
+        ('candidates', ctypes.c_int,
+         'of the last step: candidate pairs of bodies; contacts between bodies; contacts with walls. A contact'
+         ' of polyhedra counts once. With impulses a contact counts if its impulse is not 0.'),
+        ('contacts', ctypes.c_int, ""),
+        ('wall_contacts', ctypes.c_int, ""),
+        ('overlap_max', Real,
+         'largest overlap since the last reset, over the smaller radius (of other shapes: over the smaller '
+         'half width along the normal). A run stops at 1.'),
+        ('speed_max', Real, 'm/s, of the fastest body, at the last step'),
+        ('skin', Real, 'm, in use'),
+        ('dt', Real, 's, in use'),
+        ('search', Search, 'in use'),
+        ('threads', ctypes.c_int, 'OpenMP threads; work groups (see the glossary)'),
+        ('domains', ctypes.c_int, ""),
+        ('sweeps', ctypes.c_int, 'impulses: sweeps of the last step'),
+        ('residual', Real,
+         'impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of the '
+         'last step; compare desc.tolerance'),
+        ('residual_rms', Real, ""),
+        ('unsolved', ctypes.c_uint64, 'impulses: steps whose sweeps did not reach the tolerance'),
+        ('memory', ctypes.c_size_t, 'bytes allocated by the world'),
+    ]
+
+
+@_struct
+class Ledger(Struct):
+    """The account of energy, J, since the world was created; zeros unless desc.ledger is 1. residual = kinetic +
+    rotational + elastic - gravity - walls - force - inserted + removed + normal + slide + tangent + rolling The
+    residual is the error of the time integration; compare it with `throughput`. Potential energy is not stored energy
+    here: `gravity` is the work of gravity. If a user-defined law never fills force->energy, the ledger cannot
+    separate what the law stores from what it dissipates: `unknown` then holds the residual, and `residual` is 0.
+    """
+    __slots__ = ()
+    c_name = 'dem_ledger'
+    rows = [
+        ('kinetic', ctypes.c_double, 'stored now'),
+        ('rotational', ctypes.c_double, ""),
+        ('elastic', ctypes.c_double, ""),
+        ('gravity', ctypes.c_double,
+         'supplied: work of gravity; of moving walls and motors; of force fields; kinetic energy of inserted '
+         'bodies'),
+        ('walls', ctypes.c_double, ""),
+        ('force', ctypes.c_double, ""),
+        ('inserted', ctypes.c_double, ""),
+        ('normal', ctypes.c_double,
+         'dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential dashpots; '
+         'by rolling resistance'),
+        ('slide', ctypes.c_double, ""),
+        ('tangent', ctypes.c_double, ""),
+        ('rolling', ctypes.c_double, ""),
+        ('removed', ctypes.c_double, 'kinetic energy of removed bodies'),
+        ('throughput', ctypes.c_double, 'sum of the magnitudes of what was supplied'),
+        ('residual', ctypes.c_double, ''),
+        ('unknown', ctypes.c_double, '> 0: the user-defined law created energy'),
+    ]
+
+
+@_struct
+class Totals(Struct):
+    """Totals over all bodies that can move."""
+    __slots__ = ()
+    c_name = 'dem_totals'
+    rows = [
+        ('mass', ctypes.c_double, 'kg; J; J'),
+        ('kinetic', ctypes.c_double, ""),
+        ('rotational', ctypes.c_double, ""),
+        ('centre', ctypes.c_double*3,
+         'centre of mass, m; momentum, kg m/s; angular momentum about the origin, kg m2/s'),
+        ('momentum', ctypes.c_double*3, ""),
+        ('angular', ctypes.c_double*3, ""),
+    ]
+
+
+def _wrap_dem_observer_fn(function, context, struct):
+
+    def call(world, user):
+        try:
+            return float(function(context.world(world)))
+        except BaseException as error:
+            context.fail(error)
+            return _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)(call), ObserverFn.c)
+
+
+ObserverFn = Function(_wrap_dem_observer_fn, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)
+ObserverFn.__doc__ = 'Returns one number by which a world is judged, an observable. Averages over many grains or a long time are good observables. Positions are not: once grains collide, they depend on round-off.'
+
+
+@_struct
+class Observable(Struct):
+    """A named observable."""
+    __slots__ = ()
+    c_name = 'dem_observable'
+    rows = [
+        ('name', str, '`unit` or null; both must outlive the dem_trials'),
+        ('unit', str, ""),
+        ('function', ObserverFn, ''),
+        ('user', ctypes.c_void_p, 'passed to `function`; or null'),
+        ('scale', ctypes.c_double, '>= 0, divides deviations; 0: the value of the reference'),
+    ]
+
+
+def _wrap_dem_progress_fn(function, context, struct):
+
+    def call(world, done, seconds_left, user):
+        try:
+            return int(function(context.world(world), done, seconds_left) or context.raised is not None)
+        except BaseException as error:
+            context.fail(error)
+            return 1
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)(call), ProgressFn.c)
+
+
+ProgressFn = Function(_wrap_dem_progress_fn, ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+ProgressFn.__doc__ = 'Receives the progress of a run, about ten times per second of wall time and once at the end. done: fraction, 0 to 1. seconds_left: estimated wall time, s. A non-zero return value stops the run with DEM_ERROR_STOPPED and leaves the state intact; at the end it has no effect.'
+
+
+@_struct
+class TrialsDesc(Struct):
+    """How dem_trials_run works. Begin with DEM_TRIALS_DESC."""
+    __slots__ = ()
+    c_name = 'dem_trials_desc'
+    counts = {'observable_count': ('observables', 1)}
+    rows = [
+        ('duration', ctypes.c_double,
+         's, required, > 0: simulated by each run, at least 64 steps. Observables are averaged over its second'
+         ' half.'),
+        ('budget', ctypes.c_double,
+         's, wall time of all trials, estimated from some steps of the scene; 0 means 60 s. If it is too '
+         'short, the runs simulate less.'),
+        ('tolerance', ctypes.c_double, 'allowed deviation of an observable/its scale; 0 means 0.02'),
+        ('seeds', ctypes.c_int,
+         '0 to 16, not 1: runs per trial, which start from positions that differ by at most 1e-6 of a radius; '
+         '0 means 3'),
+        ('observable_count', ctypes.c_int,
+         'observables to compare; 0 means three. These are height, scaled by its value above the lowest grain;'
+         ' kinetic, scaled by the present energy plus that of a fall of all grains by their radius; contacts.'),
+        ('observables', Observable*OBSERVABLES, ''),
+        ('progress', ProgressFn,
+         'called with the original world after each trial; null means no call. A non-zero return value ends '
+         'dem_trials_run with DEM_ERROR_STOPPED.'),
+        ('user', ctypes.c_void_p, 'passed to `progress`; or null'),
+    ]
+
+
+@_struct
+class Trial(Struct):
+    """The result of one trial."""
+    __slots__ = ()
+    c_name = 'dem_trial'
+    rows = [
+        ('name', str, 'how the trial differs from the scene'),
+        ('step', ctypes.c_double,
+         'factor on dt/contact_time, dt given or chosen. stiffness: factor on all moduli and stiffnesses; '
+         'normal_damping of a pair is multiplied by its root.'),
+        ('stiffness', ctypes.c_double,
+         'step: factor on dt/contact_time, dt given or chosen. stiffness: factor on all moduli and '
+         'stiffnesses; normal_damping of a pair is multiplied by its root.'),
+        ('dt', ctypes.c_double, 's, at the end'),
+        ('done', ctypes.c_int, 'runs that reached their end, 0 to seeds'),
+        ('seconds', ctypes.c_double, 'wall time per simulated second'),
+        ('value', ctypes.c_double*OBSERVABLES, 'mean over runs; standard error'),
+        ('error', ctypes.c_double*OBSERVABLES, ""),
+        ('drift', ctypes.c_double*OBSERVABLES, 'deviation from the reference, over the scale'),
+        ('promise', ctypes.c_double,
+         'every observable is within this of the reference, over its scale: the largest |drift| plus the '
+         'statistical error (95 % for each observable). Infinite if a run did not reach its end.'),
+        ('refusal', Text(200), 'why a run did not reach its end'),
+    ]
+
+
+@_struct
+class Trials(Struct):
+    """The results of dem_trials_run."""
+    __slots__ = ()
+    c_name = 'dem_trials'
+    rows = [
+        ('count', ctypes.c_int, 'trials; index of the best one, 0: the scene as it is'),
+        ('best', ctypes.c_int, ""),
+        ('reference', ctypes.c_int, 'index of the trial with the smallest step'),
+        ('duration', ctypes.c_double, 's simulated by each run; tolerance applied'),
+        ('tolerance', ctypes.c_double, ""),
+        ('seeds', ctypes.c_int, 'runs per trial; observables'),
+        ('observable_count', ctypes.c_int, ""),
+        ('observables', Observable*OBSERVABLES, ''),
+        ('trial', Trial*TRIALS, ''),
+        ('advice', Text(400), 'what to do, and why'),
+    ]
+
+
+@_struct
+class ContactInfo(Struct):
+    """One contact."""
+    __slots__ = ()
+    c_name = 'dem_contact_info'
+    rows = [
+        ('a', Body, 'b is null for a contact with a wall'),
+        ('b', Body, ""),
+        ('wall', ctypes.c_int32, 'dem_wall id; 0: b is a body'),
+        ('point', Vec3, 'm; unit, from a to b'),
+        ('normal', Vec3, ""),
+        ('overlap', Real, 'm; < 0: a gap within the range of the law'),
+        ('force', Vec3, 'N, on a'),
+    ]
+
+
+@_struct
+class FieldDesc(Struct):
+    """A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress over a window of
+    time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller than grains need a long window; or
+    it is spread about its centre by coarse graining (width). Begin with DEM_FIELD_DESC.
+    """
+    __slots__ = ()
+    c_name = 'dem_field_desc'
+    rows = [
+        ('box', Box, 'm, required: what the cells divide'),
+        ('cells', ctypes.c_int*3, 'required, >= 1: along each axis, at most 2^28 in all'),
+        ('start', ctypes.c_double, 's, window of time; end 0 means no end'),
+        ('end', ctypes.c_double, ""),
+        ('interval', ctypes.c_double, 's, between samples; 0 means every 100 steps'),
+        ('material', Material, 'only grains of this material; id 0 means all grains'),
+        ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means any'),
+        ('radius_max', Real, ""),
+        ('stress', ctypes.c_int, '1: also flux, stress and contacts; visits every contact'),
+        ('width', Real,
+         "m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 "
+         'width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first '
+         'factor), evaluated at the centres of cells. Keep cells no longer than width.'),
+    ]
+
+
+@_struct
+class FieldData(Struct):
+    """The sums of a field over its samples. Cell (i, j, k) has index i + cells[0]*(j + cells[1]*k). The pointers are
+    valid until the next step.
+    """
+    __slots__ = ()
+    c_name = 'dem_field_data'
+    rows = [
+        ('cells', ctypes.c_int*3, ''),
+        ('box', Box, 'm'),
+        ('samples', ctypes.c_uint64, 'number of samples'),
+        ('solid', View(ctypes.c_double, 'cells', const=True),
+         'cells: sum of the volume of grains over that of the cell'),
+        ('mass', View(ctypes.c_double, 'cells', const=True), 'cells: sum of masses, kg'),
+        ('momentum', View(ctypes.c_double, 'cells', 3, const=True),
+         'cells x 3: sum of momenta, kg m/s; velocity = momentum/mass'),
+        ('grains', View(ctypes.c_double, 'cells', const=True), 'cells: sum of the number of grains'),
+        ('flux', View(ctypes.c_double, 'cells', 6, const=True),
+         'null unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over'
+         ' the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of force x '
+         'branch over the volume of the cell. A contact of two grains acts along the line between their '
+         'centres, and each grain accounts for its half; one with a wall acts from the centre to the contact. '
+         'contacts: cells: sum of the number of contacts of the grains'),
+        ('stress', View(ctypes.c_double, 'cells', 6, const=True), ""),
+        ('contacts', View(ctypes.c_double, 'cells', const=True), ""),
+    ]
+
+
+@_struct
+class FieldCell(Struct):
+    """Means of one cell over the samples; 0 where no grain was."""
+    __slots__ = ()
+    c_name = 'dem_field_cell'
+    rows = [
+        ('grains', ctypes.c_double, 'number of grains in the cell'),
+        ('solid', ctypes.c_double, 'solid fraction; bulk density, kg/m3'),
+        ('density', ctypes.c_double, ""),
+        ('velocity', ctypes.c_double*3, 'm/s, weighted by mass'),
+        ('temperature', ctypes.c_double, 'm2/s2, per axis, about that velocity; 0 unless desc.stress is 1'),
+        ('stress', ctypes.c_double*6,
+         'Pa, xx yy zz xy xz yz, pressure positive: of contacts and of motion about that velocity; 0 unless '
+         'desc.stress is 1'),
+        ('coordination', ctypes.c_double, 'contacts per grain, with walls; 0 unless desc.stress is 1'),
+    ]
+
+
+@_struct
+class Repose(Struct):
+    """The slope of a free surface, against gravity."""
+    __slots__ = ()
+    c_name = 'dem_repose'
+    rows = [
+        ('angle', ctypes.c_double, 'rad, of the straight line fitted to the surface'),
+        ('error', ctypes.c_double, 'rad, its standard error'),
+        ('places', ctypes.c_int, 'points of the fit: strips that are a mean diameter wide'),
+    ]
+
+
+@_struct
+class MeshHealth(Struct):
+    """Defects of a mesh, as counted on reading. They never stop a run."""
+    __slots__ = ()
+    c_name = 'dem_mesh_health'
+    rows = [
+        ('open_edges', ctypes.c_int, 'edges with one triangle'),
+        ('crowded_edges', ctypes.c_int, 'edges with more than two triangles'),
+        ('duplicates', ctypes.c_int, 'triangles with the same three corners as an earlier one'),
+        ('shells', ctypes.c_int, 'pieces that are connected by edges with two triangles'),
+        ('flipped', ctypes.c_int, 'triangles that face another way than most of their shell'),
+        ('twisted_edges', ctypes.c_int, 'edges of shells that have one side only, like a Moebius strip'),
+        ('slivers', ctypes.c_int, 'triangles: height below 1e-3 of the longest side, or no area'),
+        ('merged_vertices', ctypes.c_int, 'vertices merged on reading, because they were equal (STL)'),
+        ('split_faces', ctypes.c_int, 'faces of more than three corners, cut into triangles (OBJ)'),
+        ('bent_faces', ctypes.c_int, 'of these: a corner is off their plane by > 1e-3 of their size'),
+        ('crossed_faces', ctypes.c_int, 'of these: an edge crosses another, or they have no area'),
+        ('box', Box, 'm, bounds of the mesh'),
+        ('hint', Text(200), 'a likely mistake of units, or ""'),
+    ]
+
+
+@_struct
+class SpheresFit(Struct):
+    """The mass properties of a closed mesh, and how well spheres fit it."""
+    __slots__ = ()
+    c_name = 'dem_spheres_fit'
+    rows = [
+        ('volume', Real, 'm3, of the mesh, exact'),
+        ('centre', Vec3, 'm, centre of mass of the mesh, exact'),
+        ('inertia', Real*6, 'm5, of the mesh, exact, as in dem_cluster_desc'),
+        ('volume_error', Real, 'volume of the union of spheres over that of the mesh, less 1'),
+        ('inertia_error', Real, 'the same of the moment that deviates most; computed on the grid'),
+        ('surface_error', Real, 'm, root mean square distance of the mesh from the union'),
+        ('wrong', Real, 'volume in only one of the two, over that of the mesh'),
+    ]
+
+
+@_struct
+class WallPart(Struct):
+    """A named part of a file that becomes a wall."""
+    __slots__ = ()
+    c_name = 'dem_wall_part'
+    rows = [
+        ('name', str, 'as for dem_mesh_part_read'),
+        ('material', Material, ''),
+        ('motion', Motion, 'DEM_MOTION: the wall stays where it is'),
+    ]
+
+
+@_struct
+class Grains(Struct):
+    """Spheres, as read from a file. Arrays for which the file has no data are null."""
+    __slots__ = ()
+    c_name = 'dem_grains'
+    counts = {'count': ('positions', 3)}
+    rows = [
+        ('count', ctypes.c_int, ''),
+        ('positions', View(Real, 'count', 3), 'm, count x 3; m, count'),
+        ('radii', View(Real, 'count'), ""),
+        ('velocities', View(Real, 'count', 3), 'm/s, count x 3; rad/s, count x 3'),
+        ('spins', View(Real, 'count', 3), ""),
+        ('materials', View(ctypes.c_int32, 'count'), 'count: numbers of the file, 1: the first material added'),
+        ('lines_left', ctypes.c_int, 'dumps and XYZ: lines of later frames, which are not read'),
+        ('ignored', Text(240), 'names of columns without use, or ""'),
+    ]
+
+
+def _wrap_dem_replay_desc_number_fn(function, context, struct):
+
+    def call(world, body, user):
+        try:
+            return float(function(context.world(world), body))
+        except BaseException as error:
+            context.fail(error)
+            return _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, Body, ctypes.c_void_p)(call), ReplayDescNumberFn.c)
+
+
+ReplayDescNumberFn = Function(_wrap_dem_replay_desc_number_fn, ctypes.c_double, ctypes.c_void_p, Body, ctypes.c_void_p)
+ReplayDescNumberFn.__doc__ = 'returns the number of a body, for every frame; null means one of desc.body_reals'
+
+
+@_struct
+class ReplayDesc(Struct):
+    """How a replay is recorded. Begin with DEM_REPLAY_DESC."""
+    __slots__ = ()
+    c_name = 'dem_replay_desc'
+    rows = [
+        ('title', str, 'copied; null means the name of the file'),
+        ('number', str,
+         'Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the values '
+         'of number_fn. Null means the first name, or "number". Copied, at most 63 characters.'),
+        ('number_fn', ReplayDescNumberFn,
+         'returns the number of a body, for every frame; null means one of desc.body_reals'),
+        ('user', ctypes.c_void_p, 'passed to number_fn; or null'),
+        ('resolution', Real, 'm, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame'),
+        ('interval', ctypes.c_double,
+         's, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest '
+         'to multiples of the interval. A frame that cannot be written ends the replay, not the run: '
+         'dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.'),
+    ]
+
+
+@_struct
+class Output(Id):
+    """A scheduled output."""
+    __slots__ = ()
+    c_name = 'dem_output'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
+
+    def remove(self):
+        """Ends an output; files that it has written stay. Its id is never used again. To change an output, remove it and
+        add another. The function of an output may remove any output, also its own.
+        """
+        self.world._ok(_lib.dem_output_remove(self.world._at, self))
+
+
+def _wrap_dem_output_desc_values(function, context, struct):
+    values_type = ctypes.POINTER(ctypes.c_double*(len(struct.columns.split())))
+
+    def call(world, values, user):
+        try:
+            function(context.world(world), values[0])
+        except BaseException as error:
+            context.fail(error)
+            values[0][0] = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, values_type, ctypes.c_void_p)(call), OutputDescValues.c)
+
+
+OutputDescValues = Function(_wrap_dem_output_desc_values, None, ctypes.c_void_p, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p)
+OutputDescValues.__doc__ = ''
+
+
+def _wrap_dem_output_desc_function(function, context, struct):
+
+    def call(world, number, user):
+        try:
+            return int(function(context.world(world), number) or context.raised is not None)
+        except BaseException as error:
+            context.fail(error)
+            return 1
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)(call), OutputDescFunction.c)
+
+
+OutputDescFunction = Function(_wrap_dem_output_desc_function, ctypes.c_int, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)
+OutputDescFunction.__doc__ = 'CALL: may change the world, but not step it. A return value other than 0 stops the run (DEM_ERROR_STOPPED).'
+
+
+@_struct
+class OutputDesc(Struct):
+    """How an output works. Begin with DEM_OUTPUT_DESC."""
+    __slots__ = ()
+    c_name = 'dem_output_desc'
+    rows = [
+        ('kind', OutputKind, ''),
+        ('path', str,
+         'Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at '
+         '`start`. Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL:'
+         ' or null.'),
+        ('interval', ctypes.c_double, 's, required, 1e-12 to 1e15'),
+        ('start', ctypes.c_double, 's, times of the first and the last; end 0 means no last'),
+        ('end', ctypes.c_double, ""),
+        ('wall', Wall,
+         'CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write; or the'
+         ' values that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, '
+         'copied); or, if all three are zero, steps, bodies, contacts, kinetic and rotational energy (J) and '
+         'overlap_max'),
+        ('columns', str, ''),
+        ('values', OutputDescValues, ''),
+        ('function', OutputDescFunction,
+         'CALL: may change the world, but not step it. A return value other than 0 stops the run '
+         '(DEM_ERROR_STOPPED).'),
+        ('user', ctypes.c_void_p, 'passed to `values` and `function`; or null'),
+    ]
+
+
+def _wrap_dem_transport_exchange_fn(function, context, struct):
+
+    def call(to_lower, to_lower_size, from_lower, from_lower_size, to_upper, to_upper_size, from_upper, from_upper_size, user):
+        try:
+            return int(function(to_lower, to_lower_size, from_lower, from_lower_size, to_upper, to_upper_size, from_upper, from_upper_size) or context.raised is not None)
+        except BaseException as error:
+            context.fail(error)
+            return 1
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)(call), TransportExchangeFn.c)
+
+
+TransportExchangeFn = Function(_wrap_dem_transport_exchange_fn, ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+TransportExchangeFn.__doc__ = 'Sends to the process below and to the one above, and receives from both. Sizes are in bytes, known on both ends, and may be 0. Both neighbours may be the same process: what it sends up then arrives from below.'
+
+
+def _wrap_dem_transport_reduce_fn(function, context, struct):
+
+    def call(values, count, sum, user):
+        try:
+            return int(function(ctypes.cast(values, ctypes.POINTER(ctypes.c_double*count))[0], count, sum) or context.raised is not None)
+        except BaseException as error:
+            context.fail(error)
+            return 1
+    return ctypes.cast(ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_double), ctypes.c_int, ctypes.c_int, ctypes.c_void_p)(call), TransportReduceFn.c)
+
+
+TransportReduceFn = Function(_wrap_dem_transport_reduce_fn, ctypes.c_int, ctypes.POINTER(ctypes.c_double), ctypes.c_int, ctypes.c_int, ctypes.c_void_p)
+TransportReduceFn.__doc__ = 'Replaces each of `count` values by its sum (sum = 1) or maximum (sum = 0) over processes.'
+
+
+@_struct
+class Transport(Struct):
+    """How slabs in different processes communicate; all zero for a single process. Processes form a ring in the order of
+    their slabs (the last is below the first), and make the same calls in the same order. Both functions return 0, or
+    another value to stop the run; slabs cannot be used after that. docs/parallel.md shows both for MPI.
+    """
+    __slots__ = ()
+    c_name = 'dem_transport'
+    rows = [
+        ('exchange_fn', TransportExchangeFn,
+         'Sends to the process below and to the one above, and receives from both. Sizes are in bytes, known '
+         'on both ends, and may be 0. Both neighbours may be the same process: what it sends up then arrives '
+         'from below.'),
+        ('reduce_fn', TransportReduceFn,
+         'Replaces each of `count` values by its sum (sum = 1) or maximum (sum = 0) over processes.'),
+        ('user', ctypes.c_void_p, 'passed to both; or null'),
+    ]
+
+
+@_struct
+class SlabsDesc(Struct):
+    """How a scene is divided. Begin with DEM_SLABS_DESC."""
+    __slots__ = ()
+    c_name = 'dem_slabs_desc'
+    rows = [
+        ('axis', ctypes.c_int, '0, 1, 2: borders are planes x, y, z = const'),
+        ('count', ctypes.c_int,
+         'required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same '
+         'bits'),
+        ('first', ctypes.c_int, 'this process holds the slabs first to first + local - 1; local 0 means all'),
+        ('local', ctypes.c_int, ""),
+        ('transport', Transport, 'required if another process holds slabs'),
+        ('balance', Real,
+         'borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means 1.1. '
+         'Below 0 borders do not move.'),
+        ('balance_interval', ctypes.c_int, 'rebuilds between two checks of the balance; 0 means 8'),
+    ]
+
+
+@_struct
+class Slab(Struct):
+    """One slab."""
+    __slots__ = ()
+    c_name = 'dem_slab'
+    rows = [
+        ('grains', ctypes.c_int, 'its own grains; copies of grains of the lower neighbour'),
+        ('ghosts', ctypes.c_int, ""),
+        ('lo', ctypes.c_double, 'm, its borders; -1e300, 1e300: none on that side'),
+        ('hi', ctypes.c_double, ""),
+        ('work', ctypes.c_double, 'candidates + 4 per body, at the last rebuild'),
+        ('seconds', ctypes.c_double, 'wall time spent on it so far'),
+        ('bytes', ctypes.c_uint64, 'sent to its neighbours so far, as if in other processes'),
+    ]
+
+
+@_struct
+class SlabsCounters(Struct):
+    """Counters of slabs."""
+    __slots__ = ()
+    c_name = 'dem_slabs_counters'
+    rows = [
+        ('time', ctypes.c_double, 's, simulated'),
+        ('steps', ctypes.c_uint64, ''),
+        ('rebuilds', ctypes.c_uint64, ''),
+        ('border_moves', ctypes.c_uint64, ''),
+        ('migrated', ctypes.c_uint64, 'grains that changed slabs, in this process'),
+        ('skin', Real, 'm, s, in use'),
+        ('dt', Real, ""),
+    ]
+
+
+@_struct
+class Effect(Struct):
+    """An effect of the scene, such as friction, walls or the ledger."""
+    __slots__ = ()
+    c_name = 'dem_effect'
+    rows = [
+        ('name', str, ''),
+        ('state', EffectState, ''),
+        ('share', ctypes.c_double,
+         'fraction of the time of a step that is saved without the effect; its standard error'),
+        ('error', ctypes.c_double, ""),
+        ('measured', ctypes.c_int, '1: share was measured; 0: no budget, or it cannot be'),
+        ('missing', ctypes.c_int,
+         'number of pairs of materials, walls and the like that have the effect and that nothing has touched; '
+         '0: everything in the scene has happened'),
+        ('text', Text(200), 'what acts; why nothing acts; what has not happened'),
+    ]
+
+
+def _wrap_dem_contact_fn(function, context, struct):
+    memory_type = ctypes.POINTER(Real*context.memory)
+
+    def call(contact, memory, user):
+        try:
+            function(contact[0], memory[0])
+        except BaseException as error:
+            context.fail(error)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(ContactInfo), memory_type, ctypes.c_void_p)(call), ContactFn.c)
+
+
+ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ctypes.POINTER(Real), ctypes.c_void_p)
+ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0 to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the next step on.'
+
+
+structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, FieldDesc, FieldData, FieldCell, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
+
+
+class World(Handle):
+    """A world: everything that one simulation consists of."""
+
+    def __init__(self, *, gravity=None, domain=None, boundary=(), planar=0, thickness=0, normal_law=0,
+            tangent_law=0, rolling_law=0, tension=0, friction_load=0, slider=0, convention=0, law=None, law_user=None,
+            law_memory=0, law_memory_names=None, law_vectors=0, law_stiffness=0, law_range=0, law_range_radii=0,
+            law_who=0, law_rate=None, body_reals=None, body_reals_fn=None, body_reals_user=None, force=None,
+            body_force=None, force_user=None, integrator=0, dt=0, allow_large_dt=0, impact_speed=0, response=0,
+            cone=0, solver=0, sweeps=0, tolerance=0, cold_start=0, unsolved_stops=0, search=0, skin=0, rotation=0,
+            ellipsoid_overlap=0, cluster_contacts=0, orientations=0, ledger=0, threads=0, allocator=None):
+        """Creates an empty world. ArgumentError says which value is out of range.
+
+        gravity: m/s2
+        domain: m. Required on axes whose boundary is periodic or outflow, not needed on open axes. A periodic axis
+            must be at least as long as four of the largest radii, two skins and two ranges of the law.
+        boundary: of the faces on the axes x, y and z
+        planar: 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0 and
+            rotate about z only. The z component of gravity is ignored.
+        thickness: m, of discs and polygons along z; 0 means 1 m
+        law: replaces the normal, tangential and rolling law; null means the laws above
+        law_user: passed to law as c->user
+        law_memory: reals of contact history per contact, 0 to 16
+        law_memory_names: Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means
+            memory0, memory1 and so on.
+        law_vectors: leading triples of them that are vectors, 0 to law_memory/3
+        law_stiffness: N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the built-in
+            law.
+        law_range: m, >= 0. law is also called for two bodies that do not touch while their gap is below law_range +
+            law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with radius 0, an ellipsoid with its
+            bounding sphere. Built-in laws that it calls need overlap > 0. 0 means no range. With both 0, law is
+            called in contact only, at no extra cost.
+        law_range_radii: >= 0; see law_range; 0 means no such range
+        law_who: 1 fills in c->who: ids, radii, masses, contact point, time
+        law_rate: Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who and
+            body_reals. It is called before the first step and at least once in eight steps. A given dt above the
+            stable limit is an error; a chosen dt is at most half of it. Null means that these rates do not limit dt.
+        body_reals: Names of numbers that every body and wall carries, such as "temperature charge": at most 8 words
+            of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With law_who, law reads
+            them and returns their rates (per s). Null means no numbers.
+        body_reals_fn: Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers
+            of walls stay as set; dem_wall_loads sums what they would gain.
+        body_reals_user: passed to body_reals_fn
+        force: force on a body; null means none
+        body_force: force and torque on a body; null means none
+        force_user: passed to both
+        dt: s, the time step; 0 means chosen from the scene, see dem_step_advice_get
+        allow_large_dt: 1 allows dt above t_c/20, to show what happens then
+        impact_speed: m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness from
+            Young's modulus depend on it. 0 means the largest speed expected from grains, walls and height of fall for
+            the time step, and 1 m/s for the stiffness.
+        response: DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order (docs/impulses.md)
+            for either value of integrator that it accepts, 0 and DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is
+            then the gap below which contacts are solved; if it is 0, three times the distance that the fastest body
+            moves in a step, or less where a short period leaves no room, but always between 0.1 and 1 of the largest
+            radius. The fields that follow apply to impulses only.
+        sweeps: most sweeps over all contacts in a step; 0 means 200
+        tolerance: m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when the
+            root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is below
+            30 times that.
+        cold_start: 1 begins with zero impulses, not those of the last step
+        unsolved_stops: 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
+            With 0 it continues; dem_counters_get, the report and dem_progress_print count such steps.
+        skin: m, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is rebuilt in every
+            step.
+        orientations: 1 follows the orientations of spheres too
+        ledger: 1 accounts for energy, see dem_ledger_get
+        threads: Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are used
+            while that is faster; results are the same.
+        allocator: memory functions; 0 means malloc and free
+        """
+        self._create(WorldDesc(gravity=gravity, domain=domain, boundary=boundary, planar=planar,
+            thickness=thickness, normal_law=normal_law, tangent_law=tangent_law, rolling_law=rolling_law,
+            tension=tension, friction_load=friction_load, slider=slider, convention=convention, law=law,
+            law_user=law_user, law_memory=law_memory, law_memory_names=law_memory_names,
+            law_vectors=law_vectors, law_stiffness=law_stiffness, law_range=law_range,
+            law_range_radii=law_range_radii, law_who=law_who, law_rate=law_rate, body_reals=body_reals,
+            body_reals_fn=body_reals_fn, body_reals_user=body_reals_user, force=force,
+            body_force=body_force, force_user=force_user, integrator=integrator, dt=dt,
+            allow_large_dt=allow_large_dt, impact_speed=impact_speed, response=response, cone=cone,
+            solver=solver, sweeps=sweeps, tolerance=tolerance, cold_start=cold_start,
+            unsolved_stops=unsolved_stops, search=search, skin=skin, rotation=rotation,
+            ellipsoid_overlap=ellipsoid_overlap, cluster_contacts=cluster_contacts,
+            orientations=orientations, ledger=ledger, threads=threads, allocator=allocator))
+
+    def _create(self, desc):
+        self._context = _Context(self)
+        self._open = weakref.WeakSet()
+        functions = {path[0] for path in desc._functions}
+        if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
+            desc.threads = 1                        # Python runs one function at a time
+        if "force" in functions:                    # ctypes has no functions that return a struct
+            force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
+
+            def both(body, id, time, sum, torque):
+                sum.x, sum.y, sum.z = force(body.position, body.velocity, body.radius, body.mass, time)
+                if whole:
+                    whole(body, id, time, sum, torque)
+            desc._functions["body_force",] = both
+        self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
+        bound = self._bound(desc, "desc")
+        self._at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
+        if not self._at:
+            raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
+        self._memory = _Memory(self._at, self._context)
+
+    @classmethod
+    def _borrow(cls, pointer, context):
+        """A world that belongs to the library: a copy that a function of yours sees."""
+        world = cls.__new__(cls)
+        world._at, world._context, world._memory, world._open = pointer, context, None, weakref.WeakSet()
+        return world
+
+    def _text(self):
+        return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
+
+    def _free(self, at):
+        for replay in list(self._open):
+            replay.close()
+        self._memory = None                         # views of arrays may hold it longer
+
+    @property
+    def error(self):
+        """Returns the error message of the last call on this world that failed; "" if none failed. For a null world the
+        message says that it is null. After a failed call that builds the scene (one whose name ends in _add, _fill or
+        _pack, dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others that run
+        the scene return an error that quotes its message, because a scene without its floor would run and return
+        DEM_OK. They work again after a call of this function or after the failed call has been repeated with success.
+        A program that handles such an error and continues calls this function first.
+        """
+        return (_lib.dem_world_error_get(self._at) or b'').decode()
+
+    @property
+    def desc(self):
+        """Returns the desc in force: zeros are replaced by the values that were chosen."""
+        found = _lib.dem_world_desc_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+    def material(self, *, density=0, young=0, poisson=0, restitution=0, friction=0, friction_static=0,
+            rolling_friction=0, stiffness=0, stiffness_ratio=0, stiffness_unloading=0, stiffness_adhesion=0):
+        """Adds a material. A world holds at most 64.
+
+        density: kg/m3, required, > 0
+        young: Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness
+        poisson: >= 0 and < 0.5: nu; 0 is a physical value
+        restitution: Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic law
+            takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact without
+            adhesion.
+        friction: sliding friction mu, >= 0
+        friction_static: Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
+            Fn until the contact slides, then mu Fn until the slip stops or reverses.
+        rolling_friction: mu_r, >= 0: the moment is at most mu_r R* Fn
+        stiffness: N/m, kn of the linear and hysteretic law; 0 means from young and impact_speed [DIM04]
+        stiffness_ratio: kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu)
+        stiffness_unloading: N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness.
+        stiffness_adhesion: N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion
+        """
+        desc = MaterialDesc(density=density, young=young, poisson=poisson, restitution=restitution, friction=friction,
+            friction_static=friction_static, rolling_friction=rolling_friction, stiffness=stiffness,
+            stiffness_ratio=stiffness_ratio, stiffness_unloading=stiffness_unloading,
+            stiffness_adhesion=stiffness_adhesion)
+        return self._id(_lib.dem_material_add(self._at, desc))
+
+    def pair(self, a, b):
+        """Writes the contact properties of two materials to pair."""
+        pair = Pair()
+        self._ok(_lib.dem_pair_get(self._at, a, b, pair))
+        self._with(pair)
+        return pair
+
+    def pair_set(self, a, b, *, young_eff=None, shear_eff=None, restitution=None, friction=None,
+            friction_static=None, rolling_friction=None, stiffness=None, stiffness_ratio=None, tangent_damping=None,
+            normal_damping=None, spinning_friction=None, cohesion=None, compliance=None, stiffness_adhesion=None):
+        """Replaces the contact properties of two materials, in both orders. Start from dem_pair_get.
+
+        Fields that are not given stay as they are.
+        young_eff: Pa, E*
+        shear_eff: Pa, G*
+        restitution: > 0 and <= 1: e
+        friction: sliding friction mu, >= 0
+        friction_static: mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
+            materials leave it 0.
+        rolling_friction: mu_r: the moment is at most mu_r R* Fn
+        stiffness: N/m, linear and hysteretic law; 0 means from E* and impact_speed for each pair of radii
+        stiffness_ratio: kt/kn, linear and hysteretic law
+        tangent_damping: factor on the tangential dashpot, >= 0; mixed: 1
+        normal_damping: N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
+            restitution (linear) or none (hysteretic)
+        spinning_friction: The next three are for impulses only: 0 when mixed, and must be 0 with springs.
+        cohesion: N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of the
+            smaller radius.
+        compliance: m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable for
+            any value; oscillations that the step does not resolve are damped.
+        stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2
+        """
+        pair = self.pair(a, b)
+        pair._put({name: value for name, value in (('young_eff', young_eff), ('shear_eff', shear_eff), ('restitution',
+            restitution), ('friction', friction), ('friction_static', friction_static), ('rolling_friction',
+            rolling_friction), ('stiffness', stiffness), ('stiffness_ratio', stiffness_ratio), ('tangent_damping',
+            tangent_damping), ('normal_damping', normal_damping), ('spinning_friction', spinning_friction),
+            ('cohesion', cohesion), ('compliance', compliance), ('stiffness_adhesion', stiffness_adhesion),) if value
+            is not None})
+        self._ok(_lib.dem_pair_set(self._at, a, b, pair))
+
+    def coefficients(self, a, b, radius_a, radius_b):
+        """Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of material b.
+        The impact speed is that of the desc, or 1 m/s if it is 0 there.
+        """
+        out = Coefficients()
+        self._ok(_lib.dem_coefficients_get(self._at, a, b, radius_a, radius_b, out))
+        self._with(out)
+        return out
+
+    def pairs_print(self, out=None):
+        """Prints the contact properties of all pairs of materials, one line per pair."""
+        return self._print(_lib.dem_pairs_print, out, self._at)
+
+    def sphere(self, material, radius, position):
+        """Adds a sphere, or in a planar world a disc, at rest. radius > 0 and position in m."""
+        return self._id(_lib.dem_sphere_add(self._at, material, radius, position))
+
+    def spheres(self, material, positions, velocities=None, radii=None, radius=0):
+        """Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or null for rest. radii:
+        count, m, or null if all have `radius`.
+        """
+        positions = _array(positions, Real)
+        count = _count(positions, 3, 'positions')
+        velocities = _array(velocities, Real, 3*count, 'velocities')
+        radii = _array(radii, Real, count, 'radii')
+        self._ok(_lib.dem_spheres_add(self._at, material, count, positions, velocities, radii, radius))
+
+    def spheres_fill(self, material, radius, region, count, seed):
+        """Adds up to count spheres of one radius (m) at random positions in a region, one after the other. The same seed
+        gives the same positions. A position is free if the sphere there overlaps no body (a body that is not a sphere
+        counts with its bounding sphere), also across periodic faces, and touches no wall. No position is free behind
+        a plane, on the wrong side of a cylinder or in a sieve; the inside of a closed mesh counts like its outside.
+        Returns how many were added. If these are fewer than count, 2000 tries for one sphere failed;
+        dem_world_error_get says so, but the world can run.
+        """
+        return self._filled(_lib.dem_spheres_fill(self._at, material, radius, self._bound(Region.make(region)), count,
+            seed), count, 'dem_spheres_fill')
+
+    def sizes_finer(self, sizes, radius):
+        """Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error."""
+        sizes = self._bound(Sizes.make(sizes))
+        return self._number(_lib.dem_sizes_finer_get(self._at, sizes, radius))
+
+    def sizes_draw(self, sizes, count, seed):
+        """Draws count radii (m) at random or, with seed 0, at equal steps of the distribution of numbers, ascending:
+        then a few hundred radii represent it within 1 %. Mass is proportional to r^3, in planar worlds to r^2.
+        """
+        sizes = self._bound(Sizes.make(sizes))
+        radii = (Real*max(count, 1))()
+        self._ok(_lib.dem_sizes_draw(self._at, sizes, count, seed, ctypes.cast(radii, ctypes.POINTER(Real))))
+        return radii
+
+    def sizes_classes(self, sizes, class_count):
+        """Divides a distribution into at most class_count (1 to 16) classes, whose bounds have equal ratios, for the
+        fields radius and amount of dem_feed_desc (with by_mass = 1 - by_count). radius (m) is that of a grain of the
+        mean mass of its class; the amounts sum to 1. Returns the number of classes that are not empty; 0 on error.
+        """
+        sizes = self._bound(Sizes.make(sizes))
+        radius = (Real*max(class_count, 1))()
+        amount = (ctypes.c_double*max(class_count, 1))()
+        found = _lib.dem_sizes_classes_get(self._at, sizes, class_count, ctypes.cast(radius, ctypes.POINTER(Real)),
+            ctypes.cast(amount, ctypes.POINTER(ctypes.c_double)))
+        self._filled(found, 0, 'dem_sizes_classes_get')
+        return list(radius[:found]), list(amount[:found])
+
+    def sizes_fill(self, material, sizes, region, count, seed):
+        """Adds up to count spheres, as dem_spheres_fill does, with radii as dem_sizes_draw gives them for its seed 0,
+        largest first, while there is most room. seed is for the positions.
+        """
+        sizes = self._bound(Sizes.make(sizes))
+        return self._filled(_lib.dem_sizes_fill(self._at, material, sizes, self._bound(Region.make(region)), count,
+            seed), count, 'dem_sizes_fill')
+
+    def spheres_pack(self, material, radius, padding, region, count=0):
+        """Adds spheres on a hexagonal close packing, in layers along z, with a gap of padding (m, >= 0) between
+        surfaces: at most count (0: all that fit), at those sites that lie in the region and are free as in
+        dem_spheres_fill. In a planar world the packing is a triangular lattice. Spheres at opposite periodic faces do
+        not overlap, but the lattice does not continue across the faces. Returns how many were added.
+        """
+        return self._filled(_lib.dem_spheres_pack(self._at, material, radius, padding,
+            self._bound(Region.make(region)), count), count, 'dem_spheres_pack')
+
+    @property
+    def temperature(self):
+        """Returns the granular temperature, m2/s2: the mass-weighted mean square deviation of velocities from their
+        mean, per axis (two in a planar world), over all bodies that can move. Returns 0 for fewer than two bodies.
+        """
+        found = _lib.dem_temperature_get(self._at)
+        self._ok(0)
+        return found
+
+    def temperature_set(self, temperature, seed=0):
+        """Sets the granular temperature (m2/s2, >= 0). seed 0 scales the deviations from the mean velocity; any other
+        seed draws velocities from Maxwell's distribution, with equal mean energy for all masses. The mean velocity
+        and the spins stay. It is an error if fewer than two bodies can move, or if seed is 0 and the present
+        temperature is 0.
+        """
+        self._ok(_lib.dem_temperature_set(self._at, temperature, seed))
+
+    @property
+    def bodies(self):
+        """Returns the arrays of all bodies; zeros for a null world."""
+        found = _lib.dem_bodies_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+    def body_id(self, index):
+        """Returns the id of the body at this index of the arrays; zeros if there is none."""
+        found = _lib.dem_body_id_get(self._at, index)
+        self._ok(0)
+        found._of = self
+        return found if found else None
+
+    def bodies_reals_set(self, reals):
+        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
+        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
+        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """
+        reals = _array(reals, Real, self._context.reals*self.bodies.count, 'reals')
+        self._ok(_lib.dem_bodies_reals_set(self._at, reals))
+
+    def shape_ellipsoid(self, semi_axes):
+        """Adds an ellipsoid with these semi-axes (m, > 0) along x, y and z of its frame. The longest may be at most 1000
+        times the shortest. Not in planar worlds.
+        """
+        return self._id(_lib.dem_shape_ellipsoid_add(self._at, semi_axes))
+
+    def shape_cluster(self, *, count=0, positions=None, radii=None, radius=0, mass=0, rays=0, volume=0,
+            centre=None, inertia=()):
+        """Adds a cluster and computes its principal axes. Not in planar worlds.
+
+        count: required, 1 to 1000: number of spheres
+        positions: m, required: count x 3
+        radii: m, > 0: one each; null means that all have `radius`
+        radius: m, of all spheres if radii is null
+        rays: DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are
+            more than a quarter of the smallest radius apart.
+        volume: The rest is for DEM_CLUSTER_GIVEN.
+        centre: m3
+        inertia: m5, moments of inertia about the centre per density: xx, yy, zz, xy, xz, yz. Off-diagonal ones are
+            elements of the tensor: xy is -(integral of x y).
+        """
+        desc = ClusterDesc(count=count, positions=positions, radii=radii, radius=radius, mass=mass, rays=rays,
+            volume=volume, centre=centre, inertia=inertia)
+        return self._id(_lib.dem_shape_cluster_add(self._at, desc))
+
+    def shape_polyhedron(self, points):
+        """Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of your choice.
+        Points inside the hull, or within 1e-10 of its size (single precision: 1e-6) of a face, are dropped. If more
+        than DEM_POLYHEDRON_FACES faces remain, this tolerance is raised up to 1e-5. It is an error if still more
+        remain, or if the points lie in a plane. Not in planar worlds. Two polyhedra repel each other by a pressure
+        field in the volume they share ([ELA19], >>polyhedra), a polyhedron and a sphere or ellipsoid at the nearest
+        point. dem_contacts_get reports a contact of two polyhedra, or of one with a wall, as four points over which
+        its force is spread; counters count it once. With impulses it has up to four points, each with its own gap
+        (>>gaps); counters count the points with a repulsive force.
+        """
+        points = _array(points, Real)
+        count = _count(points, 3, 'points')
+        return self._id(_lib.dem_shape_polyhedron_add(self._at, count, points))
+
+    def shape_mesh(self, mesh, dent=0):
+        """Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if the mesh lies
+        deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to round-off). The mesh must bound
+        a body, as for dem_mesh_spheres; for an open mesh pass its vertices to dem_shape_polyhedron_add. Not in planar
+        worlds.
+        """
+        mesh = self._bound(Mesh.make(mesh))
+        return self._id(_lib.dem_shape_mesh_add(self._at, mesh, dent))
+
+    def shape_union(self, shapes, positions=None, orientations=None):
+        """Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame of your
+        choice. Each piece is a shape of this world, with a position (count x 3, m) and an orientation (count x 4;
+        null means none is rotated). Mass, moments and contact forces are the sums over the pieces: overlapping pieces
+        count twice. Clusters and unions cannot be pieces.
+        """
+        shapes = _array(shapes, Shape)
+        count = _count(shapes, 1, 'shapes')
+        positions = _array(positions, Real, 3*count, 'positions')
+        orientations = _array(orientations, Real, 4*count, 'orientations')
+        return self._id(_lib.dem_shape_union_add(self._at, count, shapes, positions, orientations))
+
+    def shape_polygon(self, points):
+        """Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m, 3 to 98). A
+        concave polygon becomes the union of convex pieces, which are shapes too. The mass is density x area x
+        desc.thickness. For contacts the polygon is a prism of thickness 4/3 sqrt(area/pi), which gives it the volume
+        of the sphere with the same area of cross-section. It is an error if sides cross.
+        """
+        points = _array(points, Real)
+        count = _count(points, 2, 'points')
+        return self._id(_lib.dem_shape_polygon_add(self._at, count, points))
+
+    def body(self, material, shape, position, orientation=(1, 0, 0, 0)):
+        """Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by orientation (any length
+        but 0) from the frame in which the shape was given. It is an error if a wall has no contact with this shape:
+        DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind) have none with ellipsoids and polyhedra.
+        """
+        return self._id(_lib.dem_body_add(self._at, material, shape, position, orientation))
+
+    def bodies_add(self, material, shape, positions, orientations=None, velocities=None, spins=None,
+            scales=None):
+        """Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null: orientations
+        (count x 4: w, x, y, z; null: not rotated), velocities and spins (count x 3: m/s and rad/s in the world's
+        frame; null: at rest), scales (count, > 0: factor on all lengths of the shape; null: 1).
+        """
+        positions = _array(positions, Real)
+        count = _count(positions, 3, 'positions')
+        orientations = _array(orientations, Real, 4*count, 'orientations')
+        velocities = _array(velocities, Real, 3*count, 'velocities')
+        spins = _array(spins, Real, 3*count, 'spins')
+        scales = _array(scales, Real, count, 'scales')
+        self._ok(_lib.dem_bodies_add(self._at, material, shape, count, positions, orientations, velocities, spins,
+            scales))
+
+    def bodies_fill(self, material, shape, region, count, seed):
+        """Adds up to count bodies of a shape in random orientations, as dem_spheres_fill does. Bounding spheres do not
+        overlap, so that every body is free to rotate.
+        """
+        return self._filled(_lib.dem_bodies_fill(self._at, material, shape, self._bound(Region.make(region)), count,
+            seed), count, 'dem_bodies_fill')
+
+    @property
+    def body_counts(self):
+        """Returns the numbers of bodies."""
+        found = _lib.dem_body_counts_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+    def wall_plane(self, material, point, normal):
+        """Adds a plane through point (m). Grains are on the side to which normal points."""
+        return self._id(_lib.dem_wall_plane_add(self._at, material, point, normal))
+
+    def wall_cylinder(self, material, point, axis, radius, inside):
+        """Adds an infinite cylinder of radius (m) about an axis through point (m). Grains are inside if inside = 1, and
+        outside if inside = 0.
+        """
+        return self._id(_lib.dem_wall_cylinder_add(self._at, material, point, axis, radius, inside))
+
+    def wall_revolved(self, material, point, axis, radii, heights):
+        """Adds a surface of revolution about an axis through point (m): straight pieces between count (2 to DEM_RINGS)
+        rings of these radii (m, >= 0) at these heights (m, along the axis from point). It can be a finite cylinder, a
+        cone, a disc with a hole, a tube with a funnel or a drum with its ends. Both sides repel. In an inner corner a
+        grain touches both pieces; at an outer corner and at a rim it touches the ring. A grain too wide for a narrow
+        part touches one side of it only. Ellipsoids have no contact with it.
+        """
+        radii = _array(radii, Real)
+        count = _count(radii, 1, 'radii')
+        heights = _array(heights, Real, count, 'heights')
+        return self._id(_lib.dem_wall_revolved_add(self._at, material, point, axis, count, radii, heights))
+
+    def wall_cone(self, material, from_, to, radius_from, radius_to):
+        """Adds one piece of a surface of revolution: an open cone between two points (m) with these radii (m, >= 0, not
+        both 0). Equal radii make a finite cylinder.
+        """
+        return self._id(_lib.dem_wall_cone_add(self._at, material, from_, to, radius_from, radius_to))
+
+    def wall_profile(self, material, profile, rule=0):
+        """Adds a profile: segments in the x-y plane, extruded along z without end. Both sides repel."""
+        profile = self._bound(Profile.make(profile))
+        return self._id(_lib.dem_wall_profile_add(self._at, material, profile, _number(rule, EdgeRule)))
+
+    def wall_mesh(self, material, mesh):
+        """Adds a triangle mesh. Both sides repel. Meshes that do not move relative to each other act as one surface,
+        however it is divided; so do profiles (>>surfaces).
+        """
+        mesh = self._bound(Mesh.make(mesh))
+        return self._id(_lib.dem_wall_mesh_add(self._at, material, mesh))
+
+    def wall_grains(self, material, positions, radius, share):
+        """Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are multiplied
+        by share (0 < share <= 1), because overlapping spheres represent one surface.
+        """
+        positions = _array(positions, Real)
+        count = _count(positions, 3, 'positions')
+        return self._id(_lib.dem_wall_grains_add(self._at, material, count, positions, radius, share))
+
+    def wall_sieve(self, material, *, kind=0, point=None, normal=None, along=None, aperture=0, bar=0,
+            length=0, thickness=0, lift=0, staggered=0, radius=0, model=0, clearance=0):
+        """Adds a sieve.
+
+        kind: required
+        point: m, centre of a hole, at half the thickness
+        normal: across the sieve; 0 means along z
+        along: Direction of the rows of holes; 0 means along x, or y if x is near the normal. The same holds for a
+            direction within 0.001 rad of the normal.
+        aperture: m, required, > 0: clear width, side or diameter of a hole
+        bar: m, required, > 0: wire diameter, or width between two holes
+        length: m, of slots, >= aperture; 0 means infinite
+        thickness: m, of plates; 0 means a sheet with sharp rims
+        lift: m, between the axes of the two layers of wires; 0 means one plane. `bar` puts one layer on the other;
+            real wires wind between the two.
+        staggered: 1 puts round holes in a triangular pattern
+        radius: m, of the disc; 0 means an infinite sieve
+        model: Rule of reduced holes. A sphere smaller than the hole falls if its centre is within (1 - clearance) b
+            of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or aperture/2 (model
+            2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end.
+        clearance: reduced holes: 0 open, 1 closed; zeta of [ALK07]
+        """
+        desc = SieveDesc(kind=kind, point=point, normal=normal, along=along, aperture=aperture, bar=bar,
+            length=length, thickness=thickness, lift=lift, staggered=staggered, radius=radius, model=model,
+            clearance=clearance)
+        return self._id(_lib.dem_wall_sieve_add(self._at, material, desc))
+
+    def sieve_blinded(self, sieve, speed=0):
+        """Returns how many grains, clusters included, blind a sieve. Such a grain is stuck in a hole: it touches the
+        sieve on opposite sides, and the wedge between the two contacts is so narrow that friction holds the grain.
+        Grains faster than speed (m/s, relative to the sieve; 0 means any) do not count. Reduced holes never blind.
+        Returns -1 on error, also while there is no list of contacts (see dem_contacts_get).
+        """
+        return self._number(_lib.dem_sieve_blinded_get(self._at, sieve, speed))
+
+    def joint(self, *, kind=0, motor=0, a=None, b=None, wall=None, collide=0, point=None, axis=None, speed=0,
+            torque=0):
+        """Adds a joint. It is an error if the response is DEM_RESPONSE_SPRINGS, if neither of the two can move, or if a
+        sphere is joined without desc.orientations. A joint ends when one of its bodies or its wall is removed or
+        leaves; its id is then invalid and is never used again. While both bodies are fixed, force, torque and power
+        are 0; the joint acts again when one is released. Checkpoints contain joints.
+
+        kind: required: how the two are joined
+        a: a is required; b null means `wall`, or space
+        wall: if b is null: moves with it; null means space, at rest
+        collide: 1: the two bodies may touch each other
+        point: m, where the two are joined
+        axis: of a revolute joint, not 0; planar worlds: along z
+        speed: rad/s, of a against b about axis, right-handed; at most 1e12 in size
+        torque: N m, on a about axis; at most 1e12 in size. DEM_MOTOR_SPEED: the largest torque, >= 0; 0 means no
+            limit.
+        """
+        desc = JointDesc(kind=kind, motor=motor, a=a, b=b, wall=wall, collide=collide, point=point, axis=axis,
+            speed=speed, torque=torque)
+        return self._id(_lib.dem_joint_add(self._at, desc))
+
+    def feed(self, *, material=None, class_count=0, radius=(), amount=(), limited=0, by_mass=0, rate=0,
+            start=0, end=0, box=None, round=0, velocity=None, spread=0, seed=0, inside=None, inside_user=None,
+            materials=None, shapes=None, sizes=None):
+        """Adds a feed.
+
+        material: required
+        class_count: required, 1 to 16: size classes
+        radius: m, required
+        amount: > 0: relative amounts of the classes, or with `limited` grains (kg with by_mass)
+        limited: 1: the feed ends after `amount`, drawn without replacement
+        by_mass: 1: amount and rate are in kg and kg/s instead of grains
+        rate: 1/s, grains due; 0 means all as room permits, and needs limited
+        start: s, time of the world. A feed that is added later catches up with what was due since start.
+        end: s, 0 or >= start; 0 means no end
+        box: m, required: centres lie inside (dem_region: whole bodies)
+        round: 1: only the vertical elliptic cylinder inscribed in the box
+        velocity: m/s, of new grains
+        spread: m/s, largest random change of each component of velocity
+        seed: of random positions, sizes and velocities
+        inside: restricts the box further, as in dem_region
+        inside_user: passed to inside
+        materials: A mixture: for each class, if not 0, its material; its shape, in random orientations and with the
+            volume of a sphere of `radius`; and the distribution of its radius (copied).
+        """
+        desc = FeedDesc(material=material, class_count=class_count, radius=radius, amount=amount, limited=limited,
+            by_mass=by_mass, rate=rate, start=start, end=end, box=box, round=round, velocity=velocity, spread=spread,
+            seed=seed, inside=inside, inside_user=inside_user, materials=materials, shapes=shapes, sizes=sizes)
+        desc = self._bound(desc)
+        return self._id(_lib.dem_feed_add(self._at, desc))
+
+    def outlet(self, *, frame=None, box=None, beyond=0, wanted_min=0, wanted_max=0, class_count=0, radius=(),
+            material=None, keep=0):
+        """Adds an outlet. The wall that is its frame cannot be removed.
+
+        frame: the region moves with this wall; null means at rest
+        box: m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)
+        beyond: m: only grains this far or farther from the frame's z axis
+        wanted_min: m, radii meant to leave here; max 0 means no limit
+        class_count: size classes to count in, 0 to 16
+        radius: m, ascending; a grain counts in the nearest class
+        material: only grains of this material; id 0 means all
+        keep: 1: grains stay and are only counted; at most 16 such
+        """
+        desc = OutletDesc(frame=frame, box=box, beyond=beyond, wanted_min=wanted_min, wanted_max=wanted_max,
+            class_count=class_count, radius=radius, material=material, keep=keep)
+        return self._id(_lib.dem_outlet_add(self._at, desc))
+
+    @property
+    def step_advice(self):
+        """Computes the time step that the scene allows as it is now, feeds included. It considers contacts to come.
+        Contacts that are already compressed are examined when a run begins, and at least every 1000 steps later
+        (every eight with desc.law_rate). If the step is too large for them, a given desc.dt makes dem_world_step
+        return DEM_ERROR_TIME_STEP, and a chosen step is made smaller. An error if no grain can move, or with
+        DEM_RESPONSE_IMPULSES, where contacts have no duration.
+        """
+        advice = Advice()
+        self._ok(_lib.dem_step_advice_get(self._at, advice))
+        self._with(advice)
+        return advice
+
+    def check(self):
+        """Looks for likely mistakes before a scene runs, and returns how many it found (0 if the call fails). Writes at
+        most `capacity` findings, the most severe first; `findings` or null. Nothing moves; the neighbour list is
+        rebuilt if it is out of date. It reports - grains that overlap each other or a wall by more than 1 % of their
+        radius; - grains inside a closed mesh, profile or surface of revolution while others are outside, also grains
+        that feeds will insert. A container that holds all grains is not reported. A mesh is closed if each edge has
+        two triangles; walls that move together count as one mesh; - overlaps above 5 % of a radius to be expected
+        from speed or weight, with the modulus that would keep them below 1 %; - values that suggest units other than
+        m, kg/m3 and Pa; - positions so far from the origin that their last digits do not resolve overlaps; - scenes
+        in which nothing moves, or grains fall for ever; - grains outside an outflow boundary, walls that no grain can
+        reach, materials without use; - a time step that is too large, or 20 times smaller than necessary.
+        """
+        capacity = 64
+        findings = (Finding*max(capacity, 1))()
+        count = self._number(_lib.dem_world_check(self._at, ctypes.cast(findings, ctypes.POINTER(Finding)), capacity))
+        return list(findings[:min(count, len(findings))])
+
+    def check_print(self, out=None):
+        """Prints the first 16 findings of dem_world_check, one per line (nothing if there are none), and returns how
+        many it found.
+        """
+        return self._print(_lib.dem_world_check_print, out, self._at)
+
+    def step(self, steps):
+        """Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error message names that
+        step; the steps before it are kept. The first step is not taken while the error message of a call that builds
+        the scene is unread (dem_world_error_get). Errors: DEM_ERROR_TIME_STEP the step is too large for the contacts,
+        or a body or wall would move by more than the smallest radius (a body under impulses: by more than this and
+        more than half the range below which contacts are solved) DEM_ERROR_UNSTABLE a position, velocity or force is
+        not finite, or two bodies overlap by the smaller radius DEM_ERROR_STOPPED an output stopped the run; or
+        desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance DEM_ERROR_MEMORY The bodies may
+        have moved already; the step then counts as taken. The next call completes it first, here or in a world that
+        has read a checkpoint written meanwhile. The bits are those of a run without the interruption.
+        """
+        self._ok(self._run(_lib.dem_world_step, self._at, steps) if self._context.kept else
+            _lib.dem_world_step(self._at, steps))
+
+    def run(self, seconds, progress=None):
+        """Advances the world by `seconds` of simulated time (>= 0), to the nearest step. Consecutive calls add up:
+        twenty of 0.05 s end within half a step of 1 s, because each counts from where the previous one should have
+        ended (unless other steps were taken in between). progress: or null. Errors as for dem_world_step.
+        """
+        progress = self._callback(ProgressFn, progress or _go_on)
+        self._ok(self._run(_lib.dem_world_run, self._at, seconds, progress, None))
+
+    def run_to(self, time, progress=None):
+        """Advances the world to a time of its clock, s, not before the present one. Otherwise as dem_world_run. A
+        program that has read a checkpoint can thus run to the same end.
+        """
+        progress = self._callback(ProgressFn, progress or _go_on)
+        self._ok(self._run(_lib.dem_world_run_to, self._at, time, progress, None))
+
+    def settle(self, seconds, speed=0, progress=None):
+        """Advances the world until its bodies are at rest, for at most `seconds` of simulated time (> 0). At rest: at
+        three checks in a row the root mean square speed, weighted by mass, is below `speed`, and no body is faster
+        than 10 times that. Spins do not count, because nothing brakes a sphere that spins on a point. Checks are at
+        most sqrt(R/g) apart, the time of a fall by half the mean radius R (without gravity: the time in which `speed`
+        covers R/2). All feeds, also those that begin later, must have inserted all their grains first. speed: m/s, >=
+        0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null. Errors as for dem_world_step; also
+        DEM_ERROR_ARGUMENT for a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the
+        message gives the speeds, or the feed that is not done, and the state is intact.
+        """
+        progress = self._callback(ProgressFn, progress or _go_on)
+        self._ok(self._run(_lib.dem_world_settle, self._at, seconds, speed, progress, None))
+
+    def gravity_set(self, gravity):
+        """Sets gravity, m/s2 (components up to 1e15), from now on: for a mill seen from its shell, or a table that is
+        tilted. Any number of calls between two steps is allowed. A planar world ignores z. dem_world_desc_get returns
+        it, checkpoints store it, and slabs take it over when they are created.
+        """
+        self._ok(_lib.dem_world_gravity_set(self._at, gravity))
+
+    def dt_set(self, dt):
+        """Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with desc.dt; an error with
+        DEM_RESPONSE_IMPULSES. Contact history stays. Checkpoints store the step. If it is too large, the next
+        dem_world_step returns DEM_ERROR_TIME_STEP.
+        """
+        self._ok(_lib.dem_world_dt_set(self._at, dt))
+
+    @property
+    def time(self):
+        """Returns the simulated time, s."""
+        found = _lib.dem_world_time_get(self._at)
+        self._ok(0)
+        return found
+
+    @property
+    def steps(self):
+        """Returns the number of steps taken."""
+        found = _lib.dem_world_steps_get(self._at)
+        self._ok(0)
+        return found
+
+    @property
+    def hash(self):
+        """Returns a 64-bit digest of the state: time, positions, orientations, velocities, spins, walls, joints, feeds,
+        outlets and contact history. Equal runs have equal digests.
+        """
+        found = _lib.dem_world_hash_get(self._at)
+        self._ok(0)
+        return found
+
+    @property
+    def counters(self):
+        """Returns the counters."""
+        found = _lib.dem_counters_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+    def overlap_max_reset(self):
+        """Sets the counter overlap_max to 0, for instance after a scene has been built."""
+        _lib.dem_overlap_max_reset(self._at)
+        self._ok(0)
+
+    @property
+    def ledger(self):
+        """Returns the ledger."""
+        found = _lib.dem_ledger_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+    @property
+    def totals(self):
+        """Computes the totals in one pass over the bodies."""
+        found = _lib.dem_totals_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+    def observer_height(self):
+        """Returns the height of the centre of mass above the origin, m: against gravity, or along z if there is none.
+        user: not used, or null, as in the next three.
+        """
+        found = _lib.dem_observer_height(self._at, None)
+        self._ok(0)
+        return found
+
+    def observer_kinetic(self):
+        """Returns the kinetic energy of all bodies that can move, rotation included, J."""
+        found = _lib.dem_observer_kinetic(self._at, None)
+        self._ok(0)
+        return found
+
+    def observer_contacts(self):
+        """Returns the mean number of contacts per body, walls included. A contact of two bodies counts for both."""
+        found = _lib.dem_observer_contacts(self._at, None)
+        self._ok(0)
+        return found
+
+    def observer_walls(self):
+        """Returns the sum over all walls of the magnitude of the force on each, N."""
+        found = _lib.dem_observer_walls(self._at, None)
+        self._ok(0)
+        return found
+
+    def trials_run(self, *, duration=0, budget=0, tolerance=0, seeds=0, observable_count=0, observables=None,
+            progress=None, user=None):
+        """Runs the scene on copies with other choices, compares observables and wall time, and advises which choice to
+        take. The world itself does not change. The trials are: the scene as it is; time steps twice, half and a
+        quarter as long; grains 10 times softer and 4 times stiffer, with the same number of steps per contact;
+        another normal law; another friction law. Trials that do not fit the scene are left out. The best trial is the
+        cheapest whose `promise` is within the tolerance; a change must save a tenth of the time. If none is, the best
+        is the reference. User-defined functions (laws, fields, motions, regions of feeds) are called for the copies,
+        too, and may see the same simulated time again. Errors: no bodies; DEM_RESPONSE_IMPULSES; a budget too short
+        for 64 steps per run; a scene that does not run. A trial that does not reach its end is not an error.
+
+        duration: s, required, > 0: simulated by each run, at least 64 steps. Observables are averaged over its second
+            half.
+        budget: s, wall time of all trials, estimated from some steps of the scene; 0 means 60 s. If it is too short,
+            the runs simulate less.
+        tolerance: allowed deviation of an observable/its scale; 0 means 0.02
+        seeds: 0 to 16, not 1: runs per trial, which start from positions that differ by at most 1e-6 of a radius; 0
+            means 3
+        observable_count: observables to compare; 0 means three. These are height, scaled by its value above the
+            lowest grain; kinetic, scaled by the present energy plus that of a fall of all grains by their radius;
+            contacts.
+        progress: called with the original world after each trial; null means no call. A non-zero return value ends
+            dem_trials_run with DEM_ERROR_STOPPED.
+        user: passed to `progress`; or null
+        """
+        trials = Trials()
+        desc = TrialsDesc(duration=duration, budget=budget, tolerance=tolerance, seeds=seeds,
+            observable_count=observable_count, observables=observables, progress=progress, user=user)
+        desc = self._bound(desc)
+        self._ok(self._run(_lib.dem_trials_run, self._at, desc, trials))
+        return trials
+
+    @property
+    def contacts(self):
+        """Writes the contacts of the present state, those with walls included, at most `capacity` of them, and returns
+        their number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one with a
+        wall, is written as up to four (dem_shape_polyhedron_add). Returns -1 if bodies or walls have changed since
+        the last step; then call dem_candidates_rebuild first.
+        """
+        capacity = self._number(_lib.dem_contacts_get(self._at, None, 0))
+        out = (ContactInfo*max(capacity, 1))()
+        count = self._number(_lib.dem_contacts_get(self._at, ctypes.cast(out, ctypes.POINTER(ContactInfo)), capacity))
+        array = (out._type_*count).from_buffer(out)
+        return array
+
+    def contacts_each(self, fn=None):
+        """Calls `fn` for every contact, those with walls included, and returns their number. With a law that has a range
+        these are all pairs within the range. Computes forces first if the scene has changed, and returns -1 where a
+        step would fail. user: or null.
+        """
+        fn = self._callback(ContactFn, fn)
+        return self._number(_lib.dem_contacts_each(self._at, fn, None))
+
+    def bonds_make(self, gap, make=None):
+        """Calls `make` for every pair of bodies (no walls) with a gap below `gap`, and returns their number, so that
+        `make` can write a bond into the contact history of a user-defined law. gap: m, >= 0, at most the range of the
+        law for the two smallest grains: law_range + law_range_radii times the sum of their radii. user: or null.
+        Errors as for dem_contacts_each.
+        """
+        make = self._callback(ContactFn, make)
+        return self._number(_lib.dem_bonds_make(self._at, gap, make, None))
+
+    @property
+    def candidates(self):
+        """Writes the candidate pairs of the neighbour list (capacity x 2: dem_body.slot of a and b), at most `capacity`
+        of them, and returns their number. `out` or null. Returns -1 if bodies or walls have changed since the last
+        step.
+        """
+        capacity = self._number(_lib.dem_candidates_get(self._at, None, 0))
+        out = ((ctypes.c_uint32*2)*max(capacity, 1))()
+        count = self._number(_lib.dem_candidates_get(self._at, ctypes.cast(out, ctypes.POINTER(ctypes.c_uint32)),
+            capacity))
+        array = (out._type_*count).from_buffer(out)
+        return array
+
+    def candidates_rebuild(self):
+        """Rebuilds the neighbour list now, for tests and analysis. A run does so automatically."""
+        self._ok(_lib.dem_candidates_rebuild(self._at))
+
+    def field(self, *, box=None, cells=(), start=0, end=0, interval=0, material=None, radius_min=0,
+            radius_max=0, stress=0, width=0):
+        """Adds a field, and returns its id. Steps sample it from then on.
+
+        box: m, required: what the cells divide
+        cells: required, >= 1: along each axis, at most 2^28 in all
+        start: s, window of time; end 0 means no end
+        interval: s, between samples; 0 means every 100 steps
+        material: only grains of this material; id 0 means all grains
+        radius_min: m, only of these (bounding) radii; max 0 means any
+        stress: 1: also flux, stress and contacts; visits every contact
+        width: m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 width
+            [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first factor),
+            evaluated at the centres of cells. Keep cells no longer than width.
+        """
+        desc = FieldDesc(box=box, cells=cells, start=start, end=end, interval=interval, material=material,
+            radius_min=radius_min, radius_max=radius_max, stress=stress, width=width)
+        return self._id(_lib.dem_field_add(self._at, desc))
+
+    def repose_heap(self, box=None):
+        """Measures the angle of repose of a heap. It considers grains in `box` (m; both corners 0: all) that can move
+        and are connected by gaps below half their mean radius, and takes the heaviest of several heaps. Grains that
+        ran away, fell off a table or fly therefore do not count. The surface consists of the highest grains by
+        distance from the vertical through the centre of mass. The line is fitted from 20 to 80 % of its height,
+        without the rounded top and the toe; in a planar world to the mean of both flanks. An error without gravity or
+        with fewer than four points.
+        """
+        repose = Repose()
+        self._ok(_lib.dem_repose_heap_get(self._at, box, repose))
+        self._with(repose)
+        return repose
+
+    def repose_drum(self, box, axis):
+        """Measures the dynamic angle of repose in a drum that rotates about `axis` (right-handed, of any length,
+        horizontal): positive if the surface rises in the direction in which the bottom of the drum moves. The line is
+        fitted to the middle half of the surface. It suits charges that roll or cascade; grains in flight belong to no
+        surface. `box` and errors as above.
+        """
+        repose = Repose()
+        self._ok(_lib.dem_repose_drum_get(self._at, box, axis, repose))
+        self._with(repose)
+        return repose
+
+    def mesh_read(self, path):
+        """Reads the triangles of a file and, if `health` is not null, counts its defects. The contents identify the
+        format: STL (text or binary), OBJ, or the text format of [MIL] (counts, vertices, corners counted from 1). OBJ
+        faces of more than three corners become triangles that cover them once and keep their winding; a face that is
+        not convex may have 10,000 corners. Error messages name file, line and reason. Free the mesh with
+        dem_mesh_free.
+        """
+        mesh = Mesh()
+        health = MeshHealth()
+        self._ok(_lib.dem_mesh_read(self._at, os.fsencode(path), mesh, health))
+        mesh = self._taken(mesh, _lib.dem_mesh_free)
+        self._with(health)
+        return mesh, health
+
+    def mesh_parse(self, name, data):
+        """Reads triangles from memory, `size` bytes at `data`, as dem_mesh_read does. name: for error messages; or null."""
+        data = data.encode() if isinstance(data, str) else bytes(data)
+        mesh = Mesh()
+        health = MeshHealth()
+        self._ok(_lib.dem_mesh_parse(self._at, name.encode(), data, len(data), mesh, health))
+        mesh = self._taken(mesh, _lib.dem_mesh_free)
+        self._with(health)
+        return mesh, health
+
+    def mesh_part_read(self, path, part):
+        """Reads one named part of a file, such as the shell, the ends or the lifters of a drum. In an STL text file this
+        is the solid of that name (the whole rest of its line). In an OBJ file these are the faces whose object (`o
+        NAME`) or one of whose groups (`g NAME NAME`) has that name; a `g` line replaces the groups before it and
+        leaves the object. If the file has no such part, the error message lists its parts. health: or null.
+        """
+        mesh = Mesh()
+        health = MeshHealth()
+        self._ok(_lib.dem_mesh_part_read(self._at, os.fsencode(path), part.encode(), mesh, health))
+        mesh = self._taken(mesh, _lib.dem_mesh_free)
+        self._with(health)
+        return mesh, health
+
+    def mesh_place(self, mesh, scale, rotation, to):
+        """Scales a mesh about its origin (scale > 0; 1e-3: from mm to m), rotates it about the origin, and moves it by
+        `to` (m, components up to 1e15). A rotation of zeros is none; any other length is normalised. Call it before
+        the mesh becomes a wall or a shape.
+        """
+        self._ok(_lib.dem_mesh_place(self._at, mesh, scale, rotation, to))
+
+    def mesh_spheres(self, mesh, count):
+        """Approximates a closed mesh by `count` spheres (1 to 1000), for a cluster: writes positions (count x 3) and
+        radii (count), in m, in the frame of the mesh. On a grid with 40 points along the longest side, each sphere is
+        placed where it leaves the fewest points wrong; then all are placed again, one at a time, while that helps.
+        fit: or null. A cluster of few spheres has the mass and moments of the body if it gets volume, centre and
+        inertia of `fit` (DEM_CLUSTER_GIVEN). Inconsistent winding, a mesh that is inside out, and duplicate triangles
+        do no harm. A shell inside another that faces the other way is a cavity. Errors: an open mesh, edges whose
+        triangles do not pair, a surface with one side only, shells that cross or that face the same way as the shell
+        around them, a mesh too thin for any sphere.
+        """
+        mesh = self._bound(Mesh.make(mesh))
+        positions = ((Real*3)*max(count, 1))()
+        radii = (Real*max(count, 1))()
+        fit = SpheresFit()
+        self._ok(_lib.dem_mesh_spheres(self._at, mesh, count, ctypes.cast(positions, ctypes.POINTER(Real)),
+            ctypes.cast(radii, ctypes.POINTER(Real)), fit))
+        self._with(fit)
+        return positions, radii, fit
+
+    def wall_parts(self, path, scale, parts):
+        """Adds a machine from CAD: `count` (>= 1) named parts of a file (STL text, OBJ), each as a wall with its own
+        material and motion. scale: m per unit of length of the file, > 0; 0: 1. walls: receives `count` ids; or null.
+        If one part fails, no wall is added.
+        """
+        parts = _array([self._bound(WallPart.make(item)) for item in parts], WallPart)
+        count = _count(parts, 1, 'parts')
+        walls = (Wall*max(count, 1))()
+        self._ok(_lib.dem_wall_parts_add(self._at, os.fsencode(path), scale, count, parts, ctypes.cast(walls,
+            ctypes.POINTER(Wall))))
+        walls = [item.of(self) for item in walls]
+        return walls
+
+    def profile_read(self, path):
+        """Reads the segments of a profile in the text format of [MIL] in 2-D: the counts of vertices and segments, x y
+        per vertex, two corners counted from 1 per segment. Free with dem_profile_free.
+        """
+        profile = Profile()
+        self._ok(_lib.dem_profile_read(self._at, os.fsencode(path), profile))
+        profile = self._taken(profile, _lib.dem_profile_free)
+        return profile
+
+    def profile_parse(self, name, data):
+        """Reads the segments of a profile from memory, `size` bytes at `data`. name: for error messages; or null."""
+        data = data.encode() if isinstance(data, str) else bytes(data)
+        profile = Profile()
+        self._ok(_lib.dem_profile_parse(self._at, name.encode(), data, len(data), profile))
+        profile = self._taken(profile, _lib.dem_profile_free)
+        return profile
+
+    def grains_read(self, path):
+        """Reads grains from a file. The contents identify the format; lengths are in m: - text or CSV, one line per
+        grain. Columns are separated by semicolons, tabs, commas or blanks, as in the first line. A decimal comma is
+        allowed between semicolons or tabs. Cells may be quoted; # begins a comment. The first line, or a comment
+        before it, names the columns; without names they are x y z r, or x y z r vx vy vz. An empty cell in a column
+        that is used is an error. - extended XYZ with Properties (OVITO, ASE, dem_xyz_write), and dumps of LAMMPS and
+        LIGGGHTS: the first frame. Pass the lines of another frame to dem_grains_parse. - legacy VTK, VTP and VTU
+        (ParaView, LIGGGHTS, dem_vtp_write) as ASCII, base64 or raw bytes; a compressed file is an error. Names, in
+        upper or lower case: position x y z, or position, pos, points size r or radius, d or diameter velocity vx vy
+        vz, or v, vel, velo, velocity angular velocity wx wy wz, or omega, spin, angular_velocity material material;
+        otherwise type, if it is a number A component may follow a name, as in velocity:0, omegax, Position.X, and
+        then a unit: (m), (mm), (cm), (um), (mm/s), (rad/s). `ignored` lists other columns, and the second of two that
+        mean the same. Each sphere of a file of clusters becomes one grain. Error messages name file, line and reason.
+        Free with dem_grains_free.
+        """
+        grains = Grains()
+        self._ok(_lib.dem_grains_read(self._at, os.fsencode(path), grains))
+        grains = self._taken(grains, _lib.dem_grains_free)
+        return grains
+
+    def grains_parse(self, name, data):
+        """Reads grains from memory, `size` bytes at `data`, as dem_grains_read does. name: for error messages; or null."""
+        data = data.encode() if isinstance(data, str) else bytes(data)
+        grains = Grains()
+        self._ok(_lib.dem_grains_parse(self._at, name.encode(), data, len(data), grains))
+        grains = self._taken(grains, _lib.dem_grains_free)
+        return grains
+
+    def grains(self, material, grains):
+        """Adds all grains as spheres of one material or, if its id is 0, of the materials whose numbers the file gives.
+        If one grain has a bad value, none is added.
+        """
+        grains = self._bound(Grains.make(grains))
+        self._ok(_lib.dem_grains_add(self._at, material, grains))
+
+    def vtp_write(self, path):
+        """Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and body_reals. If
+        bodies have orientations, also the orientation (quaternion w x y z) and semi_axes (m); a cluster is then one
+        point per sphere, all with its id. To draw them in ParaView: Glyph, a sphere of radius 1, scaled by semi_axes,
+        rotated by orientation (quaternion).
+        """
+        self._ok(_lib.dem_vtp_write(self._at, os.fsencode(path)))
+
+    def vtk_write(self, path):
+        """Writes the same as a legacy VTK file, binary."""
+        self._ok(_lib.dem_vtk_write(self._at, os.fsencode(path)))
+
+    def xyz_write(self, path):
+        """Writes the bodies for OVITO and ASE (extended XYZ): a chemical element that numbers the material (H: 1, He:
+        2), position, radius, velocity, body_reals and id. If bodies have orientations, also the orientation (x y z w)
+        and semi-axes. The domain becomes the lattice.
+        """
+        self._ok(_lib.dem_xyz_write(self._at, os.fsencode(path)))
+
+    def contacts_vtp_write(self, path):
+        """Writes the contacts for ParaView (VTP), to show bonds, bridges and force chains: lines from centre to centre
+        (with a wall: to the contact point), with force (N, on a), overlap (m), wall (id, 0: none) and the contact
+        history under its names. Computes forces first if the scene has changed.
+        """
+        self._ok(_lib.dem_contacts_vtp_write(self._at, os.fsencode(path)))
+
+    def walls_vtp_write(self, path, z0, z1):
+        """Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose (VTP), with the
+        id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1).
+        """
+        self._ok(_lib.dem_walls_vtp_write(self._at, os.fsencode(path), z0, z1))
+
+    def surfaces_vtp_write(self, path):
+        """Writes the surfaces of all bodies as polygons (VTP), with velocity (of each corner), id, material and
+        body_reals. Polyhedra are drawn by their faces, round bodies by facets.
+        """
+        self._ok(_lib.dem_surfaces_vtp_write(self._at, os.fsencode(path)))
+
+    def replay(self, path, *, title=None, number=None, number_fn=None, user=None, resolution=0, interval=0):
+        """Opens a replay of the world. desc: or null, for DEM_REPLAY_DESC. Close the replay before its world is
+        destroyed.
+
+        title: copied; null means the name of the file
+        number: Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the values of
+            number_fn. Null means the first name, or "number". Copied, at most 63 characters.
+        number_fn: returns the number of a body, for every frame; null means one of desc.body_reals
+        user: passed to number_fn; or null
+        resolution: m, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame
+        interval: s, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest
+            to multiples of the interval. A frame that cannot be written ends the replay, not the run:
+            dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.
+        """
+        desc = ReplayDesc(title=title, number=number, number_fn=number_fn, user=user, resolution=resolution,
+            interval=interval)
+        desc = self._bound(desc)
+        return Replay(self._pointer(_lib.dem_replay_open(self._at, os.fsencode(path), desc)), self, path)
+
+    def checkpoint_write(self, path):
+        """Writes a checkpoint: the whole state, with bodies, walls, contact history, neighbour list, ledger, fields,
+        counters, and what each scheduled output has written. An error if a body is not at a finite position and
+        velocity; then an existing file stays.
+        """
+        self._ok(_lib.dem_checkpoint_write(self._at, os.fsencode(path)))
+
+    def checkpoint_read(self, path):
+        """Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The world must have
+        been built like the one that wrote it, with the same desc, materials and walls. Functions and user pointers
+        are not stored. Number of threads, allocator, allow_large_dt and user pointers may differ. Errors: a file that
+        is cut short, damaged, or of another version or precision; a file of another scene, for which the message
+        names the first field that differs, with both values.
+        """
+        self._ok(_lib.dem_checkpoint_read(self._at, os.fsencode(path)))
+
+    def output(self, *, kind=0, path=None, interval=0, start=0, end=0, wall=None, columns=None, values=None,
+            function=None, user=None):
+        """Adds an output that a run writes automatically, at the steps nearest to start, start + interval and so on, in
+        the order in which outputs were added. The first line of a CSV file replaces an older file of that name; a
+        file with other columns is an error of the run. If a file cannot be written, the run stops with the state
+        intact, and the next run tries that output again. Slabs have no outputs. After a restart: a checkpoint stores
+        what each output has written. A world that reads it continues from there, with nothing missing and nothing
+        twice, and removes later lines of a CSV file before it appends the next. Outputs are matched by kind and path,
+        so add them before reading the checkpoint. Other outputs may be added, and times may differ. A function
+        (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes counts the
+        present call as done.
+
+        path: Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at
+            `start`. Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL: or
+            null.
+        interval: s, required, 1e-12 to 1e15
+        start: s, times of the first and the last; end 0 means no last
+        wall: CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write; or the
+            values that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or,
+            if all three are zero, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max
+        function: CALL: may change the world, but not step it. A return value other than 0 stops the run
+            (DEM_ERROR_STOPPED).
+        user: passed to `values` and `function`; or null
+        """
+        desc = OutputDesc(kind=kind, path=path, interval=interval, start=start, end=end, wall=wall, columns=columns,
+            values=values, function=function, user=user)
+        desc = self._bound(desc)
+        return self._id(_lib.dem_output_add(self._at, desc))
+
+    def output_every(self, kind, path, interval):
+        """Adds an output by kind, path and interval (s) alone: dem_output_every_add(world, DEM_OUTPUT_VTP,
+        "grains_####.vtp", 0.01).
+        """
+        return self._id(_lib.dem_output_every_add(self._at, _number(kind, OutputKind), os.fsencode(path), interval))
+
+    def slabs(self, *, axis=0, count=0, first=0, local=0, transport=None, balance=0, balance_interval=0):
+        """Creates slabs from a world: copies its grains to them, with everything a step needs. The world stays as it is,
+        and may be destroyed. Every process builds the same world and passes its own `first` and `local`. Feeds and
+        outlets continue in the slabs. An error with DEM_RESPONSE_IMPULSES and if processes have built different
+        scenes; dem_world_error_get(world) returns the message.
+
+        axis: 0, 1, 2: borders are planes x, y, z = const
+        count: required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same
+            bits
+        first: this process holds the slabs first to first + local - 1; local 0 means all
+        transport: required if another process holds slabs
+        balance: borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means 1.1.
+            Below 0 borders do not move.
+        balance_interval: rebuilds between two checks of the balance; 0 means 8
+        """
+        desc = SlabsDesc(axis=axis, count=count, first=first, local=local, transport=transport, balance=balance,
+            balance_interval=balance_interval)
+        return Slabs(self._pointer(_lib.dem_slabs_create(self._at, desc)), self)
+
+    def effects(self, budget=0):
+        """Writes for every effect whether it is off, idle or active, and returns their number. It finds a material with
+        rolling friction on which nothing has rolled, or a wall that nothing has touched. It can miss contacts of
+        spheres that begin and end between two neighbour lists. If `budget` (s of wall time, >= 0) is not 0, it also
+        measures what each effect costs: two copies of the world, one without the effect, take steps in turn.
+        User-defined laws (by pointer) and fields are called twice instead of being left out, and friction is left out
+        together with rolling friction. Shares need not add up to 1; on a busy machine they are noise. User-defined
+        functions are called for the copies, too. The world does not change. Returns -1 also if the scene would not
+        run.
+        """
+        effects = (Effect*max(EFFECTS, 1))()
+        count = self._number(_lib.dem_effects_get(self._at, budget, ctypes.cast(effects, ctypes.POINTER(Effect))))
+        return list(effects[:min(count, len(effects))])
+
+    def effects_print(self, budget=0, out=None):
+        """Prints the effects as lines of text. A share outside -0.1 to 1, or with an error above 0.1, is printed as "too
+        noisy".
+        """
+        return self._print(_lib.dem_effects_print, out, self._at, budget)
+
+    def report(self, out=None):
+        """Prints the report: bodies, time step and what limits it, contact detection, laws and effects, what the scene
+        contains but has not happened, the largest overlap, pairs of materials, loads of walls, joints, feeds,
+        outlets, and the ledger. It calls a user-defined force field once per body.
+        """
+        return self._print(_lib.dem_world_report, out, self._at)
+
+
+class _Memory:
+    """Destroys a world when neither the World nor a view of its arrays is left."""
+
+    def __init__(self, at, context):
+        self.at, self.context = at, context
+
+    def __del__(self):
+        try:
+            _lib.dem_world_destroy(self.at)
+        except Exception:
+            pass
+
+
+class Replay(Handle):
+    """A replay: world.replay(path) opens it, close() or the end of a `with` block completes the file. Jupyter shows a
+    replay that is closed."""
+
+    def __init__(self, at, world, path):
+        self._at, self._world, self._context, self._memory, self.path = at, world, world._context, world._memory, path
+        world._open.add(self)
+
+    def _repr_html_(self):
+        return Page(self.path)._repr_html_() if self._at is None else "<p>close the replay to see it</p>"
+
+    def _text(self):
+        return self._world._text()
+
+    def _free(self, at):
+        result = _lib.dem_replay_close(at)
+        if result:
+            self._raise(_ERRORS[result])
+
+    def frame_write(self):
+        """Writes the present state as a frame. 30 to 300 frames make a good replay."""
+        self._ok(_lib.dem_replay_frame_write(self._at))
+
+    def value_set(self, name, value):
+        """Sets a value of the next frame, which the replay plots against time. name: 1 to 63 characters, at most 16
+        different names; it ends with the unit in brackets, and values with the same unit share a scale. A value that
+        is not finite leaves a gap.
+        """
+        self._ok(_lib.dem_replay_value_set(self._at, name.encode(), value))
+
+
+class Slabs(Handle):
+    """The slabs that one process holds."""
+
+    def __init__(self, at, world):
+        self._at, self._world, self._context, self._memory = at, world, world._context, world._memory
+
+    def _text(self):
+        return (_lib.dem_slabs_error_get(self._at) or b"").decode(errors="replace")
+
+    def _free(self, at):
+        _lib.dem_slabs_destroy(at)
+
+    def step(self, steps):
+        """Advances all slabs by `steps` time steps (>= 0). Errors as for dem_world_step; DEM_ERROR_STOPPED also if the
+        transport has failed.
+        """
+        self._ok(self._run(_lib.dem_slabs_step, self._at, steps) if self._context.kept else
+            _lib.dem_slabs_step(self._at, steps))
+
+    def collect(self, world):
+        """Copies the state of all slabs into a world of the same scene, in every process: grains, contact history,
+        walls, loads, fields, feeds, outlets, ledger, time. The world can then be measured, written, stepped, or
+        divided into slabs again, without effect on these slabs. It has no neighbour list until
+        dem_candidates_rebuild; after that it continues as the slabs would.
+        """
+        self._ok(_lib.dem_slabs_collect(self._at, world._at))
+
+    def loads_reset(self):
+        """Sets the time integrals of wall loads and the largest overlap to 0, in this process's slabs."""
+        _lib.dem_slabs_loads_reset(self._at)
+        self._ok(0)
+
+    @property
+    def error(self):
+        """Returns the error message of the last failed call on these slabs, or ""."""
+        return (_lib.dem_slabs_error_get(self._at) or b'').decode()
+
+    def slab(self, index):
+        """Describes one slab of this process; index: first to first + local - 1."""
+        slab = Slab()
+        self._ok(_lib.dem_slab_get(self._at, index, slab))
+        self._with(slab)
+        return slab
+
+    @property
+    def counters(self):
+        """Returns the counters of slabs."""
+        found = _lib.dem_slabs_counters_get(self._at)
+        self._ok(0)
+        return self._with(found)
+
+
+def quat_about(axis, angle):
+    """The right-handed rotation by `angle` (rad) about `axis` (any length except 0)."""
+    return _lib.dem_quat_about(axis, angle)
+
+
+def quat_multiply(a, b):
+    """The product a b: the rotation b followed by the rotation a."""
+    return _lib.dempy_quat_multiply(a, b)
+
+
+def quat_rotate(q, v):
+    """Rotates v from the frame of a body into the world frame. q must have unit length."""
+    return _lib.dempy_quat_rotate(q, v)
+
+
+def quat_unrotate(q, v):
+    """Rotates v from the world frame into the frame of a body. q must have unit length."""
+    return _lib.dempy_quat_unrotate(q, v)
+
+
+def memory_rotate(c, v):
+    """Rotates a tangent vector of the contact history with the contact plane over the last step: with the normal, and
+    with the mean spin of the two bodies about it. The result lies in the tangent plane and has the length of v. Laws
+    with a tangential spring call it first. Accuracy: the rotation of the normal is exact to sixth order in its angle.
+    The rotation t about the normal is limited to 1 rad per step; it shortens v by a fraction of t^4/64 and never
+    lengthens it: (1 - u/2)^2 + u (1 - 9 u/64)^2 <= 1 with u = t^2 <= 1.
+    """
+    return _lib.dempy_memory_rotate(c, v)
+
+
+def law_load(c, f, hold):
+    """Computes the load for friction and removes a dashpot's attraction. A normal law calls it after it has set
+    f->elastic and f->normal. Without tension (CLIPPED, COMPENSATED) f->normal is raised to 0, or to the elastic force
+    if that attracts. The load is that of c->friction_load, at least 0; without tension it is always the whole normal
+    force. hold: N, >= 0, adhesion that adds to the load (not with DEM_LOAD_MAGNITUDE); 0: none.
+    """
+    return _lib.dempy_law_load(c, f, hold)
+
+
+def law_hertz(c, memory, f):
+    """The normal force of elastic spheres with a dashpot: F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], d: overlap, v:
+    closing speed. The tangential coefficients are kt d^(1/2) [N/m] and ct d^(1/4) [N s/m]. No contact history.
+    """
+    return _lib.dempy_law_hertz(c, memory, f)
+
+
+def law_linear(c, memory, f):
+    """The normal force of a linear spring and dashpot: F = kn d + cn v. No contact history."""
+    return _lib.dempy_law_linear(c, memory, f)
+
+
+def law_hysteretic(c, memory, f):
+    """The normal force of a plastic, possibly sticky contact [ALK07] eq 2.41 to 2.49: F = kun d - (kun - kn) D + cn v,
+    D: depth of the plastic deformation, m loading d = D, so that F = kn d unloading and reloading slope kun; F = 0 at
+    d0 = (1 - kn/kun) D [eq 2.44] adhesion F = -kad d. D shrinks with d here, so that reloading (slope kun) returns to
+    kn d at the D that belongs to this point After each step D is the larger of D and d, but at most d (kun +
+    kad)/(kun - kn). Unloading and adhesion join at d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2),
+    e^2 = kn/kun. Differences from [ALK07]: kad is a magnitude here. It defines kad as a negative slope; with that its
+    eq 2.48 and 2.49 have the wrong sign, and its text calls d_ad both a deformation and a force. The load of friction
+    is F + kad d, which is 0 on the adhesion line. [ALK07] takes |F|, which is 0 where F is 0 and large where the two
+    are pulled apart. Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
+    exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest oscillates there
+    unless the pair has normal_damping (cn). Contact history: 1 real, D [m].
+    """
+    return _lib.dempy_law_hysteretic(c, memory, f)
+
+
+def law_viscous(c, memory, f):
+    """Friction of a dashpot: -ct v_t, limited by Coulomb's law; [MIL] 4.3. No contact history, so that contacts creep
+    under a tangential load.
+    """
+    return _lib.dempy_law_viscous(c, memory, f)
+
+
+def law_step(c, memory, f):
+    """Friction of a spring that is stretched for one step only, and a dashpot: -kt (v_t dt) - ct v_t, limited by
+    Coulomb's law; [MIL] 4.2. No contact history.
+    """
+    return _lib.dempy_law_step(c, memory, f)
+
+
+def law_spring(c, memory, f):
+    """Friction of a spring and a dashpot [CS79]: -kt s - ct v_t, limited by Coulomb's law, where s is the tangential
+    displacement since the contact began, rotated with the contact plane. With Hertz's law kt follows the present
+    overlap. Contact history: 3 reals, the vector s [m].
+    """
+    return _lib.dempy_law_spring(c, memory, f)
+
+
+def law_mindlin(c, memory, f):
+    """Mindlin's friction by increments [DIR05]: s - ct v_t, limited by Coulomb's law, where the force s changes by -kt
+    ds in a step. Differs from [DIR05] in kt: it is that of the overlap in the middle of the step, which makes the law
+    of second order in dt. Contact history: 4 reals, the vector s [N] and kt of the last step [N/m].
+    """
+    return _lib.dempy_law_mindlin(c, memory, f)
+
+
+def law_mindlin_rescaled(c, memory, f):
+    """Mindlin's friction, rescaled on unloading [THO13]: as dem_law_mindlin, but while kt falls the force s is
+    multiplied by kt/(kt of the last step), so that the displacement s/kt is kept. A change of the load of a sheared
+    contact then creates no energy. Contact history as for dem_law_mindlin.
+    """
+    return _lib.dempy_law_mindlin_rescaled(c, memory, f)
+
+
+def law_roll_step(c, memory, f):
+    """Rolling resistance of [MIL] 4.5: a moment mu_r R* min(F, |w|) against the relative spin w, with F in N and w in
+    rad/s compared as printed there. It also acts on spin about the normal, and holds nothing at rest. No contact
+    history.
+    """
+    return _lib.dempy_law_roll_step(c, memory, f)
+
+
+def law_roll_constant(c, memory, f):
+    """Rolling resistance of constant magnitude [ZHO99]: a moment mu_r R* F against the relative spin in the contact
+    plane, and at rest any moment up to that. Differs from [ZHO99] at rest, where its moment is undefined: a spring
+    acts in parallel with a dashpot behind the limit. It is as stiff as a step can resolve, kr = (0.3/dt)^2 I with I =
+    2/5 m* R*^2, and critically damped. It yields in proportion to dt^2 and does not creep. Contact history: 3 reals,
+    the vector of its moment [N m].
+    """
+    return _lib.dempy_law_roll_constant(c, memory, f)
+
+
+def law_roll_epsd(c, memory, f):
+    """Rolling resistance of an elastic-plastic spring and a dashpot (EPSD) [AI11]. The spring has the stiffness kr =
+    2.25 k (mu_r R*)^2, where k = dF/dd is the normal stiffness (hysteretic law: kn), and its moment is limited to
+    mu_r R* F. Below the limit a dashpot acts with 0.3 times the critical damping of I = 7/5 m* R*^2. Contact history:
+    3 reals, the vector of the spring's moment [N m].
+    """
+    return _lib.dempy_law_roll_epsd(c, memory, f)
+
+
+def result_name(result):
+    """Returns a short text for a result, such as "out of memory"."""
+    return (_lib.dem_result_name_get(_number(result, Result)) or b'').decode()
+
+
+def ellipsoids_contact(a, b, lambda_=0):
+    """Returns the contact of two ellipsoids. lambda is an initial guess, or 0."""
+    a = Ellipsoid.make(a)
+    b = Ellipsoid.make(b)
+    return _lib.dem_ellipsoids_contact_get(a, b, lambda_)
+
+
+def trials_print(trials, out=None):
+    """Prints the trials as a table, and the advice."""
+    trials = Trials.make(trials)
+    return Handle()._print(_lib.dem_trials_print, out, trials)
+
+
+def progress_print(world, done, seconds_left):
+    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
+    world._print(lambda *given: _lib.dem_progress_print(*given), sys.stderr, world._at, done, seconds_left)
+
+
+_FUNCTIONS = [
+    ('dem_world_create_checked', ctypes.c_void_p, [ctypes.POINTER(WorldDesc), ctypes.c_int, ctypes.c_size_t]),
+    ('dem_quat_about', Quat, [Vec3, Real]),
+    ('dempy_quat_multiply', Quat, [Quat, Quat]),
+    ('dempy_quat_rotate', Vec3, [Quat, Vec3]),
+    ('dempy_quat_unrotate', Vec3, [Quat, Vec3]),
+    ('dempy_memory_rotate', Vec3, [ctypes.POINTER(Contact), Vec3]),
+    ('dempy_law_load', None, [ctypes.POINTER(Contact), ctypes.POINTER(ContactForce), Real]),
+    ('dempy_law_hertz', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_linear', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_hysteretic', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_viscous', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_spring', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_mindlin', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_mindlin_rescaled', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real),
+     ctypes.POINTER(ContactForce)]),
+    ('dempy_law_roll_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_roll_constant', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_roll_epsd', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dem_world_create_error_get', ctypes.c_char_p, [ctypes.POINTER(WorldDesc)]),
+    ('dem_world_destroy', None, [ctypes.c_void_p]),
+    ('dem_world_error_get', ctypes.c_char_p, [ctypes.c_void_p]),
+    ('dem_result_name_get', ctypes.c_char_p, [ctypes.c_int]),
+    ('dem_world_desc_get', WorldDesc, [ctypes.c_void_p]),
+    ('dem_material_add', Material, [ctypes.c_void_p, ctypes.POINTER(MaterialDesc)]),
+    ('dem_material_set', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(MaterialDesc)]),
+    ('dem_material_get', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(MaterialDesc)]),
+    ('dem_pair_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Pair)]),
+    ('dem_pair_set', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Pair)]),
+    ('dem_coefficients_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, Real, Real,
+     ctypes.POINTER(Coefficients)]),
+    ('dem_pairs_print', None, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_sphere_add', Body, [ctypes.c_void_p, Material, Real, Vec3]),
+    ('dem_spheres_add', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.c_int, ctypes.POINTER(Real),
+     ctypes.POINTER(Real), ctypes.POINTER(Real), Real]),
+    ('dem_spheres_fill', ctypes.c_int, [ctypes.c_void_p, Material, Real, Region, ctypes.c_int, ctypes.c_uint64]),
+    ('dem_sizes_finer_get', ctypes.c_double, [ctypes.c_void_p, ctypes.POINTER(Sizes), Real]),
+    ('dem_sizes_draw', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Sizes), ctypes.c_int, ctypes.c_uint64,
+     ctypes.POINTER(Real)]),
+    ('dem_sizes_classes_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Sizes), ctypes.c_int,
+     ctypes.POINTER(Real), ctypes.POINTER(ctypes.c_double)]),
+    ('dem_sizes_fill', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(Sizes), Region, ctypes.c_int,
+     ctypes.c_uint64]),
+    ('dem_spheres_pack', ctypes.c_int, [ctypes.c_void_p, Material, Real, Real, Region, ctypes.c_int]),
+    ('dem_body_remove', ctypes.c_int, [ctypes.c_void_p, Body]),
+    ('dem_body_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)]),
+    ('dem_body_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)]),
+    ('dem_temperature_get', ctypes.c_double, [ctypes.c_void_p]),
+    ('dem_temperature_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_uint64]),
+    ('dem_bodies_get', Bodies, [ctypes.c_void_p]),
+    ('dem_body_id_get', Body, [ctypes.c_void_p, ctypes.c_int]),
+    ('dem_body_reals_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)]),
+    ('dem_body_reals_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)]),
+    ('dem_bodies_reals_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Real)]),
+    ('dem_wall_reals_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Real)]),
+    ('dem_wall_reals_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Real)]),
+    ('dem_shape_ellipsoid_add', Shape, [ctypes.c_void_p, Vec3]),
+    ('dem_shape_cluster_add', Shape, [ctypes.c_void_p, ctypes.POINTER(ClusterDesc)]),
+    ('dem_shape_polyhedron_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Real)]),
+    ('dem_shape_mesh_add', Shape, [ctypes.c_void_p, ctypes.POINTER(Mesh), Real]),
+    ('dem_shape_union_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Shape), ctypes.POINTER(Real),
+     ctypes.POINTER(Real)]),
+    ('dem_shape_polygon_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Real)]),
+    ('dem_shape_get', ctypes.c_int, [ctypes.c_void_p, Shape, ctypes.POINTER(ShapeInfo)]),
+    ('dem_body_add', Body, [ctypes.c_void_p, Material, Shape, Vec3, Quat]),
+    ('dem_bodies_add', ctypes.c_int, [ctypes.c_void_p, Material, Shape, ctypes.c_int, ctypes.POINTER(Real),
+     ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(Real)]),
+    ('dem_bodies_fill', ctypes.c_int, [ctypes.c_void_p, Material, Shape, Region, ctypes.c_int, ctypes.c_uint64]),
+    ('dem_ellipsoids_contact_get', EllipsoidContact, [ctypes.POINTER(Ellipsoid), ctypes.POINTER(Ellipsoid), Real]),
+    ('dem_body_counts_get', BodyCounts, [ctypes.c_void_p]),
+    ('dem_wall_plane_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3]),
+    ('dem_wall_cylinder_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, Real, ctypes.c_int]),
+    ('dem_wall_revolved_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, ctypes.c_int, ctypes.POINTER(Real),
+     ctypes.POINTER(Real)]),
+    ('dem_wall_cone_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, Real, Real]),
+    ('dem_wall_profile_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(Profile), ctypes.c_int]),
+    ('dem_wall_mesh_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(Mesh)]),
+    ('dem_wall_grains_add', Wall, [ctypes.c_void_p, Material, ctypes.c_int, ctypes.POINTER(Real), Real, Real]),
+    ('dem_wall_sieve_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(SieveDesc)]),
+    ('dem_sieve_blinded_get', ctypes.c_int, [ctypes.c_void_p, Wall, Real]),
+    ('dem_wall_motion_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Motion)]),
+    ('dem_wall_pose_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Pose)]),
+    ('dem_wall_remove', ctypes.c_int, [ctypes.c_void_p, Wall]),
+    ('dem_wall_loads_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(WallLoads)]),
+    ('dem_wall_loads_reset', ctypes.c_int, [ctypes.c_void_p, Wall]),
+    ('dem_joint_add', Joint, [ctypes.c_void_p, ctypes.POINTER(JointDesc)]),
+    ('dem_joint_motor_set', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.c_int, Real, Real]),
+    ('dem_joint_get', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.POINTER(JointState)]),
+    ('dem_joint_remove', ctypes.c_int, [ctypes.c_void_p, Joint]),
+    ('dem_feed_add', Feed, [ctypes.c_void_p, ctypes.POINTER(FeedDesc)]),
+    ('dem_feed_get', ctypes.c_int, [ctypes.c_void_p, Feed, ctypes.POINTER(FeedState)]),
+    ('dem_outlet_add', Outlet, [ctypes.c_void_p, ctypes.POINTER(OutletDesc)]),
+    ('dem_outlet_get', ctypes.c_int, [ctypes.c_void_p, Outlet, ctypes.POINTER(OutletState)]),
+    ('dem_outlet_reset', ctypes.c_int, [ctypes.c_void_p, Outlet]),
+    ('dem_step_advice_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Advice)]),
+    ('dem_world_check', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Finding), ctypes.c_int]),
+    ('dem_world_check_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_world_step', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int]),
+    ('dem_world_run', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ProgressFn.c, ctypes.c_void_p]),
+    ('dem_world_run_to', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ProgressFn.c, ctypes.c_void_p]),
+    ('dem_world_settle', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, Real, ProgressFn.c, ctypes.c_void_p]),
+    ('dem_progress_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p]),
+    ('dem_world_gravity_set', ctypes.c_int, [ctypes.c_void_p, Vec3]),
+    ('dem_world_dt_set', ctypes.c_int, [ctypes.c_void_p, Real]),
+    ('dem_world_time_get', ctypes.c_double, [ctypes.c_void_p]),
+    ('dem_world_steps_get', ctypes.c_uint64, [ctypes.c_void_p]),
+    ('dem_world_hash_get', ctypes.c_uint64, [ctypes.c_void_p]),
+    ('dem_counters_get', Counters, [ctypes.c_void_p]),
+    ('dem_overlap_max_reset', None, [ctypes.c_void_p]),
+    ('dem_ledger_get', Ledger, [ctypes.c_void_p]),
+    ('dem_totals_get', Totals, [ctypes.c_void_p]),
+    ('dem_observer_height', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_observer_kinetic', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_observer_contacts', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_observer_walls', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_trials_run', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(TrialsDesc), ctypes.POINTER(Trials)]),
+    ('dem_trials_print', None, [ctypes.POINTER(Trials), ctypes.c_void_p]),
+    ('dem_contacts_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ContactInfo), ctypes.c_int]),
+    ('dem_contacts_each', ctypes.c_int, [ctypes.c_void_p, ContactFn.c, ctypes.c_void_p]),
+    ('dem_bonds_make', ctypes.c_int, [ctypes.c_void_p, Real, ContactFn.c, ctypes.c_void_p]),
+    ('dem_candidates_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint32), ctypes.c_int]),
+    ('dem_candidates_rebuild', ctypes.c_int, [ctypes.c_void_p]),
+    ('dem_field_add', Field, [ctypes.c_void_p, ctypes.POINTER(FieldDesc)]),
+    ('dem_field_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.POINTER(FieldData)]),
+    ('dem_field_cell_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_int, ctypes.c_int, ctypes.c_int,
+     ctypes.POINTER(FieldCell)]),
+    ('dem_field_reset', ctypes.c_int, [ctypes.c_void_p, Field]),
+    ('dem_repose_heap_get', ctypes.c_int, [ctypes.c_void_p, Box, ctypes.POINTER(Repose)]),
+    ('dem_repose_drum_get', ctypes.c_int, [ctypes.c_void_p, Box, Vec3, ctypes.POINTER(Repose)]),
+    ('dem_mesh_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Mesh),
+     ctypes.POINTER(MeshHealth)]),
+    ('dem_mesh_parse', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t,
+     ctypes.POINTER(Mesh), ctypes.POINTER(MeshHealth)]),
+    ('dem_mesh_part_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.POINTER(Mesh),
+     ctypes.POINTER(MeshHealth)]),
+    ('dem_mesh_free', None, [ctypes.c_void_p, ctypes.POINTER(Mesh)]),
+    ('dem_mesh_place', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Mesh), Real, Quat, Vec3]),
+    ('dem_mesh_spheres', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Mesh), ctypes.c_int, ctypes.POINTER(Real),
+     ctypes.POINTER(Real), ctypes.POINTER(SpheresFit)]),
+    ('dem_wall_parts_add', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, Real, ctypes.c_int,
+     ctypes.POINTER(WallPart), ctypes.POINTER(Wall)]),
+    ('dem_profile_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Profile)]),
+    ('dem_profile_parse', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t,
+     ctypes.POINTER(Profile)]),
+    ('dem_profile_free', None, [ctypes.c_void_p, ctypes.POINTER(Profile)]),
+    ('dem_grains_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Grains)]),
+    ('dem_grains_parse', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t,
+     ctypes.POINTER(Grains)]),
+    ('dem_grains_free', None, [ctypes.c_void_p, ctypes.POINTER(Grains)]),
+    ('dem_grains_add', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(Grains)]),
+    ('dem_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_vtk_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_xyz_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_contacts_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_walls_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, Real, Real]),
+    ('dem_surfaces_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_wall_loads_csv_write', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_char_p]),
+    ('dem_replay_open', ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ReplayDesc)]),
+    ('dem_replay_frame_write', ctypes.c_int, [ctypes.c_void_p]),
+    ('dem_replay_value_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double]),
+    ('dem_replay_close', ctypes.c_int, [ctypes.c_void_p]),
+    ('dem_checkpoint_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_checkpoint_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_output_add', Output, [ctypes.c_void_p, ctypes.POINTER(OutputDesc)]),
+    ('dem_output_every_add', Output, [ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_double]),
+    ('dem_output_remove', ctypes.c_int, [ctypes.c_void_p, Output]),
+    ('dem_slabs_create', ctypes.c_void_p, [ctypes.c_void_p, ctypes.POINTER(SlabsDesc)]),
+    ('dem_slabs_destroy', None, [ctypes.c_void_p]),
+    ('dem_slabs_step', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int]),
+    ('dem_slabs_collect', ctypes.c_int, [ctypes.c_void_p, ctypes.c_void_p]),
+    ('dem_slabs_loads_reset', None, [ctypes.c_void_p]),
+    ('dem_slabs_error_get', ctypes.c_char_p, [ctypes.c_void_p]),
+    ('dem_slab_get', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Slab)]),
+    ('dem_slabs_counters_get', SlabsCounters, [ctypes.c_void_p]),
+    ('dem_effects_get', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.POINTER(Effect)]),
+    ('dem_effects_print', None, [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]),
+    ('dem_world_report', None, [ctypes.c_void_p, ctypes.c_void_p]),
+]

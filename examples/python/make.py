@@ -1,0 +1,933 @@
+"""python3 make.py [dem.h]: prints dem.py, which gives dem.h to Python, made of base.py and of the declarations of dem.h.
+
+Structs, enums, constants, functions and their comments are those of the public half of dem.h. The rules of names are
+in the docstring of dem.py. A declaration that no rule covers is an error."""
+import keyword
+import os
+import re
+import sys
+import textwrap
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+NUMBERS = {"int": "ctypes.c_int", "int32_t": "ctypes.c_int32", "uint32_t": "ctypes.c_uint32", "int64_t": "ctypes.c_int64",
+           "uint64_t": "ctypes.c_uint64", "size_t": "ctypes.c_size_t", "double": "ctypes.c_double", "dem_real": "Real"}
+BUILTIN = {"ARGUMENT": "ValueError", "MEMORY": "MemoryError", "FILE": "OSError", "FORMAT": "ValueError"}
+HANDLES = {"dem_world": "World", "dem_replay": "Replay", "dem_slabs": "Slabs"}
+
+
+def fail(text):
+    sys.exit("make.py: " + text)
+
+
+def camel(name):
+    return "".join(word.capitalize() for word in re.sub(r"^dem_", "", name).split("_"))
+
+
+def clean(comment):
+    text = re.sub(r"\s+", " ", comment.replace("/*", " ").replace("*/", " ")).strip()
+    text = re.sub(r" Tests: [^()]*(\([^()]*\)[^()]*)*$", "", text)
+    return "" if text.startswith(("----", "-- ")) or text.startswith("--------") or ">>" in text[:8] else text
+
+
+# ---- the declarations of dem.h ----
+
+class Var:
+    """A field or an argument: type, name, pointer, const, dim (of an array), comment; call: arguments of a function."""
+
+    def __init__(self, text, doc=""):
+        text = re.sub(r"\s+", " ", text).strip()
+        self.call, self.dim = None, None
+        found = re.match(r"(.*)\(\*(\w+)\)\((.*)\)$", text)
+        if found:
+            self.doc, self.call = doc, Function(found.group(1).strip(), found.group(2), found.group(3), doc)
+            self.type, self.name, self.pointer, self.const = "function", found.group(2), 0, False
+            return
+        found = re.match(r"(const )?(?:struct )?(\w+) ?(\**) ?(\w+)(?:\[(\w+)\])?$", text) or fail("cannot read: " + text)
+        self.const, self.type, self.pointer, self.name, self.dim = (
+            bool(found.group(1)), found.group(2), len(found.group(3)), found.group(4), found.group(5))
+        self.doc = re.sub("^%s: " % self.name, "", doc)
+        self.name += "_" if keyword.iskeyword(self.name) else ""
+
+
+class Function:
+    def __init__(self, result, name, arguments, doc, inline=False):
+        self.result, self.name, self.doc, self.inline = result, name, doc, inline
+        self.arguments = [] if arguments.strip() in ("", "void") else [Var(a) for a in split(arguments)]
+        found = re.match(r"(?:const )?(\w+) ?(\*?)$", result)
+        self.type, self.star = found.group(1), bool(found.group(2))
+
+
+def split(text, at=","):
+    """Parts of text between commas outside of brackets."""
+    parts, depth, part = [], 0, ""
+    for c in text:
+        depth += (c in "([{") - (c in ")]}")
+        if c == at and not depth:
+            parts.append(part)
+            part = ""
+        else:
+            part += c
+    return [p for p in parts + [part] if p.strip()]
+
+
+def fields_of(body):
+    """The fields of a struct with their comments: behind a field, or before it and those that follow."""
+    fields, pending, last = [], "", []
+    for token in re.finditer(r"/\*.*?\*/|[^;/]+;", body, re.S):
+        text = token.group(0)
+        if text.startswith("/*"):
+            doc = clean(text)
+            if last and "\n" not in body[last[0]:token.start()] and not last[2]:
+                for field in last[1]:
+                    field.doc = doc
+                last[2] = True
+            else:
+                pending, last = doc, []
+            continue
+        text = text.strip()[:-1]
+        if "(*" in text:
+            new = [Var(text, pending)]
+        else:
+            names = split(text)
+            base = re.match(r"\s*((?:const )?(?:struct )?\w+)", names[0]).group(1)
+            new = [Var(names[0], pending)] + [Var(base + " " + name.strip(), pending) for name in names[1:]]
+        fields += new
+        last, pending = [token.end(), new, bool(pending)], "" if pending else pending
+    return fields
+
+
+class Header:
+    def __init__(self, text):
+        public = text[text.index("\n#ifndef DEM_H\n"):text.index("\n#endif /* DEM_H */")]
+        extra = re.search(r"#define DEM_LAW_COEFFICIENTS\(X\) \\\n((?: *X\(.*\\\n)*)", public).group(1)
+        properties = re.findall(r"X\((\w+), (\w+),", extra)
+        public = public.replace("DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)", " ".join("dem_real %s;" % p for p, _ in properties))
+        public = public.replace("DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)", " ".join("dem_real %s;" % c for _, c in properties))
+        self.enums, self.structs, self.calls, self.functions = {}, {}, {}, []
+        self.constants = [(n, v, "") for n, v in re.findall(r"#define (DEM_VERSION_\w+) (\d+)\n", public)]
+        self.zero = set(re.findall(r"static const (dem_\w+) DEM_\w+_ZERO", public))
+        comment, at = "", 0
+        while at < len(public):
+            rest = public[at:]
+            found = re.match(r"\s+", rest)
+            if found:
+                at += found.end()
+                continue
+            if rest.startswith("/*"):
+                end = rest.index("*/") + 2
+                comment = clean(rest[:end])
+                at += end
+                continue
+            if rest.startswith("#"):
+                at += re.match(r"#(?:.*\\\n)*.*", rest).end()
+                comment = ""
+                continue
+            if rest.startswith(('extern "C" {', "}")):
+                at += len('extern "C" {') if rest[0] == "e" else 1
+                continue
+            text, length = self.declaration(rest)
+            at += length
+            self.declare(text, comment)
+
+    @staticmethod
+    def declaration(text):
+        """The declaration at the beginning of text, with its comments, and its length."""
+        depth, i = 0, 0
+        while i < len(text):
+            if text.startswith("/*", i):
+                i = text.index("*/", i) + 2
+                continue
+            c = text[i]
+            depth += (c in "({") - (c in ")}")
+            i += 1
+            if not depth and (c == ";" or c == "}" and re.match(r"(DEM_INLINE|static inline)", text)):
+                return text[:i], i
+        fail("a declaration does not end: " + text[:80])
+
+    def declare(self, text, doc):
+        found = re.match(r"typedef enum (\w+) \{(.*)\} \w+;$", text, re.S) or re.match(r"(enum) \{(.*)\};$", text, re.S)
+        if found:
+            values, number = [], 0
+            pending = ""
+            for token in re.finditer(r"/\*.*?\*/|[^,/]+", found.group(2), re.S):
+                item = token.group(0).strip()
+                if item.startswith("/*"):
+                    before = found.group(2)[:token.start()].rstrip(" ")
+                    if values and not before.endswith("\n"):
+                        values[-1][2] = clean(item)
+                    else:
+                        pending = clean(item)
+                elif item:
+                    name, _, value = (part.strip() for part in item.partition("="))
+                    number = int(value, 0) if value else number
+                    values.append([name, number, pending])
+                    number, pending = number + 1, ""
+            if found.group(1) == "enum":
+                self.constants += [(name, value, note) for name, value, note in values]
+            else:
+                self.enums[found.group(1)] = (values, doc)
+            return
+        found = re.match(r"(?:typedef )?struct (\w+) \{(.*)\}[ \w]*;$", text, re.S)
+        if found:
+            self.structs[found.group(1)] = (fields_of(found.group(2)), doc)
+            return
+        found = re.match(r"typedef ([\w ]+?\*?) ?\(\*(\w+)\)\((.*)\);$", text, re.S)
+        if found:
+            self.calls[found.group(2)] = Function(found.group(1), found.group(2), found.group(3), doc)
+            return
+        found = re.match(r"(DEM_API|DEM_INLINE) ([\w ]+?[ *]+)(dem_\w+)\((.*?)\)\s*[;{]", text, re.S)
+        if found:
+            self.functions.append(Function(found.group(2).strip(), found.group(3), found.group(4), doc, found.group(1) == "DEM_INLINE"))
+        elif not re.match(r"(typedef struct dem_\w+ dem_\w+;|typedef DEM_REAL|struct dem_\w+;|static const |static inline dem_world \*dem_world_create|"
+                          r"DEM_INLINE \w+ demi_|extern )", text):
+            fail("no rule for: " + text[:100])
+
+
+# ---- Python text ----
+
+def doc_lines(indent, text, more=()):
+    """A docstring: the comment, and a paragraph for each further line."""
+    pad = " "*indent
+    lines = textwrap.wrap(text, 118 - indent, break_long_words=False, break_on_hyphens=False) or [""]
+    for line in more:
+        if not lines[-1].startswith("    ") and line is more[0]:
+            lines.append("")
+        lines += textwrap.wrap(line, 118 - indent, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False)
+    text = "\n".join((pad + line).rstrip() for line in lines).strip().replace("\\", "\\\\").replace('"""', "'''")
+    return '%s"""%s%s"""\n' % (pad, text, "\n" + pad if len(lines) > 1 else "")
+
+
+class Writer:
+    def __init__(self, header):
+        self.h, self.out = header, []
+        self.ids = [n for n, (fields, _) in header.structs.items()
+                    if [f.name for f in fields] in (["id"], ["slot", "generation"])]
+        self.free = {f.name[:-5]: f.name for f in header.functions if f.name.endswith("_free")}
+
+    def write(self, text=""):
+        self.out.append(text.rstrip("\n"))
+
+    # -- types --
+    def value(self, var, kind=True):
+        """A type as Python text; kind: as the kind of a field of a Struct, otherwise as a type of ctypes."""
+        t = var.type
+        if var.call:
+            return "None"
+        if var.dim and t == "char":
+            return "Text(%s)" % self.number(var.dim)
+        if var.pointer == 2 or (var.pointer and t in HANDLES) or (var.pointer and t in ("void", "FILE")):
+            base = "ctypes.c_void_p"
+        elif var.pointer and t == "char":
+            base = "str" if kind else "ctypes.c_char_p"
+        elif var.pointer:
+            base = "ctypes.POINTER(%s)" % self.plain(t)
+        elif t in self.h.enums:
+            base = camel(t) if kind and not var.dim else "ctypes.c_int"
+        elif t in self.h.calls:
+            base = camel(t) if kind else camel(t) + ".c"
+        else:
+            base = self.plain(t)
+        if var.dim and t in self.h.enums and kind:
+            return "Choices(%s, %s)" % (camel(t), self.number(var.dim))
+        return "%s*%s" % (base, self.number(var.dim)) if var.dim and kind else base
+
+    def plain(self, t):
+        if t in NUMBERS:
+            return NUMBERS[t]
+        if t in self.h.structs:
+            return camel(t)
+        if t in self.h.enums:
+            return "ctypes.c_int"
+        if t in self.h.calls:
+            return camel(t) + ".c"
+        fail("no rule for the type " + t)
+
+    def number(self, dim):
+        return dim if dim.isdigit() else re.sub("^DEM_", "", dim)
+
+    # -- shapes of arrays, from comments --
+    def shape(self, struct, field, fields):
+        doc = field.doc
+        group = [f for f in fields if f.doc == doc and f.pointer]
+        named = re.search(r"\b%s: (count|cells)\b(?: x (\w+))?" % field.name, doc)
+        parts = doc.split(";")
+        if not named and len(group) > 1 and len(parts) == len(group):
+            doc = parts[group.index(field)]
+        found = named or re.search(r"\b(count|cells)\b(?: x (\w+))?", doc)
+        if not found:
+            found = {f.name: m for f, m in zip([f for f in fields if f.pointer],
+                                               re.finditer(r"\b(\w+_count) x (\w+)", self.h.structs[struct][1]))}.get(field.name)
+        if not found:
+            return None
+        return [repr(found.group(1))] + ([found.group(2) if found.group(2).isdigit() else repr(found.group(2))] if found.group(2) else [])
+
+    def counts(self, name, fields):
+        """Lengths that follow from arrays: {length: (array, width)}."""
+        found = {}
+        for i, field in enumerate(fields):
+            if field.type != "int" or not re.search(r"(^|_)count$", field.name) or name in ("dem_bodies", "dem_trials"):
+                continue
+            word = field.name[:-6]
+            arrays = [f for f in fields if (f.pointer and f.type not in ("char", "void")) or (f.dim and f.type not in ("char",))]
+            array = next((f for f in arrays if word and f.name.startswith(word[:4])), None)
+            if not array and word in ("", "class"):
+                array = next((f for f in fields[i:] if f in arrays), None)
+            if array:
+                shape = self.shape(name, array, fields) if array.pointer else None
+                found[field.name] = (array.name, int(shape[1]) if shape and len(shape) > 1 else 1)
+        return found
+
+    # -- parts of the file --
+    def enum(self, name):
+        values, doc = self.h.enums[name]
+        names = [v[0] for v in values]
+        prefix = os.path.commonprefix(names)
+        prefix = prefix[:prefix.rindex("_") + 1]
+        if name == "dem_result":
+            prefix = "DEM_"
+        self.write("\n\nclass %s(enum.IntEnum):" % camel(name))
+        self.write(doc_lines(4, doc))
+        for value, number, note in values:
+            short = value[len(prefix):]
+            short = "_" + short if short[0].isdigit() else short
+            if note:
+                for line in textwrap.wrap(note, 112):
+                    self.write("    # " + line)
+            self.write("    %s = %d" % (short if short != "None" else "NONE", number))
+
+    def wrap(self, f):
+        """A function type: how a Python function becomes a C function, and the type."""
+        name = camel(f.name)
+        struct_result = f.type in self.h.structs and not f.star
+        given, poison, pointers = [], None, []
+        for a in f.arguments:
+            if a.name == "user":
+                continue
+            if a.pointer and a.type == "dem_world":
+                given.append("context.world(%s)" % a.name)
+            elif a.pointer and a.type in self.h.structs:
+                given.append(a.name + "[0]")
+                if not a.const and (poison is None or poison[1]):
+                    poison = (a.name, False)
+            elif a.pointer and a.type in NUMBERS and "count" in [x.name for x in f.arguments]:
+                given.append("ctypes.cast(%s, ctypes.POINTER(%s*count))[0]" % (a.name, NUMBERS[a.type]))
+            elif a.pointer and a.type in NUMBERS:
+                given.append(a.name + "[0]")
+                pointers.append(a)
+                if not a.const and poison is None and f.name not in ("dem_contact_fn",):
+                    poison = (a.name, True)
+            else:
+                given.append(a.name)
+        if struct_result:           # ctypes has no functions that return a struct: see World.__init__
+            self.write("\n\n%s = Function(None, ctypes.c_void_p)" % name)
+            self.write("%s.__doc__ = %r" % (name, f.doc))
+            return
+        names = ", ".join(a.name for a in f.arguments)
+        self.write("\n\ndef _wrap_%s(function, context, struct):" % f.name)
+        for a in pointers:
+            size = {"memory": "context.memory", "rates": "2" if "rate_fn" in f.name else "context.reals", "reals": "context.reals",
+                    "values": "len(struct.columns.split())"}.get(a.name) or fail(
+                        "no rule for the length of %s of %s" % (a.name, f.name))
+            self.write("    %s_type = ctypes.POINTER(%s*%s)" % (a.name, NUMBERS[a.type], "(%s)" % size if "(" in size else size))
+        result = "None" if f.type == "void" and not f.star else "ctypes.c_void_p" if f.star else self.plain(f.type)
+        self.write("\n    def call(%s):" % names)
+        self.write("        try:")
+        call = "function(%s)" % ", ".join(given)
+        convert = {"None": "%s", "ctypes.c_void_p": "return %s", "ctypes.c_double": "return float(%s)"}.get(
+            result, "return int(%s or context.raised is not None)")
+        self.write("            " + convert % call)
+        self.write("        except BaseException as error:")
+        self.write("            context.fail(error)")
+        if poison:
+            self.write("            %s[0][0] = _NAN" % poison[0] if poison[1] else
+                       "            ctypes.cast(%s, ctypes.POINTER(Real))[0] = _NAN" % poison[0])
+        if result == "ctypes.c_double":
+            self.write("            return _NAN")
+        elif result not in ("None", "ctypes.c_void_p"):
+            self.write("            return 1")
+        kinds = [a.name + "_type" if a in pointers else self.value(a, False) for a in f.arguments]
+        self.write("    return ctypes.cast(ctypes.CFUNCTYPE(%s)(call), %s.c)" % (", ".join([result] + kinds), name))
+        self.write("\n\n%s = Function(%s)" % (name, ", ".join(
+            ["_wrap_" + f.name, result] + [self.value(a, False) for a in f.arguments])))
+        self.write("%s.__doc__ = %r" % (name, f.doc))
+
+    def struct(self, name):
+        fields, doc = self.h.structs[name]
+        rows = []
+        for f in fields:
+            kind = self.value(f)
+            if f.call:
+                f.call.name = name + "_" + f.name
+                self.wrap(f.call)
+                kind = camel(f.call.name)
+            elif f.pointer and f.dim:
+                kind = "ctypes.POINTER(%s)*%s" % (self.plain(f.type), self.number(f.dim))
+            elif f.pointer and kind.startswith("ctypes.POINTER"):
+                shape = self.shape(name, f, fields)
+                if shape or f.type in self.h.structs or name.endswith("_desc"):
+                    kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + (["const=True"] if f.const else []))
+            rows.append((f.name, kind, f.doc))
+        self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), "Id" if name in self.ids else "Struct"))
+        self.write(doc_lines(4, doc or "The id of a %s." % name[4:]))
+        self.write("    __slots__ = ()")
+        self.write("    c_name = %r" % name)
+        counts = self.counts(name, fields)
+        if counts:
+            self.write("    counts = %r" % counts)
+        self.write("    rows = [")
+        last = None
+        for row, kind, note in rows:
+            head = "        (%r, %s, " % (row, kind)
+            if note == last and note:
+                self.write(head + '""),')
+                continue
+            last = note
+            lines = textwrap.wrap(note, 100, drop_whitespace=False, break_long_words=False, break_on_hyphens=False)
+            if not lines or len(head) + len(repr(note)) < 118:
+                self.write(head + repr(note) + "),")
+            else:
+                self.write(head.rstrip())
+                self.write("\n".join("         " + repr(line) for line in lines) + "),")
+        self.write("    ]")
+        for f in self.h.functions:
+            if self.owner(f) == name:
+                self.method(f, name)
+
+    # -- functions --
+    def owner(self, f):
+        """The class that a function becomes a method of: an id, a handle, or None."""
+        if not f.arguments or not f.arguments[0].pointer or f.arguments[0].type not in HANDLES:
+            return None
+        if len(f.arguments) > 1:
+            kind = f.arguments[1].type
+            if kind in self.ids and not f.arguments[1].pointer and f.name.startswith(kind + "_"):
+                return kind
+        return f.arguments[0].type
+
+    def short(self, f, owner):
+        """The name of a method."""
+        name = f.name[len(owner) + 1:] if f.name.startswith(owner + "_") else f.name[4:]
+        for end in ("_add", "_get", "_open", "_create"):
+            if name.endswith(end):
+                name = name[:-len(end)]
+        if name == "get":                   # named after the struct that it returns
+            name = f.arguments[-1].type.split("_")[-1]
+        if f.name == "dem_bodies_add":
+            name = "bodies_add"             # world.bodies are those that are there
+        return name
+
+    def signature(self, f):
+        return "(%r, %s, [%s])" % (("dempy_" if f.inline else "") + (f.name[4:] if f.inline else f.name), self.result(f),
+                                   ", ".join(self.argument(a) for a in f.arguments))
+
+    def result(self, f):
+        if f.star:
+            return "ctypes.c_char_p" if f.type == "char" else "ctypes.c_void_p"
+        return "None" if f.type == "void" else self.plain(f.type)
+
+    def argument(self, a):
+        if a.dim:
+            return "ctypes.POINTER(%s)" % self.plain(a.type)
+        return self.value(a, False)
+
+    def method(self, f, owner):
+        """A method, a property, or a function of the module (owner None)."""
+        h, args = self.h, list(f.arguments)
+        name = self.short(f, owner) if owner else re.sub("_get$", "", f.name[4:])
+        world = "self" if owner in HANDLES else "self.world"
+        pass_on, pre, outs, params, docs, fields = [], [], [], [], [], None
+        if owner:
+            pass_on.append("%s._at" % world)
+            args.pop(0)
+            if owner not in HANDLES:
+                pass_on.append("self")
+                args.pop(0)
+        counter = next((i for i, a in enumerate(args) if a.name == "count"), len(args))
+        arrays = [a for i, a in enumerate(args) if a.pointer and not a.dim and a.type in (NUMBERS if i < counter else {**NUMBERS, **h.structs})
+                  and (a.type in NUMBERS or a.const or a.type in self.ids)
+                  or a.pointer and [x.name for x in args[i + 1:]] == ["capacity"]]
+        inputs = [a for a in arrays if a.const]
+        counted = any(a.name == "count" for a in args) and inputs
+        capacity = any(a.name == "capacity" for a in args)
+        optional = False
+        after = []
+        if not owner and f.inline:              # laws, in laws
+            params = [(a.name, None) for a in args]
+            pass_on, args, arrays, inputs = [a.name for a in args], [], [], []
+        for i, a in enumerate(args):
+            kind = a.type
+            following = args[i + 1] if i + 1 < len(args) else None
+            if a.name == "user":
+                pass_on.append("None")
+            elif kind in h.calls:
+                params.append((a.name, "None" if all(x.name == "user" for x in args[i + 1:]) else None))
+                value = a.name
+                if kind == "dem_progress_fn":
+                    value = "%s or _go_on" % a.name
+                pre.append("%s = %s._callback(%s, %s)" % (a.name, world, camel(kind), value))
+                pass_on.append(a.name)
+            elif a.name == "count" and counted:
+                pass_on.append("count")
+            elif a in inputs:
+                width = 1
+                if kind == "dem_real":
+                    found = re.search(r"\b%ss?\b[^.;]*?\(?(?:count|of)?\b[^.;]*?count x (\d)" % re.escape(a.name.rstrip("s")), f.doc)
+                    found = found or (len(inputs) == 1 and re.search(r"count x (\d)", f.doc))
+                    width = int(found.group(1)) if found else 1
+                first = a is inputs[0]
+                null = not first and counted and re.search(r"\b%ss?\b[^.]*null" % a.name.rstrip("s"), f.doc)
+                params.append((a.name, "None" if null else None))
+                optional = optional or bool(null)
+                item = camel(kind) if kind in h.structs else self.plain(kind)
+                source = "[%s._bound(%s.make(item)) for item in %s]" % (world, item, a.name) if kind == "dem_wall_part" else a.name
+                if not counted:             # numbers of bodies and walls
+                    size = "%s._context.reals" % world if f.name != "dem_bodies_reals_set" else "%s._context.reals*%s.bodies.count" % (world, world)
+                    pre.append("%s = _array(%s, %s, %s, %r)" % (a.name, a.name, item, size, a.name))
+                elif first:
+                    pre.append("%s = _array(%s, %s)" % (a.name, source, item))
+                    pre.append("count = _count(%s, %d, %r)" % (a.name, width, a.name))
+                else:
+                    pre.append("%s = _array(%s, %s, %s, %r)" % (a.name, source, item, "count" if width == 1 else "%d*count" % width, a.name))
+                pass_on.append(a.name)
+            elif a.dim or (a in arrays and not a.const):
+                item = camel(kind) if kind in h.structs else self.plain(kind)
+                width = 1
+                found = re.search(r"\b%s\b[^.;]*?x (\d)" % a.name, f.doc) if kind == "dem_real" else re.search(
+                    r"capacity x (\d)", f.doc) if capacity else None
+                width = int(found.group(1)) if found else 1
+                size = (self.number(a.dim) if a.dim else "capacity" if capacity else "count" if any(x.name == "count" for x in args) else
+                        "class_count" if any(x.name == "class_count" for x in args) else "%s._context.reals" % world)
+                if capacity:
+                    pre.append("capacity = %s" % ("64" if "finding" in kind else "%s._number(_lib.%s(%s, None, 0))" % (world, f.name, "%s._at" % world)))
+                whole = item if width == 1 else "(%s*%d)" % (item, width)
+                pre.append("%s = (%s*max(%s, 1))()" % (a.name, whole, size))
+                pass_on.append("ctypes.cast(%s, ctypes.POINTER(%s))" % (a.name, item))
+                outs.append((a.name, size))
+            elif a.name == "capacity":
+                pass_on.append("capacity")
+            elif a.pointer and kind in HANDLES:
+                params.append((a.name, None))
+                pass_on.append(a.name + "._at")
+            elif a.pointer and kind == "FILE":
+                params.append(("out", "None"))
+                pass_on.append("FILE")
+            elif a.pointer and kind in h.structs and not a.const and kind in self.free and f.name.endswith("_place"):
+                params.append((a.name, None))
+                pass_on.append(a.name)
+            elif a.pointer and kind in h.structs and not a.const:
+                pre.append("%s = %s()" % (a.name, camel(kind)))
+                pass_on.append(a.name)
+                outs.append((a.name, None))
+            elif a.pointer and kind in h.structs and all(x.pointer and x.type in h.structs and not x.const for x in args[i + 1:]) and (kind in h.zero or f.name.endswith("_set")):
+                fields = (a, kind)
+                pass_on.append(a.name)
+            elif a.pointer and kind in h.structs:
+                params.append((a.name, None))
+                pre.append("%s = %s" % (a.name, "%s._bound(%s.make(%s))" % (world, camel(kind), a.name) if owner else "%s.make(%s)" % (camel(kind), a.name)))
+                pass_on.append(a.name)
+            elif a.pointer and kind == "char":
+                params.append((a.name, None))
+                pass_on.append("os.fsencode(%s)" % a.name if a.name == "path" else "%s.encode()" % a.name)
+            elif a.pointer and kind == "void":
+                params.append((a.name, None))
+                if a.name == "data":
+                    pre.append("data = data.encode() if isinstance(data, str) else bytes(data)")
+                pass_on.append(a.name)
+            elif a.name == "size" and i and args[i - 1].name == "data":
+                pass_on.append("len(data)")
+            elif kind in h.enums:
+                params.append((a.name, "0" if owner and a is args[-1] else None))
+                pass_on.append("_number(%s, %s)" % (a.name, camel(kind)))
+            elif kind == "dem_region":
+                params.append((a.name, None))
+                pass_on.append("%s._bound(Region.make(%s))" % (world, a.name))
+            else:
+                last = all(x.pointer or x.type in h.calls or x.name == "user" for x in args[i + 1:])
+                default = "None" if kind == "dem_box" and last else "(1, 0, 0, 0)" if a is args[-1] and a.name == "orientation" else "0" if optional or (f.name, a.name) in ZEROS else None
+                params.append((a.name, default))
+                pass_on.append(a.name)
+        # -- keyword arguments for the fields of a desc --
+        star, given = [], ""
+        if fields:
+            a, kind = fields
+            members = self.h.structs[kind][0]
+            base = f.name.endswith("_set") and any(g.name == f.name[:-4] + "_get" for g in h.functions)
+            taken = {p for p, _ in params}
+            sets = re.match(r"Sets ([\w, ]+)\.", f.doc)         # the fields that the function uses, if it names them
+            sets = re.findall(r"\w+", sets.group(1).replace(" and ", ", ")) if sets else []
+            if base and sets and set(sets) <= {m.name for m in members}:
+                taken |= {m.name for m in members} - set(sets)
+            star = [(m.name, "None" if base else self.default(m)) for m in members if m.name not in taken]
+            if base:
+                getter = next(g for g in h.functions if g.name == f.name[:-4] + "_get")
+                inner = ("self." + self.short(getter, owner)) if owner not in HANDLES else "self.%s(%s)" % (
+                    self.short(getter, owner), ", ".join(p for p, _ in params))
+                pre.append("%s = %s" % (a.name, inner))
+                pre.append("%s._put({name: value for name, value in (%s,) if value is not None})" % (
+                    a.name, ", ".join("(%r, %s)" % (m, m) for m, _ in star)))
+            else:
+                pre.append("%s = %s(%s)" % (a.name, camel(kind), ", ".join("%s=%s" % (m, m) for m, _ in star)))
+            key = ", (%r, self)" % f.name if owner not in HANDLES else ""
+            if any(m.call or m.type in h.calls or m.type in ("dem_motion",) for m in members):
+                pre.append("%s = %s._bound(%s%s)" % (a.name, world, a.name, key))
+            note = None
+            for m in members:
+                if m.name in taken:
+                    continue
+                if m.doc and m.doc != note:
+                    docs.append("%s: %s" % (m.name, m.doc))
+                note = m.doc
+            if base:
+                docs.insert(0, "Fields that are not given stay as they are.")
+        elif any(a.pointer and a.type in h.structs and a.const and a.type in h.zero for a in args):
+            pass
+        # -- parameters with a default are last --
+        seen = False
+        for i, (p, default) in enumerate(params):
+            if default is None and any(d is not None for _, d in params[:i]):
+                seen = True
+        if seen:
+            params = [(p, None) for p, _ in params]
+        call = "_lib.%s(%s)" % (("dempy_" + f.name[4:]) if f.inline else f.name, ", ".join(pass_on))
+        text = ", ".join((["self"] if owner else []) + [p if d is None else "%s=%s" % (p, d) for p, d in params]
+                         + (["*"] if star else []) + ["%s=%s" % s for s in star])
+        prop = owner and f.name.endswith("_get") and not params and not star
+        pad = "    " if owner else ""
+        self.write("")
+        if not owner:
+            self.write("")
+        if prop:
+            self.write(pad + "@property")
+        lines = textwrap.wrap("def %s(%s):" % (name, text), 118 - len(pad) - 8, break_long_words=False, break_on_hyphens=False)
+        self.write("\n".join([pad + lines[0]] + [pad + "        " + line for line in lines[1:]]))
+        self.write(doc_lines(len(pad) + 4, f.doc, docs))
+        body = pre + self.ending(f, owner, world, call, outs, params)
+        for line in body:
+            inner = line[:len(line) - len(line.lstrip())]
+            for piece in textwrap.wrap(line, 114 - len(pad), subsequent_indent=inner + "    ", break_long_words=False, break_on_hyphens=False):
+                self.write(pad + "    " + piece)
+        if owner:
+            self.names.setdefault(owner, []).append(name)
+
+    def default(self, m):
+        if m.call or m.pointer or m.type in self.h.calls or m.type in self.ids or m.type in self.h.structs:
+            return "None"
+        if m.dim:
+            return "()"
+        if m.type in self.h.enums:
+            values = self.h.enums[m.type][0]
+            return repr(values[0][0].split("_", 2)[-1].lower()) if False else "0"
+        return "0"
+
+    def ending(self, f, owner, world, call, outs, params):
+        """The lines that call the function and return its result."""
+        h = self.h
+        if "FILE" in call:
+            head, inner = call.split("(", 1)
+            inner = inner[:-1].split(", ")
+            inner.remove("FILE")
+            if owner is None:
+                return ["return Handle()._print(%s, out, %s)" % (head, ", ".join(inner))]
+            end = "_print(%s, out, %s)" % (head, ", ".join(inner))
+            return ["return %s.%s" % (world, end)]
+        if not owner:
+            if f.type == "char" and f.star:
+                return ["return (%s or b'').decode()" % call]
+            return ["return " + call]
+        if f.type == "dem_result" and (re.search(r"_(step|run|run_to|settle)$", f.name)):
+            head, inner = call.split("(", 1)
+            run = "%s._ok(%s._run(%s, %s)" % (world, world, head, inner)
+            if f.name.endswith("_step"):            # without functions of yours there is nothing to interrupt
+                return ["%s._ok(%s._run(%s, %s if %s._context.kept else %s)" % (world, world, head, inner, world, call)]
+            return [run] + (["return " + ", ".join(name for name, _ in outs)] if outs else [])
+        if f.type == "dem_result":
+            lines = ["%s._ok(%s)" % (world, call)]
+            if outs:
+                shown = []
+                for o, size in outs:
+                    a = next(a for a in f.arguments if a.name == o)
+                    if a.type in self.free:
+                        lines.append("%s = %s._taken(%s, _lib.%s)" % (o, world, o, self.free[a.type]))
+                    elif a.type in h.structs and size is None:
+                        lines.append("%s._with(%s)" % (world, o))
+                    if a.type in self.ids and size:
+                        lines.append("%s = [item.of(%s) for item in %s]" % (o, world, o))
+                    shown.append(o)
+                lines.append("return " + ", ".join(shown))
+            return lines
+        if f.type in self.ids:
+            if f.name.endswith("_get"):
+                return ["found = " + call, "%s._ok(0)" % world, "found._of = %s" % world, "return found if found else None"]
+            return ["return %s._id(%s)" % (world, call)]
+        if f.star:
+            if f.type == "char":
+                return ["return (%s or b'').decode()" % call]
+            kind = HANDLES[f.type]
+            return ["return %s(%s._pointer(%s), %s%s)" % (kind, world, call, world, ", path" if "path" in dict(params) else "")]
+        if f.type in h.structs:
+            return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found)" % world]
+        if f.type == "int" and outs:
+            o, size = outs[0]
+            if f.name.endswith("classes_get"):
+                return ["found = %s" % call, "%s._filled(found, 0, %r)" % (world, f.name),
+                        "return %s" % ", ".join("list(%s[:found])" % o for o, _ in outs)]
+            if size == "capacity" and "finding" not in o:
+                return ["count = %s._number(%s)" % (world, call), "array = (%s._type_*count).from_buffer(%s)" % (o, o),
+                        "return array"]
+            return ["count = %s._number(%s)" % (world, call), "return list(%s[:min(count, len(%s))])" % (o, o)]
+        if f.type == "int" and re.search(r"_(fill|pack)$", f.name):
+            return ["return %s._filled(%s, count, %r)" % (world, call, f.name)]
+        if f.type == "int" or f.name == "dem_sizes_finer_get":
+            return ["return %s._number(%s)" % (world, call)]
+        if f.type == "void":
+            return [call, "%s._ok(0)" % world]
+        return ["found = " + call, "%s._ok(0)" % world, "return found"]
+
+    def handle(self, name, init):
+        """A class of a pointer that the library owns."""
+        functions = [f for f in self.h.functions if self.owner(f) == name]
+        hidden = {"dem_progress_print", "dem_world_destroy", "dem_replay_close", "dem_slabs_destroy"} | set(self.free.values())
+        self.write(init)
+        for f in functions:
+            if f.name not in hidden:
+                self.method(f, name)
+
+    def file(self):
+        h = self.h
+        self.names = {}
+        self.write(HEAD)
+        for name, value, note in h.constants:
+            self.write("%s = %s%s" % (name[4:], value, "    # " + note if note else ""))
+        self.write("VERSION = VERSION_MAJOR*10000 + VERSION_MINOR*100 + VERSION_PATCH")
+        inline = [f for f in h.functions if f.inline and not f.name.endswith("_make")]
+        self.write("# inline functions of dem.h, which the library exports under other names\n_INLINE = r\"\"\"")
+        for f in inline:
+            args = ", ".join("%s%s %s%s" % ("const " if a.const else "", a.type, "*"*a.pointer, a.name) for a in f.arguments)
+            self.write("%s dempy_%s(%s) { %s%s(%s); }" % (f.result, f.name[4:], args, "" if f.type == "void" else "return ", f.name,
+                                                          ", ".join(a.name for a in f.arguments)))
+        self.write('"""\n')
+        with open(os.path.join(HERE, "base.py")) as file:
+            self.write(file.read())
+        self.write("\n# ---- errors, one for each result " + "-"*66)
+        for name in h.enums:
+            self.enum(name)
+        self.write("\n\n_ERRORS = {}")
+        for value, number, note in h.enums["dem_result"][0]:
+            if number:
+                word = value[len("DEM_ERROR_"):]
+                base = ", " + BUILTIN[word] if word in BUILTIN else ""
+                self.write("\n\nclass %sError(Error%s):" % (camel(word.lower()), base))
+                self.write(doc_lines(4, note))
+                self.write("    result = Result.ERROR_%s" % word)
+                self.write("\n\n_ERRORS[%d] = %sError" % (number, camel(word.lower())))
+        done = set()
+
+        def need(name):
+            if name in done:
+                return
+            done.add(name)
+            if name in h.calls:
+                for a in h.calls[name].arguments:
+                    if a.type in h.structs:
+                        need(a.type)
+                if h.calls[name].type in h.structs:
+                    need(h.calls[name].type)
+                self.wrap(h.calls[name])
+            elif name in h.structs:
+                for f in h.structs[name][0]:
+                    need(f.type)
+                    for a in f.call.arguments if f.call else ():
+                        need(a.type)
+                self.struct(name)
+        for name in h.structs:
+            need(name)
+        for name in h.calls:
+            need(name)
+        self.write("\n\nstructs = [%s]" % ", ".join(camel(n) for n in h.structs))
+        create = next(f for f in h.functions if f.name == "dem_world_create_checked")
+        members = h.structs["dem_world_desc"][0]
+        text = ", ".join(["self", "*"] + ["%s=%s" % (m.name, self.default(m)) for m in members])
+        lines = textwrap.wrap("def __init__(%s):" % text, 106)
+        docs, note = [], None
+        for m in members:
+            if m.doc and m.doc != note:
+                docs.append("%s: %s" % (m.name, m.doc))
+            note = m.doc
+        init = WORLD % ("\n".join(["    " + lines[0]] + ["            " + line for line in lines[1:]]),
+                        doc_lines(8, "Creates an empty world. ArgumentError says which value is out of range.", docs),
+                        textwrap.fill("self._create(WorldDesc(%s))" % ", ".join("%s=%s" % (m.name, m.name) for m in members), 108,
+                                      initial_indent=" "*8, subsequent_indent=" "*12))
+        h.functions.remove(create)
+        self.handle("dem_world", init)
+        self.handle("dem_replay", REPLAY)
+        self.handle("dem_slabs", SLABS)
+        skip = {"dem_progress_print", "dem_world_create_error_get"}
+        for f in h.functions:
+            if self.owner(f) is None and not f.name.endswith("_make") and f.name not in skip:
+                self.method(f, None)
+        self.write(TAIL)
+        self.write("\n\n_FUNCTIONS = [")
+        for f in [create] + h.functions:
+            if f not in inline and f.inline:
+                continue
+            for line in textwrap.wrap(self.signature(f) + ",", 114, subsequent_indent=" ", break_long_words=False, break_on_hyphens=False):
+                self.write("    " + line)
+        self.write("]")
+        for owner, names in self.names.items():
+            for name in names:
+                if names.count(name) > 1:
+                    fail("two functions become %s.%s" % (owner, name))
+        return "\n".join(self.out) + "\n"
+
+
+ZEROS = {("dem_world_settle", "speed"), ("dem_effects_get", "budget"), ("dem_effects_print", "budget"),
+         ("dem_ellipsoids_contact_get", "lambda_"), ("dem_temperature_set", "seed"),
+         ("dem_shape_mesh_add", "dent"), ("dem_sieve_blinded_get", "speed"), ("dem_spheres_pack", "count")}
+
+HEAD = '''"""dem.py gives dem.h to Python: ctypes and the standard library, nothing else. MIT licence.
+
+    import dem
+    world = dem.World(gravity=(0, 0, -9.81))
+    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5, friction=0.5)
+    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    world.run(0.5)
+    print(ball.state.position)
+
+make.py made this file from dem.h and base.py: change those, then `make python`. docs/python.md is the manual. The texts
+below are the comments of dem.h, which name C functions. Rules of names:
+
+    dem_world_step(world, 1)                world.step(1)           functions of a world are methods
+    dem_sphere_add(world, ...)              world.sphere(...)       _add, _get, _open, _create are dropped
+    dem_counters_get(world)                 world.counters          _get without arguments: a property
+    dem_wall_loads_get(world, wall, &l)     wall.loads              functions of an id are its methods
+    dem_body_get(world, body, &state)       body.state              named after the struct that it returns
+    dem_body_set(world, body, &state)       body.set(velocity=...)  only these fields change
+    dem_quat_multiply(a, b)                 dem.quat_multiply(a, b) others are functions of the module
+    dem_vec3_make(1, 2, 3)                  dem.Vec3(1, 2, 3), or the tuple (1, 2, 3)
+    DEM_NORMAL_LINEAR                       dem.NormalLaw.LINEAR, or the word "linear"
+    DEM_ERROR_TIME_STEP                     raises dem.TimeStepError, whose text is the error message
+    struct dem_motion                       dem.Motion, or keyword arguments: wall.motion_set(kind="rotating", ...)
+"""
+import ctypes
+import enum
+import hashlib
+import html
+import os
+import platform
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import warnings
+import weakref
+'''
+
+WORLD = '''
+
+class World(Handle):
+    """A world: everything that one simulation consists of."""
+
+%s
+%s%s
+
+    def _create(self, desc):
+        self._context = _Context(self)
+        self._open = weakref.WeakSet()
+        functions = {path[0] for path in desc._functions}
+        if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
+            desc.threads = 1                        # Python runs one function at a time
+        if "force" in functions:                    # ctypes has no functions that return a struct
+            force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
+
+            def both(body, id, time, sum, torque):
+                sum.x, sum.y, sum.z = force(body.position, body.velocity, body.radius, body.mass, time)
+                if whole:
+                    whole(body, id, time, sum, torque)
+            desc._functions["body_force",] = both
+        self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
+        bound = self._bound(desc, "desc")
+        self._at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
+        if not self._at:
+            raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
+        self._memory = _Memory(self._at, self._context)
+
+    @classmethod
+    def _borrow(cls, pointer, context):
+        """A world that belongs to the library: a copy that a function of yours sees."""
+        world = cls.__new__(cls)
+        world._at, world._context, world._memory, world._open = pointer, context, None, weakref.WeakSet()
+        return world
+
+    def _text(self):
+        return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
+
+    def _free(self, at):
+        for replay in list(self._open):
+            replay.close()
+        self._memory = None                         # views of arrays may hold it longer
+'''
+
+REPLAY = '''
+
+class _Memory:
+    """Destroys a world when neither the World nor a view of its arrays is left."""
+
+    def __init__(self, at, context):
+        self.at, self.context = at, context
+
+    def __del__(self):
+        try:
+            _lib.dem_world_destroy(self.at)
+        except Exception:
+            pass
+
+
+class Replay(Handle):
+    """A replay: world.replay(path) opens it, close() or the end of a `with` block completes the file. Jupyter shows a
+    replay that is closed."""
+
+    def __init__(self, at, world, path):
+        self._at, self._world, self._context, self._memory, self.path = at, world, world._context, world._memory, path
+        world._open.add(self)
+
+    def _repr_html_(self):
+        return Page(self.path)._repr_html_() if self._at is None else "<p>close the replay to see it</p>"
+
+    def _text(self):
+        return self._world._text()
+
+    def _free(self, at):
+        result = _lib.dem_replay_close(at)
+        if result:
+            self._raise(_ERRORS[result])
+'''
+
+SLABS = '''
+
+class Slabs(Handle):
+    """The slabs that one process holds."""
+
+    def __init__(self, at, world):
+        self._at, self._world, self._context, self._memory = at, world, world._context, world._memory
+
+    def _text(self):
+        return (_lib.dem_slabs_error_get(self._at) or b"").decode(errors="replace")
+
+    def _free(self, at):
+        _lib.dem_slabs_destroy(at)
+'''
+
+TAIL = '''
+
+def progress_print(world, done, seconds_left):
+    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
+    world._print(lambda *given: _lib.dem_progress_print(*given), sys.stderr, world._at, done, seconds_left)
+'''
+
+if __name__ == "__main__":
+    path = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "..", "..", "dem.h")
+    with open(path) as file:
+        sys.stdout.write(Writer(Header(file.read())).file())

@@ -1,0 +1,637 @@
+"""python3 tests/python/check.py [WORDS] : tests of examples/python. WORDS: only tests whose names contain the words.
+
+LONG=1 runs whole lessons instead of a part of each. The C lessons that they are compared with have left their output in
+build/out/NAME/log (make lessons); those that have not are run. The last line is "N passed, N failed"."""
+import concurrent.futures
+import ctypes
+import gc
+import importlib.util
+import inspect
+import io
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import warnings
+import weakref
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+PYTHON = os.path.join(ROOT, "examples", "python")
+os.environ.setdefault("DEM_BUILD", os.path.join(ROOT, "build"))
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+sys.path.insert(0, PYTHON)
+sys.dont_write_bytecode = True
+import dem  # noqa: E402
+
+LONG = bool(os.environ.get("LONG"))
+WORK = tempfile.TemporaryDirectory()
+TESTS = []
+
+
+def test(name):
+    def add(function):
+        TESTS.append((name, function))
+        return function
+    return add
+
+
+def same(found, expected, what=""):
+    if found != expected:
+        raise AssertionError("%s: %r instead of %r" % (what or "value", found, expected))
+
+
+def near(found, expected, part=1e-12):
+    if not abs(found - expected) <= part*abs(expected):
+        raise AssertionError("%r instead of %r" % (found, expected))
+
+
+def raises(kind, function, *words):
+    try:
+        function()
+    except kind as error:
+        for word in words:
+            if word not in str(error):
+                raise AssertionError("the message %r lacks %r" % (str(error), word)) from None
+        return error
+    raise AssertionError("no %s was raised" % kind.__name__)
+
+
+def heap(**more):
+    """A world with a floor and glass."""
+    world = dem.World(gravity=(0, 0, -9.81), **more)
+    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5, friction=0.5)
+    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    return world, glass
+
+
+def compiled(name, text, *flags):
+    """A program or a library of C text."""
+    source, path = os.path.join(WORK.name, name + ".c"), os.path.join(WORK.name, name)
+    with open(source, "w") as file:
+        file.write(text)
+    subprocess.run(os.environ.get("CC", "cc").split() + ["-O1", "-I" + ROOT, source, "-o", path, "-lm"] + list(flags), check=True)
+    return path
+
+
+# ---- the file itself, layouts ----
+
+@test("dem.py is what make.py makes of dem.h")
+def _():
+    made = subprocess.run([sys.executable, os.path.join(PYTHON, "make.py")], capture_output=True, text=True, check=True).stdout
+    with open(os.path.join(PYTHON, "dem.py")) as file:
+        same(made == file.read(), True, "the file (make python makes it again)")
+
+
+@test("every public struct has the size and the offsets of C, in double and in single precision")
+def _():
+    with open(os.path.join(ROOT, "dem.h")) as file:
+        text = file.read()
+    public = text[text.index("\n#ifndef DEM_H\n"):text.index("#endif /* DEM_H */")]
+    names = set(re.findall(r"^(?:typedef )?struct (dem_\w+) \{", public, re.M))
+    same({kind.c_name for kind in dem.structs}, names, "structs")
+    lines = []
+    for kind in dem.structs:
+        lines.append('printf("%s %%d\\n", (int)sizeof(%s));' % (kind.c_name, kind.c_name))
+        for name in kind.kinds:
+            lines.append('printf("%s.%s %%d %%d\\n", (int)offsetof(%s, %s), (int)sizeof(((%s *)0)->%s));' % (
+                kind.c_name, name.rstrip("_"), kind.c_name, name.rstrip("_"), kind.c_name, name.rstrip("_")))
+    program = '#include "dem.h"\nint main(void) { %s return 0; }\n' % "\n".join(lines)
+    here = ("import os, sys, ctypes; sys.path.insert(0, %r); import dem\nfor kind in dem.structs:\n"
+            "    print(kind.c_name, ctypes.sizeof(kind))\n    for (raw, _), name in zip(kind._fields_, kind.kinds):\n"
+            "        field = getattr(kind, raw)\n"
+            "        print('%%s.%%s' %% (kind.c_name, name.rstrip('_')), field.offset, field.size)\n" % PYTHON)
+    for real in ("double", "float"):
+        path = compiled("layout_" + real, program, "-DDEM_REAL=" + real)
+        c = subprocess.run([path], capture_output=True, text=True, check=True).stdout.split("\n")
+        python = subprocess.run([sys.executable, "-B", "-c", here], capture_output=True, text=True, check=True,
+                                env=dict(os.environ, DEM_REAL=real)).stdout.split("\n")
+        for one, other in zip(c, python):
+            same(other, one, real)
+        same(len(python), len(c), "fields")
+
+
+@test("every public function and constant of dem.h is there, under a name and with a docstring")
+def _():
+    with open(os.path.join(ROOT, "dem.h")) as file:
+        text = file.read()
+    public = text[text.index("\n#ifndef DEM_H\n"):text.index("#endif /* DEM_H */")]
+    with open(os.path.join(PYTHON, "dem.py")) as file:
+        code = file.read()
+    for name in re.findall(r"^DEM_API [\w ]+[ *](dem_\w+)\(", public, re.M):
+        same(bool(re.search(r"_lib\.%s\b" % name, code[:code.index("_FUNCTIONS = [")] + code[code.index("_FUNCTIONS = ["):].split("]\n")[-1])
+                  or name in code.split("class _Memory")[0]), True, name)
+    for name in re.findall(r"^ *(DEM_[A-Z_0-9]+)(?: = \d+)?,? *(?:/\*.*)?$|enum \{ (DEM_\w+) =", public, re.M):
+        name = name[0] or name[1]
+        found = hasattr(dem, name[4:]) or any(name.endswith("_" + member) or name[4:] == member for kind in vars(dem).values()
+                                              if isinstance(kind, type) and issubclass(kind, dem.enum.IntEnum) for member in kind.__members__)
+        same(found, True, name)
+    for kind in (dem.World, dem.Body, dem.Wall, dem.Replay, dem.Slabs):
+        for name, member in vars(kind).items():
+            if not name.startswith("_"):
+                same(bool(inspect.getdoc(member)), True, "docstring of %s.%s" % (kind.__name__, name))
+    same("kg/m3, required, > 0" in dem.World.material.__doc__, True, "fields in the docstring")
+
+
+# ---- errors ----
+
+@test("a result other than DEM_OK raises the exception of its name with the error message of the library")
+def _():
+    world, glass = heap()
+    error = raises(dem.ArgumentError, lambda: world.run(-1), "dem_world_run", "-1")
+    same(error.result, dem.Result.ERROR_ARGUMENT)
+    same(isinstance(error, ValueError), True, "ArgumentError is a ValueError")
+    raises(dem.FileError, lambda: world.mesh_read("/nowhere/mesh.stl"), "/nowhere/mesh.stl")
+    raises(dem.FormatError, lambda: world.mesh_parse("text", "solid x\nfacet normal 0 0 1\n"), "text")
+    world.sphere(glass, 0.01, (0, 0, 0.0099))
+    world.dt_set(0.1)
+    raises(dem.TimeStepError, lambda: world.step(1), "dem_world_step")
+
+
+@test("a null id raises the error message, and a scene goes on after the exception was caught")
+def _():
+    world, glass = heap()
+    raises(dem.Error, lambda: world.sphere(glass, -1, (0, 0, 1)), "radius", "-1")
+    raises(dem.Error, lambda: world.material(density=-1), "density")
+    raises(dem.ArgumentError, lambda: dem.World(dt=-1), "dem_world_create: dt")
+    world.sphere(glass, 0.01, (0, 0, 1))
+    world.run(0.01)
+    same(world.bodies.count, 1)
+
+
+@test("a wrong field, a wrong word and a wrong number of coordinates are refused before C sees them")
+def _():
+    world, glass = heap()
+    raises(TypeError, lambda: world.material(densty=1), "densty")
+    raises(TypeError, lambda: dem.MaterialDesc(densty=1), "densty", "density")
+    raises(ValueError, lambda: dem.World(normal_law="cubic"), "cubic", "hertz")
+    raises(ValueError, lambda: world.spheres(glass, [(0, 0, 1), (0, 0)], radius=0.01), "positions")
+    raises(ValueError, lambda: world.spheres(glass, [(0, 0, 1)], velocities=[1, 2], radius=0.01), "velocities")
+    raises(AttributeError, lambda: setattr(dem.Motion(), "sped", 1), "sped")
+    raises(Exception, lambda: world.sphere(None, 0.01, (0, 0, 1)), "material")
+
+
+@test("a fill that finds less room than it needs warns, and one that finds none raises")
+def _():
+    world, glass = heap()
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        added = world.spheres_fill(glass, 0.01, (0, 0, 0, 0.05, 0.05, 0.05), 500, 1)
+    same(0 < added < 500 and len(seen) == 1 and "dem_spheres_fill" in str(seen[0].message), True, "warning")
+    raises(dem.Error, lambda: world.spheres_fill(glass, 0.01, (0, 0, 0, 0.001, 0.05, 0.05), 5, 1), "dem_spheres_fill")
+
+
+@test("calls on a world that is closed raise an error")
+def _():
+    with heap()[0] as world:
+        pass
+    raises(dem.Error, lambda: world.run(1), "null")
+    world.close()
+
+
+# ---- lifetimes ----
+
+@test("a world that nothing refers to is freed, with its replay and its functions")
+def _():
+    path = os.path.join(WORK.name, "freed.html")
+    freed = []
+
+    def scene():
+        def law(c, memory, force):
+            force.normal = 1e4*c.overlap + world.time*0
+        world = dem.World(law=law, law_memory=1, law_stiffness=1e4, gravity=(0, 0, -9.81))
+        glass = world.material(density=2500, young=1e7, restitution=1)
+        world.sphere(glass, 0.01, (0, 0, 1))
+        world.replay(path, interval=0.001)
+        world.run(0.01)
+        weakref.finalize(law, freed.append, "law")
+        return weakref.ref(world)
+
+    world = scene()
+    gc.collect()
+    same(world(), None, "world")
+    same(freed, ["law"], "law")
+    same(os.path.getsize(path) > 1000, True, "the replay is complete")
+
+
+@test("a view of an array keeps the memory of its world, also after close")
+def _():
+    world, glass = heap()
+    world.sphere(glass, 0.01, (1, 2, 3))
+    positions = world.bodies.positions
+    world.close()
+    del world
+    gc.collect()
+    same(positions.tolist(), [[1, 2, 3, 0.01]])
+
+
+@test("many worlds in a row need the memory of one")
+def _():
+    def resident():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1])
+    if not os.path.exists("/proc/self/statm"):
+        return
+    for i in range(200):
+        world, glass = heap(body_force=lambda body, id, time, force, torque: None)
+        world.spheres_fill(glass, 0.01, dem.Region(box=(0, 0, 0, 1, 1, 1), inside=lambda centre, radius: 1), 20, 1)
+        world.step(2)
+        if i == 50:
+            gc.collect()
+            begun = resident()
+    gc.collect()
+    if resident() > begun + 1000:                           # pages of 4 kB; a world has 200 of them
+        raise AssertionError("%d pages more after 150 worlds" % (resident() - begun))
+
+
+# ---- buffers ----
+
+@test("arrays of bodies are views of the memory of the library, and read only")
+def _():
+    world, glass = heap()
+    world.spheres(glass, [(0, 0, 1), (1, 0, 1)], velocities=[(1, 2, 3), (4, 5, 6)], radii=[0.01, 0.02])
+    bodies = world.bodies
+    same(bodies.positions.shape, (2, 4))
+    same(bodies.velocities.tolist(), [[1, 2, 3, 0], [4, 5, 6, 0]])
+    same(bodies.radii if hasattr(bodies, "radii") else bodies.positions[1, 3], 0.02)
+    before = bodies.positions
+    world.body_id(0).set(position=(7, 0, 1))
+    same(world.bodies.positions[0, 0], 7.0)
+    same(before[0, 0], 7.0, "the view sees the change: no copy")
+    raises(TypeError, lambda: bodies.positions.__setitem__((0, 0), 1.0))
+    same(bodies.slots.tolist(), [0, 1])
+    same(dem.World().bodies.count, 0)
+
+
+@test("numpy views positions without a copy, and arrays of numpy are accepted")
+def _():
+    try:
+        import numpy
+    except ImportError:
+        print("SKIP: numpy not found (Debian package python3-numpy): its views are not tested")
+        return
+    world, glass = heap()
+    world.spheres(glass, numpy.arange(30.0).reshape(10, 3), radii=numpy.full(10, 0.1))
+    view = numpy.asarray(world.bodies.positions)
+    same(view.shape, (10, 4))
+    world.body_id(3).set(position=(-5, 0, 50))
+    same(view[3, 0], -5.0)
+    world.step(1)
+    same(numpy.asarray(world.contacts).dtype.names[:2], ("a", "b"))
+
+
+@test("arrays are taken from lists, tuples, buffers and arrays of ctypes")
+def _():
+    import array
+    flat = [0, 0, 1, 1, 0, 1]
+    hashes = set()
+    for positions in (flat, [(0, 0, 1), (1, 0, 1)], array.array("d", flat), (ctypes.c_double*6)(*flat), [dem.Vec3(0, 0, 1), dem.Vec3(1, 0, 1)]):
+        world, glass = heap()
+        world.spheres(glass, positions, radius=0.01)
+        world.step(10)
+        hashes.add(world.hash)
+    same(len(hashes), 1, "digests")
+
+
+# ---- functions ----
+
+LAWS = """
+#include "dem.h"
+void law(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
+    const dem_real most = memory[0] > c->overlap ? memory[0] : c->overlap;
+    force->normal = 1e4*c->overlap + 3*c->closing_speed;
+    force->tangent.x = -2*c->slip.x; force->tangent.y = -2*c->slip.y; force->tangent.z = -2*c->slip.z;
+    if (c->dt > 0) memory[0] = most;
+}
+dem_vec3 wind(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass, double time, void *user) {
+    (void)user; (void)mass;
+    return dem_vec3_make(0.01*radius*(1 - velocity.x), 1e-4*time, 1e-5*position.z);
+}
+void shake(double time, dem_pose *pose, void *user) {
+    (void)user;
+    pose->position.z = 1e-3*time*time; pose->velocity.z = 2e-3*time;
+}
+"""
+
+
+def python_law(c, memory, force):
+    most = max(memory[0], c.overlap)
+    force.normal = 1e4*c.overlap + 3*c.closing_speed
+    slip = c.slip
+    force.tangent = (-2*slip.x, -2*slip.y, -2*slip.z)
+    if c.dt > 0:
+        memory[0] = most
+
+
+def wind(position, velocity, radius, mass, time):
+    return 0.01*radius*(1 - velocity.x), 1e-4*time, 1e-5*position.z
+
+
+def shake(time, pose):
+    pose.position.z = 1e-3*time*time
+    pose.velocity.z = 2e-3*time
+
+
+def box_of(law, force, motion):
+    world = dem.World(gravity=(0, 0, -9.81), law=law, law_memory=1, law_stiffness=1e4, force=force, threads=1)
+    glass = world.material(density=2500, young=1e7, restitution=1)
+    floor = world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    world.wall_cylinder(glass, (0, 0, 0), (0, 0, 1), 0.03, 1)
+    floor.motion_set(kind="user", function=motion)
+    world.spheres_fill(glass, 0.005, dem.Region(box=(-0.03, -0.03, 0, 0.03, 0.03, 0.06), cylinder="z"), 60, 1)
+    world.run(0.05)
+    return world
+
+
+@test("a law, a force field and a motion in Python give the bits of the same functions in C")
+def _():
+    library = ctypes.CDLL(compiled("laws.so", LAWS, "-shared", "-fPIC", "-ffp-contract=off"))
+    c = box_of(library.law, library.wind, library.shake)
+    python = box_of(python_law, wind, shake)
+    same(c.counters.contacts + c.counters.wall_contacts > 5, True, "there are contacts")
+    same(python.hash, c.hash, "digest")
+
+
+@test("a Python law may call the built-in laws and gets their bits")
+def _():
+    def law(c, memory, force):
+        dem.law_hertz(c, memory, force)
+        dem.law_spring(c, memory, force)
+        dem.law_roll_epsd(c, dem.tail(memory, 3), force)
+
+    def run(**more):
+        world = dem.World(gravity=(0, 0, -9.81), dt=2e-5, **more)
+        glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5, friction=0.5, rolling_friction=0.1)
+        world.wall_plane(glass, (0, 0, 0), (0.1, 0, 1))
+        world.spheres(glass, [(0, 0, 0.011), (0.015, 0.003, 0.012)], velocities=[(0.3, 0, 0), (0, 0, -0.2)], radius=0.01)
+        world.run(0.03)
+        return [list(body.position) + list(body.spin) for body in (world.body_id(0).state, world.body_id(1).state)]
+    same(run(law=law, law_memory=6, law_vectors=2), run())
+
+
+@test("an exception in a law, a force field, a motion, a region and a progress function reaches the caller")
+def _():
+    class Mine(Exception):
+        pass
+
+    def fail(*_):
+        raise Mine("here")
+    for more in ({"law": fail, "law_stiffness": 1e4}, {"force": fail}, {"body_force": fail}, {"body_reals": "heat", "body_reals_fn": fail}):
+        world, glass = heap(**more)
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        raises(Mine, lambda: world.run(0.1), "here")
+        same(world.steps < 5, True, "steps until %s stopped" % list(more)[0])
+    world, glass = heap()
+    wall = world.wall_plane(glass, (0, 0, 5), (0, 0, -1))
+    world.sphere(glass, 0.01, (0, 0, 1))
+    raises(Mine, lambda: (wall.motion_set(kind="user", function=fail), world.run(0.1)), "here")
+    world, glass = heap()
+    raises(Mine, lambda: world.spheres_fill(glass, 0.01, dem.Region(box=(0, 0, 0, 1, 1, 1), inside=fail), 3, 1), "here")
+    world.sphere(glass, 0.01, (0, 0, 3))
+    raises(Mine, lambda: world.run(0.1, fail), "here")
+    steps = world.steps
+    world.run(0.01)                                         # the state is intact
+    same(world.steps > steps, True, "the run goes on")
+    output = world.output(function=fail, interval=0.001)
+    raises(Mine, lambda: world.run(0.1), "here")
+    output.remove()
+    raises(Mine, lambda: world.trials_run(duration=0.01, budget=1, observables=[dem.Observable(name="x", function=fail)]), "here")
+
+
+@test("a progress function that returns a number other than 0, and Ctrl-C, stop a run and leave it intact")
+def _():
+    world, glass = heap()
+    world.sphere(glass, 0.01, (0, 0, 1))
+    raises(dem.StoppedError, lambda: world.run(1e4, lambda world, done, left: done > 0), "stopped")
+    import _thread
+    timer = threading.Timer(0.2, _thread.interrupt_main)
+    timer.start()
+    raises(KeyboardInterrupt, lambda: world.run(1e4))
+    world.run(0.01)
+
+
+@test("functions of outputs and replays see the world, and a CSV file gets what they return")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 1))
+    seen, path = [], os.path.join(WORK.name, "values.csv")
+
+    def values(world, out):
+        out[0] = ball.state.position.z
+        out[1] = 7
+    world.output(kind="csv", path=path, interval=0.01, columns="height seven", values=values)
+    world.output(function=lambda world, number: seen.append((number, world.time)), interval=0.02)
+    with world.replay(os.path.join(WORK.name, "r.html"), interval=0.01, number="height", number_fn=lambda world, body: body.of(world).state.position.z) as replay:
+        world.run(0.1)
+        replay.value_set("height (m)", 1)
+    with open(path) as file:
+        lines = file.read().split()
+    same(lines[0], "time,height,seven")
+    same(len(lines), 12)
+    same(lines[1].split(",")[1:], ["1", "7"])
+    same([number for number, _ in seen], [0, 1, 2, 3, 4, 5])
+    same("<iframe" in replay._repr_html_(), True)
+
+
+@test("numbers on bodies, wall parts, joints, polyhedra and grains from a file work")
+def _():
+    def exchange(c, memory, force):
+        force.normal = 1e4*c.overlap
+        if c.who.b:
+            c.who.rate_a[0] = 5*(c.who.reals_b[0] - c.who.reals_a[0])
+            c.who.rate_b[0] = 5*(c.who.reals_a[0] - c.who.reals_b[0])
+    world = dem.World(law=exchange, law_stiffness=1e4, law_who=1, body_reals="heat")
+    glass = world.material(density=2500, young=1e7, restitution=1)
+    a, b = world.sphere(glass, 0.01, (0, 0, 0)), world.sphere(glass, 0.01, (0.0199, 0, 0))
+    a.set(fixed=1)
+    b.set(fixed=1)
+    a.reals_set([1])
+    world.run(1)
+    near(a.reals[0] + b.reals[0], 1, 1e-9)
+    near(a.reals[0], 0.5, 1e-3)
+    same(world.bodies.reals.shape, (2, 1))
+    world = dem.World(response="impulses", dt=1e-3, orientations=1)
+    glass = world.material(density=2500)
+    arm = world.sphere(glass, 0.1, (1, 0, 0))
+    joint = world.joint(kind="revolute", a=arm, point=(0, 0, 0), axis=(0, 0, 1), motor="speed", speed=1)
+    world.run(0.5)
+    near(joint.state.turned, 0.5, 0.01)
+    world, glass = heap()
+    shape = world.shape_polyhedron([(x, y, z) for x in (0, 0.01) for y in (0, 0.01) for z in (0, 0.01)])
+    near(shape.info.volume, 1e-6, 1e-9)
+    cube = world.body(glass, shape, (0, 0, 0.1))
+    same(cube.state.shape, shape)
+    grains = world.grains_parse("g.csv", "x y z r\n1 2 3 0.1\n4 5 6 0.2\n")
+    same(grains.positions.tolist(), [[1, 2, 3], [4, 5, 6]])
+    same(grains.velocities, None)
+    world.grains(glass, grains)
+    same(world.body_counts.present, 3)
+    mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
+    world.mesh_place(mesh, 2, None, (0, 0, -1))
+    same(mesh.vertices.tolist(), [[0, 0, -1], [2, 0, -1], [0, 2, -1]])
+    out = io.StringIO()
+    world.report(out)
+    same(out.getvalue().startswith("dem.h "), True)
+    same(dem.quat_rotate(dem.quat_about((0, 0, 1), math.pi), (1, 0, 0)).x, -1.0)
+    field = world.field(box=(0, 0, 0, 1, 1, 1), cells=(2, 3, 4), interval=1e-5)
+    world.step(10)
+    same(field.data.momentum.shape, (24, 3))
+    same([float(r) for r in world.sizes_draw(dem.Sizes(kind="uniform", min=1, max=2, by_count=1), 4, 0)][0] >= 1, True)
+
+
+@test("slabs compute what the world computes, and worlds in two threads run side by side")
+def _():
+    def scene(seed):
+        world, glass = heap(threads=1)
+        world.spheres_fill(glass, 0.01, (-0.3, -0.3, 0, 0.3, 0.3, 0.4), 800, seed)
+        return world
+    alone, world = scene(1), scene(1)
+    with world.slabs(axis=0, count=2) as slabs:
+        slabs.step(200)
+        slabs.collect(world)
+    alone.step(200)
+    same(world.steps, alone.steps)
+    near(world.totals.kinetic, alone.totals.kinetic, 1e-9)
+    begun = time.time()
+    one = [scene(seed) for seed in (1, 2)]
+    for each in one:
+        each.step(150)
+    alone_time = time.time() - begun
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        two = list(pool.map(scene, (1, 2)))
+        begun = time.time()
+        list(pool.map(lambda world: world.step(150), two))
+    same([world.hash for world in two], [world.hash for world in one], "digests")
+    print("# two worlds one after the other and side by side: %.2f s, %.2f s" % (alone_time, time.time() - begun))
+
+
+@test("a checkpoint that Python writes continues bit for bit")
+def _():
+    path = os.path.join(WORK.name, "run.checkpoint")
+
+    def scene():
+        world, glass = heap()
+        world.spheres_fill(glass, 0.01, (0, 0, 0, 0.1, 0.1, 0.2), 50, 1)
+        return world
+    first, second = scene(), scene()
+    first.run(0.05)
+    first.checkpoint_write(path)
+    first.run(0.05)
+    second.checkpoint_read(path)
+    second.run(0.05)
+    same(second.hash, first.hash)
+
+
+# ---- the notebook ----
+
+@test("drum.ipynb is a notebook of format 4 whose cells run as a program")
+def _():
+    path = os.path.join(PYTHON, "drum.ipynb")
+    with open(path) as file:
+        book = json.load(file)
+    same((book["nbformat"], book["nbformat_minor"] >= 5), (4, True))
+    same(book["metadata"]["kernelspec"]["language"], "python")
+    ids = [cell["id"] for cell in book["cells"]]
+    same(len(set(ids)), len(ids), "ids")
+    code = []
+    for cell in book["cells"]:
+        same(set(cell) - {"id", "cell_type", "metadata", "source"}, {"outputs", "execution_count"} if cell["cell_type"] == "code" else set(), "keys")
+        same(bool(re.match(r"^[a-zA-Z0-9_-]{1,64}$", cell["id"])), True, cell["id"])
+        same(all(isinstance(line, str) and (line.endswith("\n") or line is cell["source"][-1]) for line in cell["source"]), True, "source")
+        if cell["cell_type"] == "code":
+            code.append("".join(cell["source"]))
+    program = "\n\n".join(code)
+    result = subprocess.run([sys.executable, "-B", "-c", program], capture_output=True, text=True, cwd=WORK.name,
+                            env=dict(os.environ, PYTHONPATH=PYTHON, QUICK="" if LONG else "1"))
+    if result.returncode:
+        raise AssertionError(result.stderr[-1500:])
+    for word in ("torque = ", "angle of repose", "rolling friction = "):
+        same(word in result.stdout, True, "%r in what it prints" % word)
+    same(os.path.getsize(os.path.join(WORK.name, "drum.html")) > 10000, True, "replay")
+
+
+# ---- the lessons ----
+
+def lesson(name):
+    """Compares what a lesson prints in Python with what it prints in C."""
+    log, program = os.path.join(ROOT, "build", "out", name, "log"), os.path.join(ROOT, "build", name)
+    if os.path.exists(log) and (not os.path.exists(program) or os.path.getmtime(log) >= os.path.getmtime(program)):
+        with open(log) as file:
+            text = file.read()
+    else:
+        text = subprocess.run([program], capture_output=True, text=True, cwd=WORK.name, env=dict(os.environ, OMP_NUM_THREADS="1")).stdout
+    lines = [line.rstrip() for line in text.split("\n")]
+    made = subprocess.run([sys.executable, "-B", os.path.join(PYTHON, "lessons.py"), name] + ([] if LONG else ["--short"]),
+                          capture_output=True, text=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
+    if made.returncode:
+        return "it ends with an error: " + made.stderr[-800:]
+    rows = [line for line in made.stdout.split("\n") if line]
+    for row in rows:
+        if "..." in row:                                    # a time differs from run to run
+            head, tail = row.split("...")
+            found = any(line.startswith(head) and line.endswith(tail.strip()) for line in lines)
+        else:
+            found = any(line == row or line.startswith(row + "  ") or row.startswith("Gamma") and line.startswith(row) for line in lines)
+        if not found:
+            return "C does not print %r" % row
+    if LONG:
+        measured = [line for line in lines if re.search(r" (within|to) [\d.e-]+", line[60:]) or " +- " in line]
+        lost = [line for line in measured if not any(line.startswith(row.split("...")[0]) for row in rows)
+                and not re.search(r"exam, lines|step with all five|s per s|as it is|step |softer|stiffer|springs|friction *[\d.]+e|active", line)]
+        if lost:
+            return "Python does not print %r" % lost[0]
+    return "" if rows else "it prints nothing"
+
+
+def main():
+    words = " ".join(sys.argv[1:])
+    passed = failed = 0
+
+    def report(name, error, seconds):
+        nonlocal passed, failed
+        passed, failed = passed + (not error), failed + bool(error)
+        print("%s %s%s" % ("FAILED" if error else "ok    ", name, ": " + error if error else ""), "(%.1f s)" % seconds if seconds > 1 else "", flush=True)
+
+    spec = importlib.util.spec_from_file_location("lessons", os.path.join(PYTHON, "lessons.py"))
+    lessons = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(lessons)
+    began = time.time()
+    dem.load()
+    print("# compiled and loaded in %.1f s" % (time.time() - began))
+    with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count() or 1))) as pool:
+        # the longest first, beside the other tests
+        order = ["05_silo", "08_drum", "10_clusters", "02_pile", "06_hopper", "12_effects", "07_brazil_nut", "11_advise",
+                 "01_bounce", "03_incline", "04_own_law", "09_moving_wall"]
+        same(sorted(order), sorted(lessons.LESSONS), "lessons")
+        names = {name: "lesson %s prints in Python what it prints in C, digit for digit" % name for name in order}
+        futures = {name: pool.submit(timed, lesson, name) for name in order if words in names[name]}
+        for name, function in TESTS:
+            if words in name:
+                began = time.time()
+                try:
+                    function()
+                    error = ""
+                except Exception as caught:
+                    error = "%s: %s" % (type(caught).__name__, caught)
+                report(name, error, time.time() - began)
+        for name, future in futures.items():
+            error, seconds = future.result()
+            report(names[name], error, seconds)
+    print("%d passed, %d failed" % (passed, failed))
+    return failed > 0 or not passed
+
+
+def timed(function, *arguments):
+    began = time.time()
+    try:
+        return function(*arguments), time.time() - began
+    except Exception as error:
+        return "%s: %s" % (type(error).__name__, error), time.time() - began
+
+
+if __name__ == "__main__":
+    sys.exit(main())
