@@ -34,9 +34,10 @@ BENCH_ALSO := $(if $(wildcard bench/bench.c),build/bench_single build/bench_O2)
 ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/accuracy_one_domain)
 
 hash := \#
+HAVE_PYTHON := $(if $(filter python-check,$(MAKECMDGOALS)),$(shell command -v $(PYTHON)))
 
 # ---- options that the compiler knows; tested only if something is to be compiled ----
-ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs options,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs options python,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -60,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help all run new install python python-check rooms test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -188,6 +189,13 @@ options: dem.h ## write docs/options.md and docs/options_run.md, every field of 
 	@mkdir -p build && $(CC) -std=c99 -DDEM_STATIC -DDEM_NO_OPENMP -I. tests/options.c -o build/options $(LDLIBS) && build/options > build/options.txt
 	@awk -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options.md
 	@awk -v part=run -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options_run.md
+
+python: dem.h ## write examples/python/dem.py from dem.h and examples/python/base.py
+	@mkdir -p build && $(PYTHON) examples/python/make.py > build/dem.py && cp build/dem.py examples/python/dem.py
+
+python-check: $(if $(HAVE_PYTHON),$(LESSONS)) ## test examples/python: dem.py is that of dem.h, layouts of structs, errors, functions, lessons; LONG=1: whole lessons
+	@if [ -z "$(HAVE_PYTHON)" ]; then echo "SKIP: $(PYTHON) not found (Debian package python3): examples/python is not tested"; \
+	    else CC="$(CC)" JOBS=$(JOBS) LONG=$(LONG) DEM_CFLAGS="$(if $(filter file,$(origin CFLAGS)),-O1,$(CFLAGS))" $(PYTHON) tests/python/check.py "$(FILTER)"; fi
 
 web: ## build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77

@@ -30,13 +30,16 @@ import html
 import os
 import platform
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import warnings
 import weakref
+try:
+    import _signal              # signal.signal takes 15 us
+except ImportError:
+    import signal as _signal
 VERSION_MAJOR = 0
 VERSION_MINOR = 1
 VERSION_PATCH = 0
@@ -560,7 +563,7 @@ class Handle:
     def _run(self, function, *arguments):
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
         caller gets KeyboardInterrupt."""
-        before = signal.getsignal(signal.SIGINT) if threading.get_ident() == threading.main_thread().ident else None
+        before = _signal.getsignal(_signal.SIGINT) if threading.get_ident() == threading.main_thread().ident else None
         if not callable(before):
             return function(*arguments)
 
@@ -569,11 +572,11 @@ class Handle:
                 before(number, frame)
             except BaseException as error:
                 self._context.fail(error)
-        signal.signal(signal.SIGINT, note)
+        _signal.signal(_signal.SIGINT, note)
         try:
             return function(*arguments)
         finally:
-            signal.signal(signal.SIGINT, before)
+            _signal.signal(_signal.SIGINT, before)
 
     def _id(self, value):
         self._ok(0)

@@ -816,13 +816,16 @@ import html
 import os
 import platform
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import warnings
 import weakref
+try:
+    import _signal              # signal.signal takes 15 us
+except ImportError:
+    import signal as _signal
 '''
 
 WORLD = '''

@@ -440,15 +440,12 @@ def _():
 @test("numbers on bodies, wall parts, joints, polyhedra and grains from a file work")
 def _():
     def exchange(c, memory, force):
-        force.normal = 1e4*c.overlap
-        if c.who.b:
+        if c.who.b:                                         # no force: the spheres stay
             c.who.rate_a[0] = 5*(c.who.reals_b[0] - c.who.reals_a[0])
             c.who.rate_b[0] = 5*(c.who.reals_a[0] - c.who.reals_b[0])
     world = dem.World(law=exchange, law_stiffness=1e4, law_who=1, body_reals="heat")
     glass = world.material(density=2500, young=1e7, restitution=1)
     a, b = world.sphere(glass, 0.01, (0, 0, 0)), world.sphere(glass, 0.01, (0.0199, 0, 0))
-    a.set(fixed=1)
-    b.set(fixed=1)
     a.reals_set([1])
     world.run(1)
     near(a.reals[0] + b.reals[0], 1, 1e-9)
@@ -546,7 +543,7 @@ def _():
             code.append("".join(cell["source"]))
     program = "\n\n".join(code)
     result = subprocess.run([sys.executable, "-B", "-c", program], capture_output=True, text=True, cwd=WORK.name,
-                            env=dict(os.environ, PYTHONPATH=PYTHON, QUICK="" if LONG else "1"))
+                            env=dict(os.environ, PYTHONPATH=PYTHON, **({} if LONG else {"DRUM_SECONDS": "0.04"})))
     if result.returncode:
         raise AssertionError(result.stderr[-1500:])
     for word in ("torque = ", "angle of repose", "rolling friction = "):
