@@ -551,6 +551,25 @@ def _():
     same(os.path.getsize(os.path.join(WORK.name, "drum.html")) > 10000, True, "replay")
 
 
+# ---- the pages ----
+
+@test("the Python programs of docs/python.md and docs/how_to.md run and print what the pages show")
+def _():
+    for page in ("python.md", "how_to.md"):
+        with open(os.path.join(ROOT, "docs", page)) as file:
+            blocks = re.findall(r"```python\n(.*?)```(?:\n```text\n(.*?)```|\nIt prints `(.*?)`)?", file.read(), re.S)
+        program = "import io, sys\nfrom contextlib import redirect_stdout\n"
+        for code, text, line in blocks:
+            expected = text or line and line + "\n"
+            program += ("with redirect_stdout(io.StringIO()) as out:\n    exec(compile(%r, %r, 'exec'))\nexpected = %r\n"
+                        "if expected and out.getvalue() != expected: sys.exit('the page shows %%r, the program prints %%r' %% (expected, out.getvalue()))\n"
+                        % (code, page, expected))
+        result = subprocess.run([sys.executable, "-B", "-c", program], capture_output=True, text=True, cwd=WORK.name,
+                                env=dict(os.environ, PYTHONPATH=PYTHON))
+        if result.returncode or not blocks:
+            raise AssertionError("%s: %s" % (page, result.stderr[-1500:]))
+
+
 # ---- the lessons ----
 
 def lesson(name):
@@ -596,17 +615,8 @@ def main():
     spec = importlib.util.spec_from_file_location("lessons", os.path.join(PYTHON, "lessons.py"))
     lessons = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(lessons)
-    began = time.time()
-    dem.load()
-    print("# compiled and loaded in %.1f s" % (time.time() - began))
-    with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count() or 1))) as pool:
-        # the longest first, beside the other tests
-        order = ["05_silo", "08_drum", "10_clusters", "02_pile", "06_hopper", "12_effects", "07_brazil_nut", "11_advise",
-                 "01_bounce", "03_incline", "04_own_law", "09_moving_wall"]
-        same(sorted(order), sorted(lessons.LESSONS), "lessons")
-        names = {name: "lesson %s prints in Python what it prints in C, digit for digit" % name for name in order}
-        futures = {name: pool.submit(timed, lesson, name) for name in order if words in names[name]}
-        for name, function in TESTS:
+    def run(tests):
+        for name, function in tests:
             if words in name:
                 began = time.time()
                 try:
@@ -615,6 +625,22 @@ def main():
                 except Exception as caught:
                     error = "%s: %s" % (type(caught).__name__, caught)
                 report(name, error, time.time() - began)
+
+    began = time.time()
+    with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count() or 1))) as pool:
+        loading = pool.submit(timed, dem.load)              # compiles, beside the tests that need no library
+        run(TESTS[:3])
+        error, seconds = loading.result()
+        if error:
+            sys.exit("check.py: " + error)
+        print("# compiled and loaded in %.1f s" % seconds)
+        # the longest first, beside the other tests
+        order = ["08_drum", "06_hopper", "05_silo", "10_clusters", "12_effects", "07_brazil_nut", "11_advise",
+                 "02_pile", "01_bounce", "03_incline", "04_own_law", "09_moving_wall"]
+        same(sorted(order), sorted(lessons.LESSONS), "lessons")
+        names = {name: "lesson %s prints in Python what it prints in C, digit for digit" % name for name in order}
+        futures = {name: pool.submit(timed, lesson, name) for name in order if words in names[name]}
+        run(TESTS[3:])
         for name, future in futures.items():
             error, seconds = future.result()
             report(names[name], error, seconds)
