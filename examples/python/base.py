@@ -81,7 +81,10 @@ class _Library:
         with _LOADING:
             if "dem_world_step" not in self.__dict__:
                 load()
-        return object.__getattribute__(self, name)
+        if name not in self.__dict__:
+            raise AttributeError("%s has no %s, an inline function of dem.h; libraries that dem.build() makes have it"
+                                 % (self.__dict__.get("path"), name))
+        return self.__dict__[name]
 
 
 _LOADING = threading.RLock()

@@ -3,6 +3,7 @@
 LONG=1 runs whole lessons instead of a part of each. The C lessons that they are compared with have left their output in
 build/out/NAME/log (make lessons); those that have not are run. The last line is "N passed, N failed"."""
 import concurrent.futures
+import contextlib
 import ctypes
 import gc
 import importlib.util
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 import warnings
 import weakref
 
@@ -457,6 +459,8 @@ def _():
     joint = world.joint(kind="revolute", a=arm, point=(0, 0, 0), axis=(0, 0, 1), motor="speed", speed=1)
     world.run(0.5)
     near(joint.state.turned, 0.5, 0.01)
+    joint.motor_set("torque", 0, 0.1)
+    joint.remove()
     world, glass = heap()
     shape = world.shape_polyhedron([(x, y, z) for x in (0, 0.01) for y in (0, 0.01) for z in (0, 0.01)])
     near(shape.info.volume, 1e-6, 1e-9)
@@ -521,6 +525,126 @@ def _():
     second.checkpoint_read(path)
     second.run(0.05)
     same(second.hash, first.hash)
+
+
+@test("every function of a scene, from materials to checkpoints, can be called from Python")
+def _():
+    def at(name):
+        return os.path.join(WORK.name, name)
+    silent = io.StringIO()
+    w, g = heap()
+    s = w.material(density=7800, young=2e7, poisson=0.25, restitution=0.5, friction=0.3)
+    w.pair_set(g, s, friction=0.1)
+    same((w.pair(g, s).friction, w.pair(g, g).friction), (0.1, 0.5))
+    near(w.coefficients(g, s, 1e-3, 0).r_eff, 1e-3)
+    w.pairs_print(silent)
+    g.set(friction=0.4)
+    same((g.desc.friction, g.desc.young), (0.4, 1e7))
+    plane = w.wall_plane(g, (0, 0, 0), (0, 0, 1))
+    w.wall_cone(g, (0, 0, -1), (0, 0, -2), 0.1, 0.2)
+    w.wall_revolved(g, (0, 0, -5), (0, 0, 1), [0.1, 0.2], [0, 0.1])
+    sieve = w.wall_sieve(g, kind="square", point=(0, 0, -3), aperture=0.01, bar=0.01, thickness=0.002)
+    w.wall_grains(g, [(0, 0, -4), (0, 0.1, -4)], 0.01, 1)
+    cluster = w.shape_cluster(positions=[(0, 0, 0), (0.001, 0, 0)], radius=0.001)
+    same(cluster.info.spheres, 2)
+    cube = w.shape_polyhedron([(x, y, z) for x in (0, 0.01) for y in (0, 0.01) for z in (0, 0.01)])
+    w.body(g, w.shape_union([cube, cube], [(0, 0, 0), (0.01, 0, 0)]), (0, 0, 0.5))
+    w.bodies_add(g, cluster, [(0, 0, 0.2), (0, 0, 0.3)], scales=[1, 2])
+    same(w.bodies_fill(g, cluster, (-0.1, -0.1, 0.6, 0.1, 0.1, 0.8), 5, 1), 5)
+    sizes = dem.Sizes(kind="lognormal", median=0.002, spread=0.1)
+    same(w.sizes_fill(g, sizes, (-0.1, -0.1, 0.8, 0.1, 0.1, 1), 5, 1), 5)
+    near(sum(w.sizes_classes(sizes, 4)[1]), 1)
+    near(w.sizes_finer(sizes, 0.002), 0.5)
+    same(len(w.sizes_draw(dem.Sizes(kind="sieve_curve", radius=[0.001, 0.002, 0.003], passing=[0, 0.5, 1]), 3, 0)), 3)
+    same(w.spheres_pack(g, 0.002, 0, (-0.01, -0.01, 1.2, 0.01, 0.01, 1.3), 10), 10)
+    feed = w.feed(material=g, radius=[1e-3, 2e-3], amount=[3, 4], limited=1, rate=1e5, box=(-0.05, -0.05, 1.5, 0.05, 0.05, 1.6),
+                  sizes=[None, dem.Sizes(kind="uniform", min=1e-3, max=2e-3)])
+    outlet = w.outlet(box=(-1, -1, 1.49, 1, 1, 1.7), keep=1, radius=[1e-3])
+    plane.motion_set(kind="table", table=[dem.MotionRow(0, (0, 0, 0)), dem.MotionRow(1, (0, 0, 0.001))])
+    field = w.field(box=(-1, -1, 0, 1, 1, 1), cells=(2, 2, 2), stress=1, interval=1e-5)
+    w.run(0.002)
+    same((feed.state.total, outlet.state.total >= 0, sum(feed.state.fed)), (7, True, 7))
+    outlet.reset()
+    same((field.data.stress.shape, field.cell(0, 0, 0).density >= 0), ((8, 6), True))
+    field.reset()
+    same(w.step_advice.dt > 0 and w.ledger.kinetic == 0 and w.totals.mass > 0 and w.error == "", True)
+    w.candidates_rebuild()
+    same((len(w.candidates) >= len(w.contacts) - 20, w.contacts_each(lambda contact, memory: None) >= 0, w.sieve_blinded(sieve)), (True, True, 0))
+    raises(dem.Error, lambda: w.bonds_make(-1, lambda contact, memory: None), "dem_bonds_make")
+    raises(dem.ArgumentError, lambda: w.repose_heap(), "dem_repose_heap_get")
+    raises(dem.ArgumentError, lambda: w.repose_drum(None, (0, 1, 0)), "dem_repose_drum_get")
+    near(w.observer_kinetic(), w.totals.kinetic + w.totals.rotational)
+    same(w.observer_height() > 0 and w.observer_contacts() >= 0 and w.observer_walls() >= 0, True)
+    for name in ("vtp", "vtk", "xyz", "contacts_vtp", "surfaces_vtp"):
+        getattr(w, name + "_write")(at(name))
+        same(os.path.getsize(at(name)) > 100, True, name)
+    w.walls_vtp_write(at("walls"), 0, 1)
+    plane.loads_csv_write(at("loads.csv"))
+    same((plane.pose.rotation[0], plane.loads.contacts), (1.0, 0))
+    plane.loads_reset()
+    with open(at("parts.obj"), "w") as file:
+        file.write("o a\nv 0 0 -9\nv 1 0 -9\nv 0 1 -9\nf 1 2 3\no b\nf 1 2 3\n")
+    same(w.mesh_part_read(at("parts.obj"), "a")[0].triangle_count, 1)
+    part = w.wall_parts(at("parts.obj"), 1, [dem.WallPart(name="a", material=g, motion=dem.Motion(kind="user", function=lambda t, pose: None))])[0]
+    with open(at("cube.obj"), "w") as file:
+        file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                   "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
+    mesh, health = w.mesh_read(at("cube.obj"))
+    positions, radii, fit = w.mesh_spheres(mesh, 3)
+    same((len(positions), len(radii), round(fit.volume, 9), health.open_edges), (3, 3, 1.0, 0))
+    same(w.shape_mesh(mesh).info.corners, 8)
+    w.wall_mesh(s, dem.Mesh(vertices=[(0, 0, -8), (1, 0, -8), (0, 1, -8)], triangles=[(0, 1, 2)])).remove()
+    with open(at("profile"), "w") as file:
+        file.write("2 1\n0 0\n1 0\n1 2\n")
+    same(w.profile_read(at("profile")).segments.tolist(), w.profile_parse("text", "2 1\n0 0\n1 0\n1 2\n").segments.tolist())
+    with open(at("grains.csv"), "w") as file:
+        file.write("x y z r\n1 2 3 0.1\n")
+    same(w.grains_read(at("grains.csv")).count, 1)
+    same([effect.name for effect in w.effects()][0], "contacts")
+    w.effects_print(out=silent)
+    same(len(w.check()) >= 0 and w.check_print(silent) >= 0, True)
+    w.output_every("vtp", at("out_####.vtp"), 0.001).remove()
+    w.gravity_set((0, 0, -1))
+    same(w.desc.gravity.z, -1.0)
+    w.temperature_set(1e-4, 1)
+    near(w.temperature, 1e-4)
+    raises(dem.StoppedError, lambda: w.settle(1e-4), "dem_world_settle")
+    with contextlib.redirect_stderr(silent):
+        w.run_to(w.time + 1e-5, dem.progress_print)
+    w.overlap_max_reset()
+    w.body_id(0).remove()
+    part.remove()
+    same(w.body_counts.removed, 1)
+    numbers = dem.World(body_reals="heat")
+    glass = numbers.material(density=2500, young=1e7, restitution=1)
+    floor = numbers.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    floor.reals_set([4])
+    numbers.sphere(glass, 0.01, (0, 0, 1))
+    numbers.bodies_reals_set([[3]])
+    same((floor.reals[0], numbers.bodies.reals.tolist()), (4.0, [[3.0]]))
+    contact = dem.ellipsoids_contact(dem.Ellipsoid((0, 0, 0), (1, 1, 1)), dem.Ellipsoid((1.9, 0, 0), (1, 1, 1)))
+    near(contact.scale, 0.95)
+    same(dem.result_name(dem.Result.ERROR_FILE), "file error")
+    same(dem.quat_unrotate(dem.quat_multiply((1, 0, 0, 0), (1, 0, 0, 0)), (1, 2, 3)), (1, 2, 3))
+    flat = dem.World(planar=1)
+    same(flat.material(density=1, young=1, restitution=1).world.shape_polygon([(0, 0), (1, 0), (0, 1)]).info.volume, 0.5)
+    ball = dem.World()
+    same(ball.shape_ellipsoid((1, 2, 3)).info.semi_axes.z, 3.0)
+    small, glass = heap()
+    small.spheres_fill(glass, 0.01, (0, 0, 0, 0.1, 0.1, 0.1), 10, 1)
+    dem.trials_print(small.trials_run(duration=0.01, budget=1), silent)
+    slabs = small.slabs(axis=0, count=2)
+    same((sum(slabs.slab(i).grains for i in range(2)), slabs.counters.steps, slabs.error), (10, 0, ""))
+    slabs.loads_reset()
+    with small.replay(at("frames.html")) as replay:
+        replay.frame_write()
+    force, given = dem.ContactForce(), dem.Contact(overlap=1e-4, kn=1e5, kt=1e5, ct=1, kun=2e5, r_eff=0.01, m_eff=1e-3, dt=1e-5,
+                                                   slip=(0.1, 0, 0), normal=(0, 0, 1), friction=0.5, friction_static=0.5)
+    memory = (dem.Real*8)()
+    for law in ("hertz", "linear", "hysteretic", "viscous", "step", "mindlin", "mindlin_rescaled", "roll_step", "roll_constant"):
+        getattr(dem, "law_" + law)(given, memory, force)
+    dem.law_load(given, force, 0)
+    same(force.normal > 0 and dem.memory_rotate(given, (1, 0, 0)).x == 1, True)
 
 
 # ---- the notebook ----
@@ -623,7 +747,8 @@ def main():
                     function()
                     error = ""
                 except Exception as caught:
-                    error = "%s: %s" % (type(caught).__name__, caught)
+                    line = [frame.lineno for frame in traceback.extract_tb(caught.__traceback__) if frame.filename == __file__]
+                    error = "line %s: %s: %s" % (", ".join(map(str, line[1:])), type(caught).__name__, caught)
                 report(name, error, time.time() - began)
 
     began = time.time()
@@ -640,7 +765,20 @@ def main():
         same(sorted(order), sorted(lessons.LESSONS), "lessons")
         names = {name: "lesson %s prints in Python what it prints in C, digit for digit" % name for name in order}
         futures = {name: pool.submit(timed, lesson, name) for name in order if words in names[name]}
+        called = set()
+
+        def recorded(name, function):
+            def call(*arguments):
+                called.add(name)
+                return function(*arguments)
+            return call
+        functions = {name: getattr(dem._lib, name) for name, _, _ in dem._FUNCTIONS}
+        for name, function in functions.items():
+            setattr(dem._lib, name, recorded(name, function))
         run(TESTS[3:])
+        if not words:
+            lost = sorted(set(functions) - called)
+            report("every function of the library is called by a test", lost and "not called: " + ", ".join(lost), 0)
         for name, future in futures.items():
             error, seconds = future.result()
             report(names[name], error, seconds)
