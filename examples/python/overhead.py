@@ -102,6 +102,7 @@ def main():
             world, _ = bed(side, layers, law=None)
             step = ctypes.cast(dem._lib.dem_world_step, ctypes.c_void_p)
             in_c = seconds(lambda: c.loop(step, world._at, n))
+            world, _ = bed(side, layers, law=None)          # the same states again
             in_python = seconds(lambda: [world.step(1) for _ in range(n)])
             return in_c/n, in_python/n
 

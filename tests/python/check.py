@@ -220,6 +220,18 @@ def _():
     same(os.path.getsize(path) > 1000, True, "the replay is complete")
 
 
+@test("a world that is closed completes its replays first, and closing twice does nothing")
+def _():
+    path = os.path.join(WORK.name, "closed.html")
+    world, glass = heap()
+    replay = world.replay(path)
+    replay.frame_write()
+    world.close()
+    world.close()
+    replay.close()
+    same(os.path.exists(path), True, "the replay is complete")
+
+
 @test("a view of an array keeps the memory of its world, also after close")
 def _():
     world, glass = heap()
