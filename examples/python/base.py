@@ -2,7 +2,7 @@
 
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
 _NAN = float("nan")
-_CHECKS = """
+_SOURCE = """
 #include <stddef.h>
 #define DEM_IMPLEMENTATION
 #include "dem.h"
@@ -18,9 +18,9 @@ def _compiler(folder):
     if Real is ctypes.c_float:
         command.append("-DDEM_REAL=float")
     probe = os.path.join(folder, "probe.c")
-    for flags, text in ((["-shared", "-fPIC"], "int one(void) { return 1; }\n"), (["-ffp-contract=off"], "int one;\n"),
-                        (["-fopenmp"], "#include <omp.h>\nint one(void) { return omp_get_max_threads(); }\n"),
-                        (["-Xpreprocessor", "-fopenmp", "-lomp"], "#include <omp.h>\nint one(void) { return omp_get_max_threads(); }\n")):
+    threads = "#include <omp.h>\nint one(void) { return omp_get_max_threads(); }\n"
+    for flags, text in ((["-shared", "-fPIC"], "int one;\n"), (["-ffp-contract=off"], "int one;\n"), (["-fopenmp"], threads),
+                        (["-Xpreprocessor", "-fopenmp", "-lomp"], threads)):
         if "-lomp" in flags and "-fopenmp" in command:
             continue
         with open(probe, "w") as file:
@@ -50,7 +50,7 @@ def build(header=None, folder=None):
     except OSError:
         folder = os.path.join(os.path.expanduser("~"), ".cache", "dem")
         os.makedirs(folder, exist_ok=True)
-    source = _CHECKS + _INLINE + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
+    source = _SOURCE + _INLINE + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
         "sizeof(%s)" % kind.c_name for kind in structs)
     with open(header, "rb") as file:
         text = file.read()
@@ -621,6 +621,97 @@ class Handle:
             self.close()
         except Exception:
             pass
+
+
+class _Memory:
+    """Destroys a world when neither the World nor a view of its arrays is left."""
+
+    def __init__(self, at, context):
+        self.at, self.context = at, context
+
+    def __del__(self):
+        try:
+            _lib.dem_world_destroy(self.at)
+        except Exception:
+            pass
+
+
+class WorldBase(Handle):
+    """What a World has beside the functions of dem.h."""
+
+    def _create(self, desc):
+        self._context = _Context(self)
+        self._open = set()                          # replays, which close() completes
+        functions = {path[0] for path in desc._functions}
+        if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
+            desc.threads = 1                        # Python runs one function at a time
+        if "force" in functions:                    # ctypes has no functions that return a struct
+            force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
+
+            def both(body, id, time, sum, torque):
+                sum.x, sum.y, sum.z = force(body.position, body.velocity, body.radius, body.mass, time)
+                if whole:
+                    whole(body, id, time, sum, torque)
+            desc._functions["body_force",] = both
+        self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
+        bound = self._bound(desc, "desc")
+        self._at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
+        if not self._at:
+            raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
+        self._memory = _Memory(self._at, self._context)
+
+    @classmethod
+    def _borrow(cls, pointer, context):
+        """A world that belongs to the library: a copy that a function of yours sees."""
+        world = cls.__new__(cls)
+        world._at, world._context, world._memory, world._open = pointer, context, None, set()
+        return world
+
+    def _text(self):
+        return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
+
+    def _free(self, at):
+        for replay in list(self._open):
+            replay.close()
+        self._memory = None                         # views of arrays may hold it longer
+
+
+class ReplayBase(Handle):
+    """What a Replay has beside the functions of dem.h."""
+
+    def __init__(self, at, world, path):
+        self._at, self._world, self._context, self._memory, self.path = at, world, world._context, world._memory, path
+        world._open.add(self)
+
+    def _repr_html_(self):
+        return Page(self.path)._repr_html_() if self._at is None else "<p>close the replay to see it</p>"
+
+    def _text(self):
+        return self._world._text()
+
+    def _free(self, at):
+        self._world._open.discard(self)
+        result = _lib.dem_replay_close(at)
+        if result:
+            self._raise(_ERRORS[result])
+
+
+class SlabsBase(Handle):
+    """What Slabs have beside the functions of dem.h."""
+
+    def __init__(self, at, world):
+        self._at, self._world, self._context, self._memory = at, world, world._context, world._memory
+
+    def _text(self):
+        return (_lib.dem_slabs_error_get(self._at) or b"").decode(errors="replace")
+
+    def _free(self, at):
+        _lib.dem_slabs_destroy(at)
+
+
+def progress_print(world, done, seconds_left):
+    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
+    world._print(_lib.dem_progress_print, sys.stderr, world._at, done, seconds_left)
 
 
 def _go_on(world, done, seconds_left):

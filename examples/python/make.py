@@ -293,7 +293,7 @@ class Writer:
             if note:
                 for line in textwrap.wrap(note, 112):
                     self.write("    # " + line)
-            self.write("    %s = %d" % (short if short != "None" else "NONE", number))
+            self.write("    %s = %d" % (short, number))
 
     def wrap(self, f):
         """A function type: how a Python function becomes a C function, and the type."""
@@ -579,14 +579,8 @@ class Writer:
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
-        elif any(a.pointer and a.type in h.structs and a.const and a.type in h.zero for a in args):
-            pass
         # -- parameters with a default are last --
-        seen = False
-        for i, (p, default) in enumerate(params):
-            if default is None and any(d is not None for _, d in params[:i]):
-                seen = True
-        if seen:
+        if any(default is None and params[i - 1][1] is not None for i, (_, default) in enumerate(params) if i):
             params = [(p, None) for p, _ in params]
         call = "_lib.%s(%s)" % (("dempy_" + f.name[4:]) if f.inline else f.name, ", ".join(pass_on))
         text = ", ".join((["self"] if owner else []) + [p if d is None else "%s=%s" % (p, d) for p, d in params]
@@ -614,9 +608,6 @@ class Writer:
             return "None"
         if m.dim:
             return "()"
-        if m.type in self.h.enums:
-            values = self.h.enums[m.type][0]
-            return repr(values[0][0].split("_", 2)[-1].lower()) if False else "0"
         return "0"
 
     def ending(self, f, owner, world, call, outs, params):
@@ -765,7 +756,6 @@ class Writer:
         for f in h.functions:
             if self.owner(f) is None and not f.name.endswith("_make") and f.name not in skip:
                 self.method(f, None)
-        self.write(TAIL)
         self.write("\n\n_FUNCTIONS = [")
         for f in [create] + h.functions:
             if f not in inline and f.inline:
@@ -830,104 +820,23 @@ except ImportError:
 
 WORLD = '''
 
-class World(Handle):
+class World(WorldBase):
     """A world: everything that one simulation consists of."""
 
 %s
-%s%s
-
-    def _create(self, desc):
-        self._context = _Context(self)
-        self._open = weakref.WeakSet()
-        functions = {path[0] for path in desc._functions}
-        if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
-            desc.threads = 1                        # Python runs one function at a time
-        if "force" in functions:                    # ctypes has no functions that return a struct
-            force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
-
-            def both(body, id, time, sum, torque):
-                sum.x, sum.y, sum.z = force(body.position, body.velocity, body.radius, body.mass, time)
-                if whole:
-                    whole(body, id, time, sum, torque)
-            desc._functions["body_force",] = both
-        self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
-        bound = self._bound(desc, "desc")
-        self._at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
-        if not self._at:
-            raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
-        self._memory = _Memory(self._at, self._context)
-
-    @classmethod
-    def _borrow(cls, pointer, context):
-        """A world that belongs to the library: a copy that a function of yours sees."""
-        world = cls.__new__(cls)
-        world._at, world._context, world._memory, world._open = pointer, context, None, weakref.WeakSet()
-        return world
-
-    def _text(self):
-        return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
-
-    def _free(self, at):
-        for replay in list(self._open):
-            replay.close()
-        self._memory = None                         # views of arrays may hold it longer
-'''
+%s%s'''
 
 REPLAY = '''
 
-class _Memory:
-    """Destroys a world when neither the World nor a view of its arrays is left."""
-
-    def __init__(self, at, context):
-        self.at, self.context = at, context
-
-    def __del__(self):
-        try:
-            _lib.dem_world_destroy(self.at)
-        except Exception:
-            pass
-
-
-class Replay(Handle):
+class Replay(ReplayBase):
     """A replay: world.replay(path) opens it, close() or the end of a `with` block completes the file. Jupyter shows a
     replay that is closed."""
-
-    def __init__(self, at, world, path):
-        self._at, self._world, self._context, self._memory, self.path = at, world, world._context, world._memory, path
-        world._open.add(self)
-
-    def _repr_html_(self):
-        return Page(self.path)._repr_html_() if self._at is None else "<p>close the replay to see it</p>"
-
-    def _text(self):
-        return self._world._text()
-
-    def _free(self, at):
-        result = _lib.dem_replay_close(at)
-        if result:
-            self._raise(_ERRORS[result])
 '''
 
 SLABS = '''
 
-class Slabs(Handle):
+class Slabs(SlabsBase):
     """The slabs that one process holds."""
-
-    def __init__(self, at, world):
-        self._at, self._world, self._context, self._memory = at, world, world._context, world._memory
-
-    def _text(self):
-        return (_lib.dem_slabs_error_get(self._at) or b"").decode(errors="replace")
-
-    def _free(self, at):
-        _lib.dem_slabs_destroy(at)
-'''
-
-TAIL = '''
-
-def progress_print(world, done, seconds_left):
-    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
-    world._print(lambda *given: _lib.dem_progress_print(*given), sys.stderr, world._at, done, seconds_left)
 '''
 
 if __name__ == "__main__":
