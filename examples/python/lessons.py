@@ -44,9 +44,13 @@ def bounce(short):
     last_speed = last_rise = 0
     bounces = 0
     while world.time < 1.2*rest:
-        # many steps at once while the ball flies: it falls, or it will rise for longer than that
-        flight = (last_speed - 0.02 if last_speed > 0.021 else last_speed)/g/2e-6
-        world.step(20 if last_speed < 0 else max(1, int(flight) - 2))
+        # many steps at once where nothing is to be recorded: falls, rises, and the end; single steps otherwise
+        if last_rise and world.time > last_rise + 0.7:
+            world.step(1000)
+        elif abs(last_speed) < 0.05:
+            world.step(1)
+        else:
+            world.step(20 if last_speed < 0 else int((last_speed - 0.04)/g/2e-6))
         state = ball.state
         speed = state.velocity.z
         if last_speed > 0 and speed <= 0 and bounces < 5:
