@@ -160,7 +160,11 @@ typedef struct corona {
     double scatter;                          /* charge of each grain: 1 - scatter times 0 .. 1, by its id */
     double touch;                            /* m, largest gap that counts as contact with the rotor; impulses leave
                                                 gaps of (v dt)^2/(2 R) on a rotor of radius R */
-    double at_contact;                       /* share of Q E that lifts a conductor off the rotor, eq 10: 0.832 */
+    double at_contact, in_flight;            /* share of Q E that acts on a conductor: on the rotor, eq 10: 0.832; off it: 1 */
+    int in_front;                            /* 1: metal takes its charge in the window of the corona without touching, as in
+                                                [CRI14] */
+    double field_share;                      /* factor on the field of the electrode: 1 */
+    double image_permittivity;               /* er of eq 12, which divides the image force: 1 */
     int image, pull;                         /* 1: image force; 1: force Q E on the charge of ions, not in [CRI14] */
     corona_drag drag;
     double air_density, air_viscosity;       /* kg/m3, Pa s */
@@ -182,6 +186,7 @@ static inline corona corona_make(void) {
     memset(&c, 0, sizeof c);
     c.touch = 2e-6;
     c.at_contact = 0.832;
+    c.in_flight = c.field_share = c.image_permittivity = 1;
     c.image = c.pull = 1;
     c.drag = CORONA_DRAG_SCHILLER;
     c.air_density = 1.204;
@@ -234,6 +239,7 @@ static inline corona_grain corona_grain_of(const corona *c, const dem_body_state
     g.angle = atan2(x, y);
     g.out[0] = x/away; g.out[1] = y/away;
     corona_field_at(&c->field, x, y, g.E);
+    g.E[0] *= c->field_share; g.E[1] *= c->field_share;
     g.touches = g.height < 2*(double)body->radius && corona_gap(c, body) < c->touch;
     return g;
 }
@@ -286,8 +292,8 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
     const corona *c = (const corona *)user;
     const corona_grain g = corona_grain_of(c, body);
     const double induced = (double)body->reals[CORONA_INDUCED], ions = (double)body->reals[CORONA_IONS];
-    const double charge = (g.touches ? c->at_contact : 1)*induced + (c->pull ? ions : 0);
-    const double held = c->image ? corona_image(ions, g.height > g.radius ? g.height : g.radius) : 0;
+    const double charge = (g.touches ? c->at_contact : c->in_flight)*induced + (c->pull ? ions : 0);
+    const double held = c->image ? corona_image(ions, g.height > g.radius ? g.height : g.radius)/c->image_permittivity : 0;
     const double away = g.height + c->field.rotor, air = c->swirl*c->speed*c->field.rotor*c->field.rotor/away;
     const double wx = c->wind[0] + air*g.out[1] - (double)body->velocity.x;
     const double wy = c->wind[1] - air*g.out[0] - (double)body->velocity.y, wz = -(double)body->velocity.z;
@@ -323,10 +329,10 @@ static inline void corona_reals(dem_real *reals, const dem_real *rates, const de
     const double below = c->bins - (double)body->position.y, down = -(double)body->velocity.y;
     double induced = (double)reals[CORONA_INDUCED], ions = (double)reals[CORONA_IONS];
     (void)rates; (void)time;
-    if (g.touches) {
+    if (g.touches || (c->in_front && corona_inside(&c->ions, &g))) {
         const double normal = g.E[0]*g.out[0] + g.E[1]*g.out[1];
         induced = corona_relaxed(induced, share*g.kind->metal*corona_induced(g.radius, normal), c->contact_time, step);
-        if (c->leak_time > 0) ions = corona_relaxed(ions, 0, c->leak_time, step);
+        if (g.touches && c->leak_time > 0) ions = corona_relaxed(ions, 0, c->leak_time, step);
     }
     if (g.kind->metal < 1 && fabs(c->field.voltage) >= c->onset && corona_inside(&c->ions, &g)) {
         const double E = c->strength > 0 ? c->strength : sqrt(g.E[0]*g.E[0] + g.E[1]*g.E[1]);

@@ -47,6 +47,10 @@
                               blocks, increased if these are shorter than its correlation
      zeta_star, _error        cooling rate over the same time
      T_ratio_theory, zeta_star_theory
+     haff_tr_rms              the same as haff_rms for T_tr
+     power                    slope of ln(T_tr) against ln(t) over the last two thirds of the time
+     clustering               variance over mean of the bodies in a cell of 8 on average, at the end
+     heavy_ratio              --spread: temperature of bodies heavier than the mean over that of the others, at the end
      haff_rms                 root mean square of ln(T_tot/T_haff), T_haff = T(0)/(1 + tau)^2, tau =
                               alpha Gamma_0 t, alpha = (1 - e^2)/10 (spheres: 6), Gamma_0 of (28)
      mean_field_rms           the same for ln(T_tr) against the theory integrated from the start
@@ -66,15 +70,19 @@
 #define CUBE 2.0            /* m, of 4096 bodies */
 enum { NODES = 96, BLOCKS = 8, BINS = 60, CASES = 40, ELONGATIONS = 10, RESTITUTIONS = 3 };
 
+/* in the order of dem_integrator and dem_rotation */
+#define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
+#define ROTATIONS "spiral|fincham|squish"
+
 static const double elongations[ELONGATIONS] = {1, 1.15, 1.25, 1.5, 1.75, 2, 2.25, 2.5, 2.82, 3};
 static const double restitutions[RESTITUTIONS] = {0.9, 0.95, 0.98};
 
 static struct gas_options {
-    double xi, restitution, fraction, overlap, collisions, run_in, dt, seconds;
-    const char *damping, *hold, *out;
-    int count, seed, threads, quick, brief, all, theory, direct, speeds, replay;
-} options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, "exact", "true", "build/out/ellipsoids",
-             512, 1, 1, 0, 0, 0, 0, 0, 0, 0};
+    double xi, restitution, fraction, overlap, collisions, run_in, dt, seconds, spread;
+    const char *damping, *hold, *integrator, *rotation, *out;
+    int count, seed, repeats, threads, slabs, quick, brief, all, theory, direct, speeds, integrators, sizes, replay;
+} options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, 0, "exact", "true", "verlet", "spiral", "build/out/ellipsoids",
+             512, 1, 3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
@@ -89,6 +97,14 @@ static const study_option table[] = {
     {"damping", STUDY_CHOICE, &options.damping, 0, 0, "exact|reduced",
         "exact: restitution is as set; reduced: gamma_n of the reduced mass"},
     {"hold", STUDY_CHOICE, &options.hold, 0, 0, "true|false", "double energies as half is lost"},
+    {"integrator", STUDY_CHOICE, &options.integrator, 0, 0, INTEGRATORS, "scheme of translation"},
+    {"rotation", STUDY_CHOICE, &options.rotation, 0, 0, ROTATIONS, "scheme of rotation; fincham: of [RUB15]"},
+    {"spread", STUDY_REAL, &options.spread, 0, 0.9, "",
+        "largest relative deviation from the mean length: bodies of one shape and several sizes"},
+    {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "integrators, sizes: runs of each, with the seeds that follow"},
+    {"slabs", STUDY_INT, &options.slabs, 0, 64, "", "speeds: of one world, in one process; 0: no slabs"},
+    {"integrators", STUDY_FLAG, &options.integrators, 0, 0, "", "drift of the energy and cooling with each scheme"},
+    {"sizes", STUDY_FLAG, &options.sizes, 0, 0, "", "cooling of gases of several sizes"},
     {"seed", STUDY_INT, &options.seed, 1, 1e9, "", "of the random start"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
@@ -108,6 +124,13 @@ static int is_sphere(double xi) { return xi < 1 + 1e-9 && xi > 1 - 1e-9; }
 static int refused(dem_world *world, dem_result result) {
     if (result != DEM_OK) study_fail("%s", dem_world_error_get(world));
     return result != DEM_OK;
+}
+
+static int place_of(const char *word, const char *list) { /* index of a word in "one|another", which contains it */
+    int place = 0;
+    const char *at = strstr(list, word);
+    while (at > list) place += *--at == '|';
+    return place;
 }
 
 /* ---- theory: lengths in units of b ---- */
@@ -237,7 +260,7 @@ typedef struct gas {
     int sample_count, sample_room;
     sample *samples;
     double histogram[3][BINS], histogram_sum[3], fourth, fourth_sum;
-    double ratio, zeta, ratio_theory, zeta_theory, tau_rate;
+    double ratio, zeta, ratio_theory, zeta_theory, tau_rate, drift, heavy, largest;
     study_replay replay;
 } gas;
 
@@ -286,6 +309,8 @@ static int gas_create(gas *g, double xi, double e, int count) {
     g->mass = DENSITY*volume;
     g->inertia = g->mass*(g->a*g->a + g->b*g->b)/5;
     g->contact_time = PI*sqrt(g->mass/2/STIFFNESS);
+    if (options.spread > 0)                     /* of the lightest bodies */
+        g->contact_time *= pow((1 - options.spread)/cbrt(1 + options.spread*options.spread), 1.5);
     g->dt = options.dt > 0 ? options.dt : g->contact_time/50;
     theory_make(xi, &g->t);
     g->rate = contact_value(g->t.alpha, options.fraction)*g->t.area*g->b*g->b*g->count/
@@ -297,6 +322,8 @@ static int gas_create(gas *g, double xi, double e, int count) {
     desc.normal_law = DEM_NORMAL_LINEAR;
     desc.threads = options.threads;
     desc.dt = g->dt;
+    desc.integrator = (dem_integrator)place_of(options.integrator, INTEGRATORS);
+    desc.rotation = (dem_rotation)place_of(options.rotation, ROTATIONS);
     if (is(options.damping, "reduced")) {
         desc.law = seed_law;
         desc.law_user = &seed_gamma;
@@ -324,33 +351,43 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
     dem_real *turned = (dem_real *)study_alloc(4*n, sizeof *turned);
     dem_real *v = (dem_real *)study_alloc(3*n, sizeof *v);
     dem_real *w = (dem_real *)study_alloc(3*n, sizeof *w);
-    double mean[3] = {0, 0, 0}, energy = 0, turning = 0;
+    dem_real *size = (dem_real *)study_alloc(n, sizeof *size);
+    double mean[3] = {0, 0, 0}, energy = 0, turning = 0, cubes = 0;
     dem_shape shape;
     int i, k, bad = 0;
     shape.id = 0;
+    for (i = 0; i < g->count; i++) {   /* with the volume of bodies of one size in all */
+        size[i] = options.spread > 0 ? 1 + options.spread*(2*uniform(g) - 1) : 1;
+        cubes += pow(size[i], 3)/g->count;
+    }
     for (i = 0; i < g->count; i++) {
+        size[i] /= cbrt(cubes);
+        g->largest = fmax(g->largest, size[i]);
+    }
+    for (i = 0; i < g->count; i++) {
+        const double heavy = pow(size[i], 1.5), inert = pow(size[i], 2.5);   /* roots of mass and moment over the mean's */
         dem_quat q;
         dem_vec3 across;
         double l = 0, four[4];
         for (k = 0; k < 3; k++) {
             const int cell = k == 0 ? i%g->side : k == 1 ? i/g->side%g->side : i/g->side/g->side;
             at[3*i + k] = pitch*(cell + 0.5);
-            v[3*i + k] = speed*normal(g);
-            mean[k] += v[3*i + k]/g->count;
+            v[3*i + k] = speed*normal(g)/heavy;
+            mean[k] += v[3*i + k]*pow(size[i], 3)/g->count;
         }
         for (k = 0; k < 4; k++) { four[k] = normal(g); l += four[k]*four[k]; }
         for (k = 0; k < 4; k++) turned[4*i + k] = four[k]/sqrt(l);
         q = dem_quat_make(turned[4*i], turned[4*i + 1], turned[4*i + 2], turned[4*i + 3]);
-        across.x = spin*normal(g);
-        across.y = spin*normal(g);
+        across.x = spin*normal(g)/inert;
+        across.y = spin*normal(g)/inert;
         across.z = 0;
         across = dem_quat_rotate(q, across);
         w[3*i] = across.x; w[3*i + 1] = across.y; w[3*i + 2] = across.z;
     }
     for (i = 0; i < 3*g->count; i++) {
         v[i] -= mean[i%3];
-        energy += g->mass*v[i]*v[i]/2;
-        turning += g->inertia*w[i]*w[i]/2;
+        energy += g->mass*pow(size[i/3], 3)*v[i]*v[i]/2;
+        turning += g->inertia*pow(size[i/3], 5)*w[i]*w[i]/2;
     }
     for (i = 0; i < 3*g->count; i++) { /* sets exactly the given temperature */
         v[i] *= sqrt(1.5*(g->count - 1)*temperature/energy);
@@ -360,7 +397,11 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
         shape = dem_shape_ellipsoid_add(g->world, dem_vec3_make(g->b, g->b, g->a));
         bad = !shape.id && refused(g->world, DEM_ERROR_ARGUMENT);
     }
-    if (!bad && (anywhere || 2*g->a > 1.001*pitch)) { /* then speeds in the order they stand in */
+    if (options.spread > 0 && (g->spheres || anywhere || 2*g->a*g->largest > 1.001*pitch)) {
+        study_fail("--spread %g needs ellipsoids on a lattice: xi above 1 and axes up to %g m, below the pitch of %g m; lower "
+                   "--xi, --spread or --fraction", options.spread, 2*g->a*g->largest, pitch);
+        bad = 1;
+    } else if (!bad && (anywhere || 2*g->a > 1.001*pitch)) { /* then speeds in the order they stand in */
         const dem_box box = dem_box_make(0, 0, 0, g->cube, g->cube, g->cube);
         const int placed = g->spheres
             ? dem_spheres_fill(g->world, g->material, g->radius, dem_region_make(box), g->count,
@@ -382,9 +423,9 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
                                                 g->radius));
     } else if (!bad) {
         bad = refused(g->world, dem_bodies_add(g->world, g->material, shape, g->count, at, turned,
-                                               v, w, 0));
+                                               v, w, options.spread > 0 ? size : 0));
     }
-    free(at); free(turned); free(v); free(w);
+    free(at); free(turned); free(v); free(w); free(size);
     if (!bad) dem_world_check_print(g->world, stderr);
     return bad;
 }
@@ -398,6 +439,39 @@ static sample gas_look(const gas *g) {
     now.tr = totals.kinetic/(1.5*(g->count - 1))/(g->scale*g->scale);
     now.rot = g->spheres ? 0 : totals.rotational/g->count/(g->scale*g->scale);
     return now;
+}
+/* Returns the temperature of the heavier half of the bodies over that of the others. */
+static double heavy_ratio(const gas *g) {
+    const dem_bodies b = dem_bodies_get(g->world);
+    double mean = 0, energy[2] = {0, 0}, count[2] = {0, 0};
+    int i, k;
+    for (i = 0; i < b.count; i++) mean += b.masses[i]/b.count;
+    for (i = 0; i < b.count; i++) {
+        const int heavy = b.masses[i] > mean;
+        for (k = 0; k < 3; k++) energy[heavy] += b.masses[i]*b.velocities[4*i + k]*b.velocities[4*i + k];
+        count[heavy]++;
+    }
+    return energy[1]/count[1]/(energy[0]/count[0]);
+}
+/* Returns the variance of the number of bodies in cells of 8 on average, over the mean: 1 for points without correlation,
+   less for bodies that exclude each other, more for clusters. */
+static double clustering(const gas *g) {
+    const dem_bodies b = dem_bodies_get(g->world);
+    const int side = g->side/2 > 0 ? g->side/2 : 1, cells = side*side*side;
+    int *count = (int *)study_alloc((size_t)cells, sizeof *count), i, k;
+    double sum = 0;
+    for (i = 0; i < b.count; i++) {
+        int cell = 0;
+        for (k = 0; k < 3; k++) {
+            const double x = b.positions[4*i + k]/g->cube;
+            const int at = (int)((x - floor(x))*side);
+            cell = cell*side + (at < side ? at : side - 1);
+        }
+        count[cell]++;
+    }
+    for (i = 0; i < cells; i++) sum += pow(count[i] - (double)b.count/cells, 2);
+    free(count);
+    return sum/b.count;
 }
 static double energy_of(const gas *g, const sample *a) {
     return 1.5*(g->count - 1)*a->tr + g->count*a->rot;
@@ -461,7 +535,7 @@ static int gas_run(gas *g, const char *what, double span, int window) {
         b = dem_bodies_get(g->world);
         for (i = 0; window && i < b.count; i++)
             for (k = 0; k < 3; k++) {
-                const double c = b.velocities[4*i + k]/g->scale/sqrt(now.tr/g->mass);
+                const double c = b.velocities[4*i + k]/g->scale/sqrt(now.tr/b.masses[i]);
                 const int bin = (int)floor((c + 6)*BINS/12);
                 if (bin >= 0 && bin < BINS) g->histogram[window - 1][bin]++;
                 g->histogram_sum[window - 1]++;
@@ -557,7 +631,8 @@ static double total_of(const gas *g, const sample *a) { /* (26); spheres: T_tr *
 }
 static void gas_compare(gas *g, int reduced_damping) {
     const double total = total_of(g, &g->samples[0]);
-    double haff = 0, course = 0, theta = g->samples[0].rot/g->samples[0].tr;
+    const sample *last = &g->samples[g->sample_count - 1], *middle = last;
+    double haff = 0, haff_tr = 0, course = 0, theta = g->samples[0].rot/g->samples[0].tr;
     double log_tr = log(g->samples[0].tr), translation, rotation;
     int i;
     g->tau_rate = (1 - g->e*g->e)/(g->spheres ? 6 : 10)*g->rate*g->t.d_root*sqrt(total);
@@ -571,8 +646,12 @@ static void gas_compare(gas *g, int reduced_damping) {
         if (!g->spheres) theta *= exp((translation - rotation)*ds);
         course += pow(log(a->tr) - log_tr, 2);
         haff += pow(log(total_of(g, a)/total*(1 + tau)*(1 + tau)), 2);
+        haff_tr += pow(log(a->tr/g->samples[0].tr*(1 + tau)*(1 + tau)), 2);
     }
+    while (middle > g->samples && 3*(middle->time - g->samples[0].time) > last->time - g->samples[0].time) middle--;
     tell(g, "haff_rms", sqrt(haff/(g->sample_count - 1)), "");
+    tell(g, "haff_tr_rms", sqrt(haff_tr/(g->sample_count - 1)), "");
+    tell(g, "power", log(last->tr/middle->tr)/log((last->time - g->samples[0].time)/(middle->time - g->samples[0].time)), "");
     tell(g, "mean_field_rms", sqrt(course/(g->sample_count - 1)), "");
     tell(g, "cooled_to", total_of(g, &g->samples[g->sample_count - 1])/total, "of the first");
     tell(g, "tau_end", g->tau_rate*(g->time - g->samples[0].time), "");
@@ -595,8 +674,8 @@ static int gas_case(gas *g, double xi, double e) {
     snprintf(what, sizeof what, "xi %.2f e %.2f run-in", xi, e);
     start = dem_totals_get(g->world).kinetic + dem_totals_get(g->world).rotational;
     if (options.run_in > 0 && gas_run(g, what, options.run_in/g->t.d_root, 0)) return 1;
-    tell(g, "run_in_drift", (dem_totals_get(g->world).kinetic +
-                             dem_totals_get(g->world).rotational)/start - 1, "");
+    g->drift = (dem_totals_get(g->world).kinetic + dem_totals_get(g->world).rotational)/start - 1;
+    tell(g, "run_in_drift", g->drift, "");
     if (refused(g->world, dem_pair_get(g->world, g->material, g->material, &pair))) return 1;
     pair.restitution = e;
     seed_gamma = sqrt(4*STIFFNESS*g->mass/2/(1 + pow(PI/log(e), 2)));
@@ -621,6 +700,8 @@ static int gas_case(gas *g, double xi, double e) {
     gas_measure(g, from, reduced_damping);
     gas_compare(g, reduced_damping);
     tell(g, "kurtosis", g->fourth/g->fourth_sum/3 - 1, "");
+    tell(g, "clustering", clustering(g), "");
+    if (options.spread > 0) tell(g, "heavy_ratio", g->heavy = heavy_ratio(g), "");
     tell(g, "overlap_max", dem_counters_get(g->world).overlap_max, "");
     tell(g, "contact_share", g->contact_time*g->rate*g->t.d_root*sqrt(temperature), "at the start");
     { /* its course */
@@ -923,6 +1004,57 @@ static choice chosen(void) {
     return c;
 }
 
+static void mean_tell(const char *name, const double *value, int count, const char *unit) {
+    double mean = 0, spread = 0;
+    char text[96];
+    int i;
+    for (i = 0; i < count; i++) mean += value[i]/count;
+    for (i = 0; i < count; i++) spread += pow(value[i] - mean, 2);
+    study_result(name, mean, unit);
+    snprintf(text, sizeof text, "%s_error", name);
+    if (count > 1) study_result(text, sqrt(spread/(count - 1)/count), unit);
+}
+/* Runs the same case with each scheme (or of each spread of sizes) and all seeds; means and standard errors. */
+static void schemes_run(void) {
+    static const char *const schemes[5][2] = {{"verlet", "spiral"}, {"verlet", "fincham"}, {"leapfrog", "fincham"},
+                                              {"symplectic", "spiral"}, {"euler", "spiral"}};
+    static const double spreads[3] = {0, 0.2, 0.4};
+    static gas g;
+    const int first = options.seed, rows = options.sizes ? 3 : 5;
+    int row, i;
+    if (!(options.xi > 0)) options.xi = options.sizes ? 1.5 : 2;
+    if (!(options.restitution > 0)) options.restitution = 0.9;
+    for (row = 0; row < rows; row++) {
+        double found[5][20];
+        char start[48], name[80];
+        if (options.sizes) {
+            options.spread = spreads[row];
+            snprintf(start, sizeof start, "spread%g", spreads[row]);
+        } else {
+            options.integrator = schemes[row][0];
+            options.rotation = schemes[row][1];
+            snprintf(start, sizeof start, "%s_%s", schemes[row][0], schemes[row][1]);
+        }
+        for (i = 0; i < options.repeats; i++) {
+            options.seed = first + i;
+            snprintf(study.prefix, sizeof study.prefix, "%s.seed%d.", start, options.seed);
+            if (gas_case(&g, options.xi, options.restitution)) { gas_destroy(&g); study.prefix[0] = 0; return; }
+            found[0][i] = g.drift;
+            found[1][i] = g.ratio;
+            found[2][i] = g.zeta;
+            found[3][i] = g.fourth/g.fourth_sum/3 - 1;
+            found[4][i] = g.heavy;
+            gas_destroy(&g);
+        }
+        study.prefix[0] = 0;
+        for (i = 0; i < (options.spread > 0 ? 5 : 4); i++) {
+            static const char *const names[5] = {"run_in_drift", "T_ratio", "zeta_star", "kurtosis", "heavy_ratio"};
+            snprintf(name, sizeof name, "%s.%s", start, names[i]);
+            mean_tell(name, found[i], options.repeats, "");
+        }
+    }
+}
+
 static void direct_run(void) {
     const choice c = chosen();
     int i, k;
@@ -967,7 +1099,7 @@ static void cases_run(void) {
 /* Returns s of processor time for one thread, so that other programs do not count; s of wall time for
    more. */
 static double seconds_spent(void) {
-    return options.threads == 1 ? (double)clock()/CLOCKS_PER_SEC : study_clock();
+    return options.threads == 1 && options.slabs < 2 ? (double)clock()/CLOCKS_PER_SEC : study_clock();
 }
 
 /* Table 2: bodies times steps per second, ellipsoids of xi = 2 and spheres, e = .95. */
@@ -983,6 +1115,7 @@ static void speeds_run(void) {
         for (kind = 0; kind < 2; kind++) {
             static gas g;
             char name[64];
+            dem_slabs *slabs = 0;
             double begun, spent = 0, steps = 0, temperature;
             int batch = 1, bad = gas_create(&g, kind ? 1 : 2, 0.95, (int)data[0][size]);
             temperature = g.mass*pow(options.overlap/2*g.radius, 2)/(g.mass/2/STIFFNESS);
@@ -994,13 +1127,23 @@ static void speeds_run(void) {
             }
             bad = bad || gas_fill(&g, temperature, 1);
             bad = bad || refused(g.world, dem_world_step(g.world, 200));      /* warm */
+            if (!bad && options.slabs) {
+                dem_slabs_desc desc = DEM_SLABS_DESC;
+                desc.count = desc.local = options.slabs;
+                slabs = dem_slabs_create(g.world, &desc);
+                bad = !slabs && refused(g.world, DEM_ERROR_ARGUMENT);
+            }
             while (!bad && spent < options.seconds) {
                 begun = seconds_spent();
-                bad = refused(g.world, dem_world_step(g.world, batch));
+                if (slabs && dem_slabs_step(slabs, batch) != DEM_OK) {
+                    study_fail("%s", dem_slabs_error_get(slabs));
+                    bad = 1;
+                } else if (!slabs) bad = refused(g.world, dem_world_step(g.world, batch));
                 spent += seconds_spent() - begun;
                 steps += batch;
                 if (spent < options.seconds/20) batch *= 2;
             }
+            dem_slabs_destroy(slabs);
             if (bad) { gas_destroy(&g); return; }
             snprintf(name, sizeof name, "speed.%s.%d", kind ? "spheres" : "ellipsoids", g.count);
             study_result(name, steps*g.count/spent, "body-steps/s");
@@ -1032,11 +1175,13 @@ int main(int argc, char **argv) {
         options.collisions = 3;
         options.run_in = 0.5;
         options.seconds = 0.05;
+        options.repeats = 1;
     }
     study_begin(options.out);
     if (options.theory) theory_tell();
     else if (options.direct) direct_run();
     else if (options.speeds) speeds_run();
+    else if (options.integrators || options.sizes) schemes_run();
     else cases_run();
     return study_end();
 }

@@ -39,6 +39,7 @@
      toe, shoulder        the two angles at which the solid fraction falls below half of the bulk's,
                           on a ring at 0.84 to 0.92 of the shell's radius (inside the lifters). In
                           degrees from straight down, positive in the direction of rotation
+     bend                 amplitude of the S of the free surface, over its length from toe to shoulder (map_bend)
      steady_after         revolutions after which the torque, averaged over half a turn, stays
                           within 5 % of its mean
      grains_missing       grains inserted less grains present, plus grains outside the shell
@@ -58,14 +59,14 @@
 
 static struct mill_options {
     double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt;
-    double contact_steps, revolutions, settle, replay_from;
-    const char *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study;
+    double contact_steps, revolutions, settle, replay_from, aspect;
+    const char *grains, *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study;
     const char *out;
     const char *checkpoint, *resume, *write_profile;
-    int threads, slabs, frames, first, quick, brief, replay;
-} options = {0.3, 0.0068, 0.0015, 0.7, 0.37426, 0.154, 0.32, 500, 0, 20, 0.5, 0.5, 0,
-             "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill",
-             "build/out/mill", 0, 0, 0, 0, 0, 4, 0, 0, 0, 0};
+    int seed, repeats, threads, slabs, frames, first, quick, brief, replay;
+} options = {0.3, 0.0068, 0.0015, 0.7, 0.37426, 0.154, 0.32, 500, 0, 20, 0.5, 0.5, 0, 1.5,
+             "sphere", "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill",
+             "build/out/mill", 0, 0, 0, 1, 3, 0, 0, 4, 0, 0, 0, 0};
 
 /* in the order of dem_integrator and dem_tangent_law */
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
@@ -76,6 +77,11 @@ static const study_option table[] = {
     {"length", STUDY_REAL, &options.length, 0.003, 20, "m", "of the slice simulated"},
     {"ends", STUDY_CHOICE, &options.ends, 0, 0, "periodic|flat", "of the slice"},
     {"radius", STUDY_REAL, &options.radius, 1e-4, 0.5, "m", "of the beads"},
+    {"grains", STUDY_CHOICE, &options.grains, 0, 0, "sphere|pair|rod|tetra",
+        "shape: 1, 2, 3 or 4 spheres, of the volume of the bead"},
+    {"aspect", STUDY_REAL, &options.aspect, 1, 3, "", "length over width of a pair (at most 1.9) or rod"},
+    {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the places at the start"},
+    {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "control: runs of each, with the seeds that follow"},
     {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
     {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume",
         "charge, at a solid fraction of 0.6"},
@@ -113,7 +119,7 @@ static const study_option table[] = {
         "file written every quarter revolution"},
     {"resume", STUDY_TEXT, &options.resume, 0, 0, "",
         "such a file, of a run with the same options"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|overlap|speeds|friction",
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|overlap|speeds|friction|control",
         "what to run"},
     {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "",
         "write the lifters' profile to a file, and stop"},
@@ -134,7 +140,9 @@ typedef struct mill {
     int wall_count, grains, sample_count, sample_steps, settled;
     double shell, critical, omega, period, dt, mass;
     sample *samples;
-    double torque, power, toe, shoulder, solidicity;
+    double torque, power, toe, shoulder, solidicity, bend;
+    dem_shape shape;       /* null: spheres */
+    double bound, scale;   /* bounding radius over that of the bead; lengths of the bead over those of the shape */
 } mill;
 
 static const char *program_path; /* argv[0]: the data lie relative to it */
@@ -312,24 +320,52 @@ static int site_lower(const void *a, const void *b) {
     return high < 0 ? -1 : high > 0 ? 1 : p[2] < q[2] ? -1 : p[2] > q[2];
 }
 
+/* Adds the shape of the grains, a cluster. */
+static int shape_add(mill *m) {
+    const dem_real a = m->o.aspect - 1, t = 0.5;
+    const dem_real row[9] = {a, 0, 0, -a, 0, 0, 0, 0, 0}, tetra[12] = {t, t, t, t, -t, -t, -t, t, -t, -t, -t, t};
+    dem_cluster_desc d = DEM_CLUSTER_DESC;
+    dem_shape_info info;
+    double equal;
+    m->bound = 1;
+    m->shape.id = 0;
+    if (is(m->o.grains, "sphere")) return 0;
+    d.count = is(m->o.grains, "pair") ? 2 : is(m->o.grains, "rod") ? 3 : 4;
+    d.positions = d.count == 4 ? tetra : row;
+    d.radius = 1;
+    m->shape = dem_shape_cluster_add(m->world, &d);
+    if (!m->shape.id || dem_shape_get(m->world, m->shape, &info) != DEM_OK) return refused(m->world, DEM_ERROR_ARGUMENT);
+    equal = cbrt(3*info.volume/(4*PI));
+    m->bound = info.radius/equal;
+    m->scale = m->o.radius/equal;
+    return 0;
+}
+static double chance(uint32_t *random) {
+    *random = *random*1664525u + 1013904223u;
+    return (*random >> 8)/16777216.0;
+}
+
 /* Packs the mill hexagonally, with some padding, in a separate world. The lowest places get a grain
    that rotates with the mill. Each grain is moved at random within the padding; otherwise rows would
    remain rows for long. */
 static int charge_add(mill *m) {
     double R = m->o.diameter/2, L = m->o.length, r = m->o.radius, padding = 0.05*r;
+    const double wide = m->bound*r;
     dem_box box = dem_box_make(-R, -R, -L/2 + padding/2, R, R, L/2 - padding/2);
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_bodies sites;
-    dem_real *at, *velocity;
-    uint32_t random = 1;
+    dem_real *at, *velocity, *turned, *scales;
+    uint32_t random = (uint32_t)m->o.seed;
     int i, bad;
     mill packed = *m;
     if (world_create(&packed, &desc) || materials_add(&packed)) return 1;
-    dem_spheres_pack(packed.world, packed.glass, r, padding, dem_region_inside_make(box, is_site, m),
+    dem_spheres_pack(packed.world, packed.glass, wide, padding, dem_region_inside_make(box, is_site, m),
                      0);
     sites = dem_bodies_get(packed.world);
     at = (dem_real *)study_alloc(3*(size_t)sites.count, sizeof *at);
     velocity = (dem_real *)study_alloc(3*(size_t)sites.count, sizeof *velocity);
+    turned = (dem_real *)study_alloc(4*(size_t)sites.count, sizeof *turned);
+    scales = (dem_real *)study_alloc((size_t)sites.count, sizeof *scales);
     for (i = 0; i < 3*sites.count; i++) at[i] = sites.positions[i/3*4 + i%3];
     qsort(at, (size_t)sites.count, 3*sizeof *at, site_lower);
     m->grains = (int)(m->o.fill*0.6*PI*m->shell*m->shell*L/(4*PI*r*r*r/3) + 0.5);
@@ -337,14 +373,23 @@ static int charge_add(mill *m) {
     if (bad) study_fail("--fill %g asks for %d grains, but only %d fit into the mill", m->o.fill,
                         m->grains, sites.count);
     for (i = 0; i < 3*sites.count; i++) {
-        random = random*1664525u + 1013904223u;
-        at[i] += 0.4*padding*((random >> 8)/16777216.0 - 0.5);
+        at[i] += 0.4*padding*(chance(&random) - 0.5);
         velocity[i] = i%3 == 0 ? -m->omega*at[i + 1] : i%3 == 1 ? m->omega*at[i - 1] : 0;
     }
-    if (!bad)
+    for (i = 0; m->shape.id && i < sites.count; i++) {     /* random orientations, as the signs of four numbers mix */
+        int k;
+        for (k = 0; k < 4; k++) turned[4*i + k] = chance(&random) + chance(&random) + chance(&random) - 1.5;
+        turned[4*i] += 1e-6;
+        scales[i] = m->scale;
+    }
+    if (!bad && m->shape.id)
+        bad = refused(m->world, dem_bodies_add(m->world, m->glass, m->shape, m->grains, at, turned, velocity, 0, scales));
+    else if (!bad)
         bad = refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, at, velocity, 0, r));
     free(at);
     free(velocity);
+    free(turned);
+    free(scales);
     dem_world_destroy(packed.world);
     return bad;
 }
@@ -368,7 +413,7 @@ static int mill_create(mill *m, double dt) {
         desc.domain = dem_box_make(-1.1*R, -1.1*R, -L/2, 1.1*R, 1.1*R, L/2);
         desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
     }
-    if (world_create(m, &desc) || materials_add(m) || shell_add(m) || charge_add(m)) return 1;
+    if (world_create(m, &desc) || materials_add(m) || shell_add(m) || shape_add(m) || charge_add(m)) return 1;
     memset(&field, 0, sizeof field);
     field.box = dem_box_make(-R, -R, -L/2, R, R, L/2);
     field.cells[0] = field.cells[1] = CELLS;
@@ -597,6 +642,31 @@ static void map_toe_shoulder(mill *m, const map *a) { /* in both directions from
     m->shoulder = at;
 }
 
+/* Returns how much the free surface is bent to an S: the amplitude of one sine over the chord from toe to shoulder, over the
+   length of the chord; positive if the surface is below the chord near the toe and above it near the shoulder. The surface is
+   where the solid fraction first exceeds half of the bulk's, seen from the free side. */
+static double map_bend(const mill *m, const map *a) {
+    enum { POINTS = 41 };
+    const double R = m->o.diameter/2, r = 0.84*m->shell, toe = m->toe*PI/180, top = m->shoulder*PI/180;
+    const double x0 = r*sin(toe), y0 = -r*cos(toe), x1 = r*sin(top), y1 = -r*cos(top);
+    const double length = hypot(x1 - x0, y1 - y0), tx = (x1 - x0)/length, ty = (y1 - y0)/length;
+    double sum = 0, used = 0;
+    int k;
+    for (k = 1; k + 1 < POINTS; k++) {
+        const double s = length*k/(POINTS - 1);
+        double h;
+        for (h = 0.5*R; h > -0.5*R; h -= 0.002*R) {
+            const double x = x0 + tx*s - ty*h, y = y0 + ty*s + tx*h;
+            const int i = (int)floor((1 + x/R)*a->n/2), j = (int)floor((1 + y/R)*a->n/2);
+            if (hypot(x, y) > r || i < 0 || j < 0 || i >= a->n || j >= a->n) continue;
+            if (a->solid[i + a->n*j] > m->solidicity/2) break;
+        }
+        sum -= h/length*sin(2*PI*k/(POINTS - 1));
+        used++;
+    }
+    return 2*sum/used;
+}
+
 static double map_shell_speed(const mill *m, const map *a) {
     double momentum = 0, mass = 0;
     int i;
@@ -638,6 +708,8 @@ static void maps_write(mill *m) {
     map_toe_shoulder(m, &maps[2]);
     study_result("solidicity_bulk", m->solidicity, "");
     study_result("shell_speed_ratio", map_shell_speed(m, &maps[2]), "");
+    m->bend = map_bend(m, &maps[1]);
+    study_result("bend", m->bend, "");
     study_result("toe", m->toe, "degrees");
     study_result("shoulder", m->shoulder, "degrees");
     for (i = 0; i <= 360; i++) { circle[0][i] = R*sin(i*PI/180); circle[1][i] = R*cos(i*PI/180); }
@@ -841,6 +913,56 @@ static int study_several(int friction) {
     return 0;
 }
 
+/* The S of Fig 6.13 and its control: spheres of ordinary friction in smooth, lined and lifted shells and at other speeds,
+   beside spheres of high friction and shaped grains of the same volume. Means and standard errors over seeds. */
+static int study_control(void) {
+    static const struct { const char *name, *profile, *wall, *grains; double friction, aspect, speed; } cases[] = {
+        {"smooth", "none", "mesh", "sphere", 0.154, 1, 0.5},
+        {"lifters", "lifters", "mesh", "sphere", 0.154, 1, 0.5},
+        {"lined", "none", "grains", "sphere", 0.154, 1, 0.5},
+        {"lined_slow", "none", "grains", "sphere", 0.154, 1, 0.3},
+        {"lined_fast", "none", "grains", "sphere", 0.154, 1, 0.7},
+        {"rough", "none", "grains", "sphere", 0.44, 1, 0.5},
+        {"pair", "none", "grains", "pair", 0.154, 1.5, 0.5},
+        {"tetra", "none", "grains", "tetra", 0.154, 1, 0.5},
+        {"smooth_pair", "none", "mesh", "pair", 0.154, 1.5, 0.5}};
+    static const struct { const char *name, *unit; } names[4] = {
+        {"bend", ""}, {"torque", "N m"}, {"shoulder", "degrees"}, {"toe", "degrees"}};
+    size_t i;
+    int k, n;
+    for (i = 0; i < sizeof cases/sizeof *cases; i++) {
+        double mean[4] = {0, 0, 0, 0}, square[4] = {0, 0, 0, 0};
+        char text[64];
+        for (n = 0; n < options.repeats; n++) {
+            double found[4];
+            mill m;
+            memset(&m, 0, sizeof m);
+            m.o = options;
+            m.o.seed += n;
+            if (m.o.brief) m.o.settle = m.o.revolutions = 0.02;
+            m.o.profile = cases[i].profile; m.o.wall = cases[i].wall; m.o.grains = cases[i].grains;
+            m.o.friction = cases[i].friction; m.o.aspect = cases[i].aspect; m.o.speed = cases[i].speed;
+            snprintf(text, sizeof text, "%s_seed%d", cases[i].name, m.o.seed);
+            study_part(text);
+            if (mill_run(&m)) return 1;
+            found[0] = m.bend; found[1] = m.torque; found[2] = m.shoulder; found[3] = m.toe;
+            for (k = 0; k < 4; k++) {
+                const double before = mean[k];
+                mean[k] += (found[k] - before)/(n + 1);
+                square[k] += (found[k] - before)*(found[k] - mean[k]);
+            }
+        }
+        study_part("");
+        for (k = 0; k < 4; k++) {
+            snprintf(text, sizeof text, "%s.%s", cases[i].name, names[k].name);
+            study_result(text, mean[k], names[k].unit);
+            snprintf(text, sizeof text, "%s.%s_error", cases[i].name, names[k].name);
+            if (options.repeats > 1) study_result(text, sqrt(square[k]/(options.repeats - 1)/options.repeats), names[k].unit);
+        }
+    }
+    return 0;
+}
+
 /* ---- one bead ---- */
 
 static dem_body bead_add(mill *m, double y, double vx, double vy) {
@@ -1024,6 +1146,7 @@ int main(int argc, char **argv) {
         options.soften = 1000;
         options.settle = options.revolutions = 0.05;
         options.frames = 0;
+        options.repeats = 1;
     }
     if (options.write_profile) return profile_write(options.write_profile);
     study_begin(options.out);
@@ -1034,5 +1157,6 @@ int main(int argc, char **argv) {
     if (is(options.study, "overlap")) study_overlap();
     if (is(options.study, "speeds")) study_several(0);
     if (is(options.study, "friction")) study_several(1);
+    if (is(options.study, "control")) study_control();
     return study_end();
 }

@@ -35,6 +35,8 @@
      gangue_number, gangue_mass           %, of all that left, eq 4.41
      fed, present, left, missing          balls; missing = fed - present - left is 0
      rate                                 balls/s that left, over the last third
+    steady                               s after which the efficiency stays within 2 points of its end (the mean over the
+                                         last tenth of the time)
      blinded                              balls stuck in holes at the end (none with reduced holes)
      overlap                              largest overlap over radius
      dt                                   s, at the end: that of --steps, or smaller (screener_step)
@@ -45,22 +47,33 @@
 #include "sorting.h"
 #include "study.h"
 #include "study_replay.h"
+#include "sifting.h"
 #include "tumbler.h"
 
 #define PI 3.14159265358979323846
-enum { LEVELS = 5, SAMPLES = 200 };
+enum { LEVELS = SIFTING_DECKS };
 
 static struct screener_options {
     double rpm, alpha, beta, eccentricity, factor, period, friction, wall_friction, zeta, rate;
     double seconds, stiffness, restitution, spacing, open, vane, steps, orifice, rolling, share;
-    const char *machine, *holes, *feed, *barrel, *study, *out;
-    int openings, threads, frames, balls, seed, repeats, replay, quick, brief;
+    double radius, narrowing, phase, plate_u, plate_e, aperture, bars, thickness, lift, slot, density, size, size_spread;
+    double aspect, feed_radius, feed_height;
+    const char *machine, *holes, *feed, *barrel, *grains, *study, *out;
+    int decks, openings, threads, frames, balls, seed, repeats, replay, quick, brief;
 } options = {0, -1, -1, -1, 1, 0, 0.2, 0.06, -1, 0, 0, 0, 0.5, 0, 1, -1, 22, 0.08, -1, 1,
-             "large", "model2", "rate", "uniform", "run", "build/out/screener", 6, 1, 0, 0, 1, 1, 0, 0, 0};
+             0, 0.15, 0, 0, 0, 1, 0, 0, 0, 0, 2500, 1, 0, 1.3, 0, 0,
+             "large", "model2", "rate", "uniform", "sphere", "run", "build/out/screener", 0, 6, 1, 0, 0, 1, 1, 0, 0, 0};
 
 static const study_option table[] = {
     {"machine", STUDY_CHOICE, &options.machine, 0, 0, "large|glass|small", "which example"},
-    {"holes", STUDY_CHOICE, &options.holes, 0, 0, "model1|model2|wires|plate", "of the sieves"},
+    {"decks", STUDY_INT, &options.decks, 0, LEVELS, "", "the lowest of the machine's are left out; 0: all"},
+    {"radius", STUDY_REAL, &options.radius, 0, 10, "m", "of the barrel; 0: .8 (large), .3 (glass), .15 (small)"},
+    {"holes", STUDY_CHOICE, &options.holes, 0, 0, "model1|model2|wires|bars|plate|round|slots", "of the sieves"},
+    {"aperture", STUDY_REAL, &options.aperture, 0.1, 10, "", "holes, times those of the machine"},
+    {"bars", STUDY_REAL, &options.bars, 0, 10, "", "g/w: wire or bar over half a hole; 0: 1 (large, small), .51 (glass)"},
+    {"thickness", STUDY_REAL, &options.thickness, 0, 1, "", "of plates, over the bar"},
+    {"lift", STUDY_REAL, &options.lift, 0, 1, "", "between the layers of wires, over the wire"},
+    {"slot", STUDY_REAL, &options.slot, 0, 100, "", "length of slots over their width, 1 and more; 0: infinite"},
     {"zeta", STUDY_REAL, &options.zeta, -1, 1, "",
         "clearance of reduced holes; -1: .8 (large), .6 (others)"},
     {"rpm", STUDY_REAL, &options.rpm, 0, 1000, "1/min", "machine; 0: 50 (large), 180 (others)"},
@@ -68,6 +81,9 @@ static const study_option table[] = {
     {"beta", STUDY_REAL, &options.beta, -1, 20, "deg", "inclination; -1: .65 (large), .5 (others)"},
     {"eccentricity", STUDY_REAL, &options.eccentricity, -1, 1000, "mm",
         "of the shafts; -1: 40, 8 (small)"},
+    {"phase", STUDY_REAL, &options.phase, -360, 360, "deg", "of the main shaft at the start"},
+    {"plate-u", STUDY_REAL, &options.plate_u, -1, 1, "m", "dimension u of the inclined plate"},
+    {"plate-e", STUDY_REAL, &options.plate_e, -1, 1, "m", "dimension e of the inclined plate"},
     {"factor", STUDY_REAL, &options.factor, 0, 5, "", "K: barrel over machine; 1 free, 0 held"},
     {"period", STUDY_REAL, &options.period, 0, 10, "s", "of the barrel's swing; 0: it goes on"},
     {"friction", STUDY_REAL, &options.friction, 0, 5, "", "between balls"},
@@ -76,13 +92,22 @@ static const study_option table[] = {
         "rolling friction with the machine; -1: 1 on reduced holes (balls slide), else 0"},
     {"feed", STUDY_CHOICE, &options.feed, 0, 0, "rate|batch|hopper", "how balls come"},
     {"rate", STUDY_REAL, &options.rate, 0, 1e5, "1/s", "feed; 0: 147 (large), 357 (glass), 60 (small)"},
+    {"feed-radius", STUDY_REAL, &options.feed_radius, 0, 10, "m", "of the disc fed; 0: R/8, batch .7 R"},
+    {"feed-height", STUDY_REAL, &options.feed_height, 0, 10, "m", "above the highest deck; 0: one spacing"},
     {"orifice", STUDY_REAL, &options.orifice, 0.01, 1, "m", "radius of the hopper's"},
     {"balls", STUDY_INT, &options.balls, 0, 1000000, "",
         "glass: how many; 0: 775, of which 389 are small"},
+    {"grains", STUDY_CHOICE, &options.grains, 0, 0, "sphere|pair|rod|tetra",
+        "shape: 1, 2, 3 or 4 spheres, of the volume of the ball; not with reduced holes"},
+    {"aspect", STUDY_REAL, &options.aspect, 1, 3, "", "length over width of a pair (at most 1.9) or rod"},
+    {"size", STUDY_REAL, &options.size, 0.1, 10, "", "radii, times those of the machine"},
+    {"size-spread", STUDY_REAL, &options.size_spread, 0, 0.5, "", "largest relative deviation from the radius of a class"},
+    {"density", STUDY_REAL, &options.density, 1, 3e4, "kg/m3", "of the grains"},
     {"seconds", STUDY_REAL, &options.seconds, 0, 1e5, "s", "of machine time; 0: 25 (large), 20 (others)"},
     {"share", STUDY_REAL, &options.share, 0.001, 1, "", "of the balls and of their rate: for trying"},
     {"barrel", STUDY_CHOICE, &options.barrel, 0, 0, "uniform|stepped",
-        "stepped: narrower below, by 15 % in all"},
+        "stepped: narrower below, by --narrowing"},
+    {"narrowing", STUDY_REAL, &options.narrowing, 0, 0.9, "", "of the lowest deck of a stepped barrel"},
     {"spacing", STUDY_REAL, &options.spacing, 0, 1, "m", "of decks; 0: .15 (large), .03 (others)"},
     {"openings", STUDY_INT, &options.openings, 1, 12, "", "in the rim of each deck"},
     {"open", STUDY_REAL, &options.open, 0.01, 1, "", "share of the rim that is open"},
@@ -100,7 +125,7 @@ static const study_option table[] = {
     {"frames", STUDY_INT, &options.frames, 0, 100000, "", "VTP files of the balls over the run"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"study", STUDY_CHOICE, &options.study, 0, 0,
-        "run|speed|feed|inclination|eccentricity|oscillation|friction|size|holes|choices|hour|check",
+        "run|speed|feed|nozzle|inclination|eccentricity|oscillation|friction|size|holes|grains|rim|parameters|choices|hour|check",
         "what to run"},
 };
 
@@ -112,18 +137,23 @@ typedef struct screener {
     dem_wall floor, sieve[LEVELS], rim;
     dem_feed feed;
     dem_outlet outlet[LEVELS];
-    int levels, classes, samples;
+    int levels, classes;
     double R, w[LEVELS], bar[LEVELS], radius[LEVELS], number[LEVELS], dt, dt_first;
-    double time[SAMPLES], efficiency[SAMPLES], mass_efficiency[SAMPLES], gangue[SAMPLES];
-    double left[SAMPLES], present[SAMPLES], fed[SAMPLES], mass[SAMPLES][LEVELS];
+    double bound;                      /* radius of the bounding sphere of a grain over that of the ball of its volume */
+    dem_shape shape;                   /* null: spheres */
+    sifting curves;
     double compute;
 } screener;
+
+static const double STEADY = 2;        /* %, by which a steady curve may differ from its end */
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
 static int refused(dem_world *world, dem_result result) {
     if (result != DEM_OK) study_fail("%s", dem_world_error_get(world));
     return result != DEM_OK;
 }
+
+static int reduced(const struct screener_options *o) { return !strncmp(o->holes, "model", 5); }
 
 /* Fills in the values that the thesis gives for the chosen machine, and our choices for the rest. */
 static void screener_settle(screener *s) {
@@ -133,7 +163,7 @@ static void screener_settle(screener *s) {
     const int large = is(o->machine, "large"), glass = is(o->machine, "glass");
     int i;
     s->levels = s->classes = large ? 5 : glass ? 2 : 3;
-    s->R = large ? 0.8 : glass ? 0.3 : 0.15;
+    s->R = o->radius > 0 ? o->radius : large ? 0.8 : glass ? 0.3 : 0.15;
     for (i = 0; i < s->levels && !glass; i++) {  /* small: the lower part, at 3/10 */
         s->radius[i] = radius[i]*(large ? 1 : 0.3);
         s->number[i] = number[i];
@@ -145,6 +175,16 @@ static void screener_settle(screener *s) {
         s->number[1] = o->balls ? o->balls/2 : 386;
         s->w[1] = 0.001575; s->bar[1] = 0.0008;
     }
+    for (i = 0; o->decks && o->decks < s->levels && i < o->decks; i++) {   /* the highest */
+        s->w[i] = i ? s->w[s->levels - o->decks + i] : 0;
+        s->bar[i] = i ? s->bar[s->levels - o->decks + i] : 0;
+    }
+    if (o->decks && o->decks < s->levels) s->levels = o->decks;
+    for (i = 0; i < s->levels; i++) {
+        s->w[i] *= o->aperture;
+        s->bar[i] = o->bars > 0 ? o->bars*s->w[i] : s->bar[i]*o->aperture;
+    }
+    for (i = 0; i < s->classes; i++) s->radius[i] *= o->size;
     if (!(o->rpm > 0)) o->rpm = large ? 50 : 180;
     if (o->alpha < 0) o->alpha = large ? 1 : 0.6;
     if (o->beta < 0) o->beta = large ? 0.65 : 0.5;
@@ -154,22 +194,27 @@ static void screener_settle(screener *s) {
     if (!(o->seconds > 0)) o->seconds = large ? 25 : 20;
     if (!(o->spacing > 0)) o->spacing = large ? 0.15 : 0.03;
     if (!(o->stiffness > 0)) o->stiffness = large ? 2e4 : glass ? 200 : 2000;
-    if (o->rolling < 0) o->rolling = strncmp(o->holes, "model", 5) ? 0 : 1;
+    if (o->rolling < 0) o->rolling = reduced(o) ? 1 : 0;
+    if (!(o->feed_radius > 0)) o->feed_radius = is(o->feed, "batch") ? 0.7*s->R : s->R/8;
+    if (!(o->feed_height > 0)) o->feed_height = o->spacing;
     if (o->vane < 0) o->vane = s->R/8;
     if (o->eccentricity < 0) o->eccentricity = is(o->machine, "small") ? 8 : 40;
+    if (o->brief && is(o->feed, "hopper")) o->share *= 0.03;
     for (i = 0; i < s->classes; i++) s->number[i] = ceil(s->number[i]*o->share);
     o->rate *= o->share;
     s->machine.speed = o->rpm*2*PI/60;
     s->machine.alpha = o->alpha*PI/180;
     s->machine.beta = o->beta*PI/180;
-    s->machine.u = s->machine.e = 0;
+    s->machine.phase = o->phase*PI/180;
+    s->machine.u = o->plate_u;
+    s->machine.e = o->plate_e;
     s->machine.eccentricity = o->eccentricity/1000;
     s->machine.factor = o->factor;
     s->machine.period = o->period;
 }
 static double level_radius(const screener *s, int level) {   /* 0 is the lowest */
     if (!is(s->o.barrel, "stepped") || s->levels < 2) return s->R;
-    return s->R*(1 - 0.15*(s->levels - 1 - level)/(s->levels - 1));
+    return s->R*(1 - s->o.narrowing*(s->levels - 1 - level)/(s->levels - 1));
 }
 static int part_move(screener *s, int part, dem_wall wall, double z) {
     dem_motion motion;
@@ -265,10 +310,16 @@ static int decks_add(screener *s, dem_material stuff) {
     if (part_move(s, 0, s->floor, 0)) return 1;
     for (k = 1; k < s->levels; k++) {
         dem_sieve_desc d = DEM_SIEVE_DESC;
-        d.kind = is(s->o.holes, "wires") ? DEM_SIEVE_WIRES
-            : is(s->o.holes, "plate") ? DEM_SIEVE_SQUARE : DEM_SIEVE_REDUCED;
+        static const struct { const char *word; dem_sieve_kind kind; } kinds[5] = {{"wires", DEM_SIEVE_WIRES},
+            {"bars", DEM_SIEVE_BARS}, {"plate", DEM_SIEVE_SQUARE}, {"round", DEM_SIEVE_ROUND}, {"slots", DEM_SIEVE_SLOTS}};
+        int i;
+        d.kind = DEM_SIEVE_REDUCED;
+        for (i = 0; i < 5; i++) if (is(s->o.holes, kinds[i].word)) d.kind = kinds[i].kind;
         d.aperture = (dem_real)(2*s->w[k]);
         d.bar = (dem_real)s->bar[k];
+        if (d.kind == DEM_SIEVE_SLOTS) d.length = (dem_real)(fmax(1, s->o.slot)*2*s->w[k]*(s->o.slot > 0));
+        if (d.kind == DEM_SIEVE_WIRES) d.lift = (dem_real)(s->o.lift*s->bar[k]);
+        if (d.kind >= DEM_SIEVE_SQUARE && d.kind <= DEM_SIEVE_SLOTS) d.thickness = (dem_real)(s->o.thickness*s->bar[k]);
         d.radius = (dem_real)(is(s->o.barrel, "stepped") ? level_radius(s, k - 1) : s->R);
         d.model = d.kind != DEM_SIEVE_REDUCED ? 0 : is(s->o.holes, "model1") ? 1 : 2;
         d.clearance = d.kind == DEM_SIEVE_REDUCED ? (dem_real)s->o.zeta : 0;
@@ -278,6 +329,12 @@ static int decks_add(screener *s, dem_material stuff) {
     return 0;
 }
 
+/* Returns the radius of the smallest ball that the sieve below a deck holds back. */
+static double wanted(const screener *s, int level) {
+    int i;
+    for (i = 0; i + 1 < s->classes && !(s->radius[i] > s->w[level]);) i++;
+    return level ? s->radius[i] : s->radius[0];
+}
 static int outlets_add(screener *s) {
     int k, i;
     for (k = 0; k < s->levels; k++) {
@@ -285,11 +342,12 @@ static int outlets_add(screener *s) {
         memset(&d, 0, sizeof d);
         d.frame = s->floor;
         d.beyond = (dem_real)(level_radius(s, k) + 0.05*s->radius[0]);
+        /* below all classes of a deck: bounding spheres, with the deviations within a class */
         d.box = dem_box_make(-10, -10, (dem_real)(k ? k*s->o.spacing : -10), 10, 10,
                              (dem_real)(k + 1 < s->levels ? (k + 1)*s->o.spacing : 10));
-        d.wanted_min = (dem_real)(0.99*s->radius[k]);
+        d.wanted_min = (dem_real)(0.99*(1 - s->o.size_spread)*s->bound*wanted(s, k));
         d.class_count = s->classes;
-        for (i = 0; i < s->classes; i++) d.radius[i] = (dem_real)s->radius[i];
+        for (i = 0; i < s->classes; i++) d.radius[i] = (dem_real)(s->bound*s->radius[i]);
         s->outlet[k] = dem_outlet_add(s->world, &d);
         if (!s->outlet[k].id) return refused(s->world, DEM_ERROR_ARGUMENT);
     }
@@ -320,14 +378,24 @@ static int hopper_add(screener *s, dem_material stuff, double z, double wide, do
 }
 static int feed_add(screener *s, dem_material ball, dem_material wall) {
     dem_feed_desc d;
-    double wide = s->R/8, z = s->levels*s->o.spacing, total = 0;
-    const double largest = s->radius[s->classes - 1];
+    dem_sizes sizes[LEVELS];
+    double wide = s->o.feed_radius, z = (s->levels - 1)*s->o.spacing + s->o.feed_height, total = 0;
+    const double largest = s->bound*(1 + s->o.size_spread)*s->radius[s->classes - 1];
     int k;
     memset(&d, 0, sizeof d);
+    memset(sizes, 0, sizeof sizes);
     d.material = ball;
     d.class_count = s->classes;
     for (k = 0; k < s->classes; k++) {
         d.radius[k] = (dem_real)s->radius[k];
+        d.shapes[k] = s->shape;
+        if (s->o.size_spread > 0) {
+            sizes[k].kind = DEM_SIZES_UNIFORM;
+            sizes[k].by_count = 1;
+            sizes[k].min = (dem_real)((1 - s->o.size_spread)*s->radius[k]);
+            sizes[k].max = (dem_real)((1 + s->o.size_spread)*s->radius[k]);
+            d.sizes[k] = &sizes[k];
+        }
         d.amount[k] = s->number[k];
         total += s->number[k]*4*PI/3*pow(s->radius[k], 3);
     }
@@ -335,7 +403,6 @@ static int feed_add(screener *s, dem_material ball, dem_material wall) {
     d.round = 1;
     d.seed = (uint64_t)s->o.seed;
     d.rate = is(s->o.feed, "rate") ? s->o.rate : 0;
-    if (is(s->o.feed, "batch")) wide = 0.7*s->R;
     if (is(s->o.feed, "hopper")) {
         const double cross = PI*9*wide*wide/4;
         z += 2*largest;
@@ -350,6 +417,23 @@ static int feed_add(screener *s, dem_material ball, dem_material wall) {
     return s->feed.id ? 0 : refused(s->world, DEM_ERROR_ARGUMENT);
 }
 
+/* Adds the shape of the grains, a cluster. `bound` becomes its bounding radius over that of the ball of the same volume. */
+static int shape_add(screener *s) {
+    const dem_real a = (dem_real)(s->o.aspect - 1), t = DEM_R(0.5);
+    const dem_real row[9] = {a, 0, 0, -a, 0, 0, 0, 0, 0}, tetra[12] = {t, t, t, t, -t, -t, -t, t, -t, -t, -t, t};
+    dem_cluster_desc d = DEM_CLUSTER_DESC;
+    dem_shape_info info;
+    s->bound = 1;
+    s->shape.id = 0;
+    if (is(s->o.grains, "sphere")) return 0;
+    d.count = is(s->o.grains, "pair") ? 2 : is(s->o.grains, "rod") ? 3 : 4;
+    d.positions = d.count == 4 ? tetra : row;
+    d.radius = 1;
+    s->shape = dem_shape_cluster_add(s->world, &d);
+    if (!s->shape.id || dem_shape_get(s->world, s->shape, &info) != DEM_OK) return refused(s->world, DEM_ERROR_ARGUMENT);
+    s->bound = (double)info.radius/cbrt(3*(double)info.volume/(4*PI));
+    return 0;
+}
 static int screener_create(screener *s, double dt) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc stuff = DEM_MATERIAL_DESC;
@@ -361,14 +445,14 @@ static int screener_create(screener *s, double dt) {
     desc.dt = (dem_real)dt;
     s->world = dem_world_create(&desc);
     if (!s->world) { study_fail("%s", dem_world_create_error_get(&desc)); return 1; }
-    stuff.density = 2500;
+    stuff.density = (dem_real)s->o.density;
     stuff.poisson = DEM_R(0.25);
     stuff.stiffness = (dem_real)s->o.stiffness;
     stuff.restitution = (dem_real)s->o.restitution;
     stuff.friction = (dem_real)s->o.friction;
     ball = dem_material_add(s->world, &stuff);
     steel = dem_material_add(s->world, &stuff);
-    if (!ball.id || !steel.id || refused(s->world, dem_pair_get(s->world, ball, steel, &pair)))
+    if (!ball.id || !steel.id || shape_add(s) || refused(s->world, dem_pair_get(s->world, ball, steel, &pair)))
         return 1;
     pair.friction = pair.friction_static = (dem_real)s->o.wall_friction;
     pair.rolling_friction = (dem_real)s->o.rolling;
@@ -388,31 +472,15 @@ static dem_outlet_state let_out(const screener *s, int deck) {
     dem_outlet_get(s->world, s->outlet[deck], &state);
     return state;
 }
-static void sample_take(screener *s) {
-    sorting sorted;
-    const dem_body_counts balance = dem_body_counts_get(s->world);
-    const int i = s->samples;
-    int k;
-    if (i == SAMPLES || sorting_get(s->world, s->outlet, s->levels, &sorted) != DEM_OK) return;
-    s->time[i] = dem_world_time_get(s->world);
-    s->efficiency[i] = 100*sorted.efficiency_number;
-    s->mass_efficiency[i] = 100*sorted.efficiency_mass;
-    s->gangue[i] = 100*sorted.gangue_mass;
-    s->left[i] = (double)balance.left;
-    s->present[i] = (double)balance.present;
-    s->fed[i] = (double)fed(s).total;
-    for (k = 0; k < s->levels; k++) s->mass[i][k] = let_out(s, k).total_mass;
-    s->samples++;
-}
 /* rate_late returns the balls/s that left over the last third of the samples; deck_rate the kg/s that
    left one deck (from 0) over the whole time, eq 4.40. */
 static double rate_late(const screener *s) {
-    const int last = s->samples - 1, late = 2*s->samples/3;
-    return last > late ? (s->left[last] - s->left[late])/(s->time[last] - s->time[late]) : 0;
+    const sifting *c = &s->curves;
+    const int last = c->samples - 1, late = 2*c->samples/3;
+    return last > late ? (c->left[last] - c->left[late])/(c->time[last] - c->time[late]) : 0;
 }
 static double deck_rate(const screener *s, int deck) {
-    const int last = s->samples - 1;
-    return last > 0 ? s->mass[last][deck]/s->time[last] : 0;
+    return let_out(s, deck).total_mass/dem_world_time_get(s->world);
 }
 /* Returns 1 if for each size the balls fed are those present and those that left, and if the sum over
    the sizes agrees with the world's counts. */
@@ -511,7 +579,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     dem_advice advice;
     const int counting = is(o->study, "hour");      /* balls, at every step */
     study_replay f;
-    double next = 0, begun, work = 0, unbalanced = 0;
+    double begun, work = 0, unbalanced = 0, finest[LEVELS];
     int i, frame = 0, drawn = 0, bad;
     memset(s, 0, sizeof *s);
     s->o = *o;
@@ -522,24 +590,24 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     if (bad) return 1;
     s->dt = s->dt_first = (double)advice.contact_time/s->o.steps;
     if (screener_create(s, s->dt)) return 1;
+    for (i = 0; i < s->levels; i++) finest[i] = 0.99*(1 - s->o.size_spread)*s->bound*wanted(s, i);
+    sifting_begin(&s->curves, s->world, s->floor, s->o.spacing, s->outlet, finest, s->levels, s->feed, s->o.seconds);
     dem_world_check_print(s->world, stderr);
     f = study_replay_open(s->world, o->replay ? 250 : 0, s->o.seconds, "A tumbling screening machine");
     begun = study_clock();
     while (!bad && dem_world_time_get(s->world) < s->o.seconds - s->dt/2) {
-        const double left = (next - dem_world_time_get(s->world))/s->dt;
+        const double next = sifting_next(&s->curves), left = (next - dem_world_time_get(s->world))/s->dt;
         const int steps = left > 1 && !counting ? left < 500 ? (int)(left + 0.5) : 500 : 1;
         bad = screener_step(s, steps);
         if (counting) unbalanced += !screener_balanced(s);
         work += (double)steps*(double)dem_body_counts_get(s->world).present;
-        if (dem_world_time_get(s->world) >= next - s->dt/2) {
-            sample_take(s);
-            next += s->o.seconds/(SAMPLES - 1);
-        }
+        if (dem_world_time_get(s->world) >= next - s->dt/2) sifting_take(&s->curves);
         if (study_replay_due(&f)) {
-            const int last = s->samples - 1;
+            const sifting *c = &s->curves;
+            const int last = c->samples - 1;
             study_replay_value(&f, "balls in the machine", (double)dem_body_counts_get(s->world).present);
-            if (last >= 0) study_replay_value(&f, "efficiency by number (%)", s->efficiency[last]);
-            if (last >= 0) study_replay_value(&f, "gangue, share of mass (%)", s->gangue[last]);
+            if (last >= 0) study_replay_value(&f, "efficiency by number (%)", c->value[SIFTING_EFFICIENCY][c->decks][last]);
+            if (last >= 0) study_replay_value(&f, "gangue, share of mass (%)", c->value[SIFTING_GANGUE_MASS][c->decks][last]);
             study_replay_frame(&f);
         }
         if (!drawn && is(o->study, "run") && 2*dem_world_time_get(s->world) >= s->o.seconds) {
@@ -553,6 +621,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     }
     s->compute = study_clock() - begun;
     study_replay_close(&f);
+    sifting_end(&s->curves);
     if (!bad) {
         sorting sorted;
         const dem_feed_state feed = fed(s);
@@ -579,6 +648,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
         study_result("left", (double)balance.left, "");
         study_result("missing", (double)feed.total - (double)(balance.present + balance.left), "");
         study_result("rate", rate_late(s), "1/s");
+        study_result("steady", sifting_steady(&s->curves, SIFTING_EFFICIENCY, s->levels, STEADY), "s");
         study_result("blinded", blinded, "");
         study_result("overlap", (double)dem_counters_get(s->world).overlap_max, "");
         study_result("dt", s->dt, "s");
@@ -605,6 +675,7 @@ typedef struct sweep {
     double value[12];
     double thesis[12];                 /* efficiency in the thesis; < 0: not printed there */
     void (*set)(struct screener_options *o, double value);
+    const char *words[12];             /* names instead of numbers */
 } sweep;
 static void set_rpm(struct screener_options *o, double v) { o->rpm = v; }
 static void set_rate(struct screener_options *o, double v) {
@@ -618,140 +689,238 @@ static void set_factor(struct screener_options *o, double v) {
     o->period = v > 0 ? 0.02 : 0;
 }
 static void set_friction(struct screener_options *o, double v) { o->wall_friction = v; }
+static void set_nozzle(struct screener_options *o, double v) { o->feed = "hopper"; o->orifice = v/1000; }
+static void set_size(struct screener_options *o, double v) {
+    static const double rest[3] = {20, 25, 45};
+    o->balls = v > 775 ? (int)v : 0;   /* the smallest is not of equal parts */
+    if (!(options.seconds > 0)) o->seconds = rest[v < 1000 ? 0 : v < 9000 ? 1 : 2];
+}
+static void set_holes(struct screener_options *o, double v) {
+    static const char *const holes[7] = {"model1", "model2", "wires", "plate", "round", "bars", "slots"};
+    o->holes = holes[(int)v];
+}
+static void set_grains(struct screener_options *o, double v) {
+    static const char *const grains[4] = {"sphere", "pair", "rod", "tetra"};
+    o->grains = grains[(int)v];
+}
+static void set_rim(struct screener_options *o, double v) {
+    static const double open[5] = {1, 0.5, 0.25, 0.25, 0.25}, vane[5] = {0, -1, -1, 0, 0.2};
+    o->open = open[(int)v];
+    o->vane = vane[(int)v];
+}
+/* One parameter of the machine or of the feed that no other sweep varies. */
+static void set_parameter(struct screener_options *o, double v) {
+    switch ((int)v) {
+    case 1: o->phase = 90; break;
+    case 2: o->plate_u = o->plate_e = 0.05; break;
+    case 3: o->decks = 3; break;
+    case 4: o->radius = 0.6; break;
+    case 5: o->aperture = 1.05; break;
+    case 6: o->bars = 0.5; break;
+    case 7: o->size_spread = 0.04; break;
+    case 8: o->density = 5000; break;
+    case 9: o->feed_radius = 0.3; break;
+    case 10: o->feed_height = 0.3; break;
+    default: break;
+    }
+}
 
+#define NONE {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1}
 static const sweep sweeps[] = {
     {"rpm", "machine [1/min]", 7, {10, 25, 50, 75, 100, 150, 250}, {40, -1, 78, -1, -1, 72, 58},
-     set_rpm},
-    {"rate", "feed [1/s], 0: batch", 5, {0, 37, 74, 147, 294}, {-1, -1, -1, 78, -1}, set_rate},
-    {"alpha", "alpha [deg]", 5, {0, 0.5, 1, 2, 4}, {76, -1, 78.2, -1, -1}, set_alpha},
-    {"beta", "beta [deg]", 5, {0, 0.3, 0.65, 1.3, 2.6}, {-1, -1, 78.2, -1, -1}, set_beta},
-    {"ecc", "eccentricity [mm]", 5, {0, 20, 40, 100, 300}, {-1, -1, 80, -1, -1}, set_eccentricity},
-    {"K", "K of the swing; -1: free", 5, {-1, 0, 0.3, 0.7, 1}, {58, 69, -1, 75, -1}, set_factor},
-    {"mu", "friction of the machine", 6, {0, 0.04, 0.06, 0.1, 0.2, 0.3}, {-1, -1, -1, -1, -1, -1},
-     set_friction},
+     set_rpm, {0}},
+    {"rate", "feed [1/s], 0: batch", 5, {0, 37, 74, 147, 294}, {-1, -1, -1, 78, -1}, set_rate, {0}},
+    {"nozzle", "radius of the nozzle [mm]", 5, {30, 40, 50, 60, 80}, NONE, set_nozzle, {0}},
+    {"alpha", "alpha [deg]", 5, {0, 0.5, 1, 2, 4}, {76, -1, 78.2, -1, -1}, set_alpha, {0}},
+    {"beta", "beta [deg]", 5, {0, 0.3, 0.65, 1.3, 2.6}, {-1, -1, 78.2, -1, -1}, set_beta, {0}},
+    {"level_beta", "beta [deg] at alpha = 0", 5, {0, 0.3, 0.65, 1.3, 2.6}, {-1, -1, 76, -1, -1}, set_beta, {0}},
+    {"ecc", "eccentricity [mm]", 5, {0, 20, 40, 100, 300}, {-1, -1, 80, -1, -1}, set_eccentricity, {0}},
+    {"K", "K of the swing; -1: free", 5, {-1, 0, 0.3, 0.7, 1}, {58, 69, -1, 75, -1}, set_factor, {0}},
+    {"mu", "friction of the machine", 6, {0, 0.04, 0.06, 0.1, 0.2, 0.3}, NONE, set_friction, {0}},
+    {"N", "balls", 3, {775, 4950, 9900}, NONE, set_size, {0}},
+    {"holes", "holes, as in the table", 7, {0, 1, 2, 3, 4, 5, 6}, NONE, set_holes,
+     {"model1", "model2", "wires", "plate", "round", "bars", "slots"}},
+    {"grains", "grains, as in the table", 4, {0, 1, 2, 3}, NONE, set_grains, {"sphere", "pair", "rod", "tetra"}},
+    {"rim", "rim, as in the table", 5, {0, 1, 2, 3, 4}, NONE, set_rim,
+     {"open", "half_vanes", "quarter_vanes", "quarter", "quarter_long"}},
+    {"parameter", "parameter, as in the table", 11, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, NONE, set_parameter,
+     {"chosen", "phase90", "plate50mm", "decks3", "radius0.6", "aperture1.05", "bars0.5", "spread0.04", "density5000",
+      "feed_radius0.3", "feed_height0.3"}},
 };
 
-/* The results of a sweep: one row per value, columns as in the CSV file. */
-enum { VALUE, NUMBER, MASS, GANGUE, RATE, SPREAD, GANGUE_SPREAD, DECK_RATE,
-       COLUMNS = DECK_RATE + LEVELS };
-static const char sweep_heading[] = "value,efficiency_number,efficiency_mass,gangue_mass,rate,"
-    "efficiency_spread,gangue_spread,rate1,rate2,rate3,rate4,rate5";
+/* The results of a sweep: for each value means over the seeds, and the spread (standard deviation) of one seed. */
+enum { NUMBER, MASS, GANGUE, RATE, STEADY_AT, LEFT, LOWEST, DECK_RATE, MEASURES = DECK_RATE + LEVELS };
+static const struct { const char *name, *unit; } measures[MEASURES] = {
+    {"efficiency_number", "%"}, {"efficiency_mass", "%"}, {"gangue_mass", "%"}, {"rate", "1/s"}, {"steady", "s"},
+    {"left", ""}, {"lowest", ""},
+    {"deck1.rate", "kg/s"}, {"deck2.rate", "kg/s"}, {"deck3.rate", "kg/s"}, {"deck4.rate", "kg/s"}, {"deck5.rate", "kg/s"}};
 
 typedef struct sweep_result {
     int count, decks;
-    double column[COLUMNS][12];
-    double time[12][SAMPLES], efficiency[12][SAMPLES], gangue[12][SAMPLES];  /* of the first seed */
+    double value[12], mean[MEASURES][12], spread[MEASURES][12];
+    sifting curves[12];
     char name[12][32];
 } sweep_result;
 
-/* Runs all seeds of one value: the mean over seeds, and the spread (standard deviation of one seed). */
+/* Runs all seeds of one value. */
 static int value_run(const struct screener_options *base, const char *tag, sweep_result *r) {
     static screener s;
-    double sum[COLUMNS] = {0}, square[2] = {0, 0};
     const int n = r->count;
     int i, k;
+    memset(&r->curves[n], 0, sizeof r->curves[n]);
     for (i = 0; i < base->repeats; i++) {
         struct screener_options o = *base;
+        double found[MEASURES];
         char more[24] = "";
         o.seed += i;
         if (i) snprintf(more, sizeof more, ".seed%d", o.seed);
         snprintf(study.prefix, sizeof study.prefix, "%s%s%s%s.", tag, *tag ? "." : "", r->name[n],
                  more);
         if (screener_run(&s, &o, r->name[n])) { screener_end(&s); return 1; }
-        k = s.samples - 1;
-        sum[NUMBER] += s.efficiency[k];
-        sum[MASS] += s.mass_efficiency[k];
-        sum[GANGUE] += s.gangue[k];
-        sum[RATE] += rate_late(&s);
-        square[0] += s.efficiency[k]*s.efficiency[k];
-        square[1] += s.gangue[k]*s.gangue[k];
         r->decks = s.levels;
-        for (k = 0; k < s.levels; k++) sum[DECK_RATE + k] += deck_rate(&s, k);
-        for (k = 0; k < SAMPLES && i == 0; k++) {
-            const int at = k < s.samples ? k : s.samples - 1;
-            r->time[n][k] = s.time[at];
-            r->efficiency[n][k] = s.efficiency[at];
-            r->gangue[n][k] = s.gangue[at];
+        k = s.curves.samples - 1;
+        found[NUMBER] = s.curves.value[SIFTING_EFFICIENCY][s.levels][k];
+        found[MASS] = s.curves.value[SIFTING_EFFICIENCY_MASS][s.levels][k];
+        found[GANGUE] = s.curves.value[SIFTING_GANGUE_MASS][s.levels][k];
+        found[RATE] = rate_late(&s);
+        found[STEADY_AT] = sifting_steady(&s.curves, SIFTING_EFFICIENCY, s.levels, STEADY);
+        found[LEFT] = s.curves.left[k];
+        found[LOWEST] = (double)let_out(&s, 0).total;
+        for (k = 0; k < LEVELS; k++) found[DECK_RATE + k] = k < s.levels ? deck_rate(&s, k) : 0;
+        for (k = 0; k < MEASURES; k++) {                     /* spread: the sum of squares so far */
+            const double before = r->mean[k][n];
+            r->mean[k][n] += (found[k] - before)/(i + 1);
+            r->spread[k][n] += (found[k] - before)*(found[k] - r->mean[k][n]);
         }
+        sifting_add(&r->curves[n], &s.curves);
         screener_end(&s);
     }
-    for (k = NUMBER; k < COLUMNS; k++) r->column[k][n] = sum[k]/base->repeats;
-    for (k = 0; k < 2 && base->repeats > 1; k++) {
-        const double mean = r->column[k ? GANGUE : NUMBER][n];
-        r->column[SPREAD + k][n] = sqrt(fmax(0, square[k] - base->repeats*mean*mean)/
-                                        (base->repeats - 1));
-    }
-    if (base->repeats > 1) {
-        snprintf(study.prefix, sizeof study.prefix, "%s%s%s.", tag, *tag ? "." : "", r->name[n]);
-        study_result("mean.efficiency_number", r->column[NUMBER][n], "%");
-        study_result("mean.efficiency_mass", r->column[MASS][n], "%");
-        study_result("mean.gangue_mass", r->column[GANGUE][n], "%");
-        study_result("spread.efficiency_number", r->column[SPREAD][n], "%");
-        study_result("spread.gangue_mass", r->column[GANGUE_SPREAD][n], "%");
+    snprintf(study.prefix, sizeof study.prefix, "%s%s%s.", tag, *tag ? "." : "", r->name[n]);
+    for (k = 0; k < MEASURES && base->repeats > 1; k++) {
+        char text[48];
+        r->spread[k][n] = sqrt(r->spread[k][n]/(base->repeats - 1));
+        if (k >= DECK_RATE + r->decks) continue;
+        snprintf(text, sizeof text, "mean.%s", measures[k].name);
+        study_result(text, r->mean[k][n], measures[k].unit);
+        snprintf(text, sizeof text, "spread.%s", measures[k].name);
+        study_result(text, r->spread[k][n], measures[k].unit);
     }
     study.prefix[0] = 0;
     r->count++;
     return 0;
 }
 
+/* Draws one quantity of one deck (or of the machine) over time, with a curve for each value. */
+static void values_draw(const sweep_result *r, int quantity, int deck, const char *title, const char *file) {
+    study_figure f;
+    int i;
+    memset(&f, 0, sizeof f);
+    f.title = title;
+    f.x_label = "time [s]";
+    f.y_label = sifting_names[quantity].label;
+    for (i = 0; i < r->count; i++)
+        study_curve(&f, r->name[i], STUDY_LINE, r->curves[i].samples, r->curves[i].time, r->curves[i].value[quantity][deck]);
+    study_figure_write(&f, file);
+}
+/* Draws what left each deck over time at one value: sorted balls, and gangue dashed. */
+static void outputs_draw(const sifting *c, const char *value, const char *file) {
+    char names[2][LEVELS][32], title[64];
+    study_figure f;
+    int k, which;
+    memset(&f, 0, sizeof f);
+    snprintf(title, sizeof title, "Balls that left each deck, %s", value);
+    f.title = title;
+    f.x_label = "time [s]";
+    f.y_label = "balls";
+    for (which = 0; which < 2; which++)
+        for (k = 0; k < c->decks; k++) {
+            snprintf(names[which][k], sizeof names[0][0], "deck %d, %s", k + 1, which ? "gangue" : "sorted");
+            if (which && !k) continue;                       /* the lowest deck has none */
+            study_curve(&f, names[which][k], which ? STUDY_DASHED : STUDY_LINE, c->samples, c->time,
+                        c->value[which ? SIFTING_GANGUE : SIFTING_SORTED][k]);
+        }
+    study_figure_write(&f, file);
+}
+
 /* Runs one sweep. Its pictures: efficiency and gangue against the value, beside the thesis; the rate of
-   each deck against the value; efficiency and gangue over time. */
+   each deck against the value; over time, of each value, efficiency, gangue, flows, balls in the machine and on the
+   lowest deck; for each value, what left each deck. NAME_curves.csv has all curves of all values and decks. */
 static void sweep_run(const sweep *w, const struct screener_options *base, const char *tag) {
     static sweep_result r;
-    static const char *const what[4] = {"", "_time", "_gangue", "_rates"};
+    static const struct { int quantity, lowest; const char *title, *name; } over_time[6] = {
+        {SIFTING_EFFICIENCY, 0, "Sorting efficiency over time", "time"},
+        {SIFTING_GANGUE_MASS, 0, "Gangue over time", "gangue"},
+        {SIFTING_THROUGH, 0, "Feed over time", "feed"},
+        {SIFTING_OUT, 0, "Outflow over time", "outflow"},
+        {SIFTING_ON, 0, "Mass in the machine over time", "mass"},
+        {SIFTING_SORTED, 1, "Balls that left the lowest deck", "lowest"}};
     double thesis_x[12], thesis_y[12];
-    const double *columns[COLUMNS];
-    study_figure figure[4];
-    char file[96], decks[LEVELS][16];
+    study_figure figure[2];
+    char file[128], decks[LEVELS][16], start[64];
+    FILE *csv;
     int i, k, known = 0;
     memset(&r, 0, sizeof r);
     memset(figure, 0, sizeof figure);
+    snprintf(start, sizeof start, "%s%s%s", tag, *tag ? "_" : "", w->name);
     for (i = 0; i < w->count; i++) {
         struct screener_options o = *base;
         w->set(&o, w->value[i]);
-        r.column[VALUE][r.count] = w->value[i];
-        snprintf(r.name[r.count], sizeof r.name[0], "%s%g", w->name, w->value[i]);
+        r.value[r.count] = w->value[i];
+        if (w->words[0]) snprintf(r.name[r.count], sizeof r.name[0], "%s", w->words[i]);
+        else snprintf(r.name[r.count], sizeof r.name[0], "%s%g", w->name, w->value[i]);
         if (is(w->name, "rate") && !(w->value[i] > 0))
             snprintf(r.name[r.count], sizeof r.name[0], "batch");
-        value_run(&o, tag, &r);
+        if (value_run(&o, tag, &r)) continue;
         if (w->thesis[i] >= 0) { thesis_x[known] = w->value[i]; thesis_y[known++] = w->thesis[i]; }
     }
     if (!r.count) return;
     figure[0].title = "Sorting efficiency";
     figure[0].y_label = "efficiency [%]";
     figure[0].y1 = 100;
-    figure[1].title = "Sorting efficiency over time";
-    figure[1].y_label = "efficiency by number [%]";
-    figure[2].title = "Gangue over time";
-    figure[2].y_label = "gangue, share of mass [%]";
-    figure[3].title = "Output rates";
-    figure[3].y_label = "rate of a deck [kg/s]";
-    figure[0].x_label = figure[3].x_label = w->label;
-    figure[1].x_label = figure[2].x_label = "time [s]";
-    figure[0].x0 = figure[3].x0 = r.column[VALUE][0];
-    figure[0].x1 = figure[3].x1 = r.column[VALUE][r.count - 1];
-    study_curve(&figure[0], "by number", STUDY_LINE, r.count, r.column[VALUE], r.column[NUMBER]);
-    study_curve(&figure[0], "by mass", STUDY_DASHED, r.count, r.column[VALUE], r.column[MASS]);
-    study_curve(&figure[0], "gangue, share of mass", STUDY_FAINT, r.count, r.column[VALUE],
-                r.column[GANGUE]);
+    figure[1].title = "Output rates";
+    figure[1].y_label = "rate of a deck [kg/s]";
+    study_curve(&figure[0], "by number", STUDY_LINE, r.count, r.value, r.mean[NUMBER]);
+    study_curve(&figure[0], "by mass", STUDY_DASHED, r.count, r.value, r.mean[MASS]);
+    study_curve(&figure[0], "gangue, share of mass", STUDY_FAINT, r.count, r.value, r.mean[GANGUE]);
     if (known) study_curve(&figure[0], "[ALK07]", STUDY_DOTS, known, thesis_x, thesis_y);
-    for (i = 0; i < r.count; i++) {
-        study_curve(&figure[1], r.name[i], STUDY_LINE, SAMPLES, r.time[i], r.efficiency[i]);
-        study_curve(&figure[2], r.name[i], STUDY_LINE, SAMPLES, r.time[i], r.gangue[i]);
-    }
     for (k = 0; k < r.decks; k++) {
         snprintf(decks[k], sizeof decks[k], "deck %d", k + 1);
-        study_curve(&figure[3], decks[k], STUDY_LINE, r.count, r.column[VALUE],
-                    r.column[DECK_RATE + k]);
+        study_curve(&figure[1], decks[k], STUDY_LINE, r.count, r.value, r.mean[DECK_RATE + k]);
     }
-    for (k = 0; k < 4; k++) {
-        snprintf(file, sizeof file, "%s%s%s%s.svg", tag, *tag ? "_" : "", w->name,
-                 what[k]);
+    for (k = 0; k < 2; k++) {
+        figure[k].x_label = w->label;
+        figure[k].x0 = r.value[0];
+        figure[k].x1 = r.value[r.count - 1];
+        snprintf(file, sizeof file, "%s%s.svg", start, k ? "_rates" : "");
         study_figure_write(&figure[k], file);
     }
-    for (k = 0; k < COLUMNS; k++) columns[k] = r.column[k];
-    snprintf(file, sizeof file, "%s%s%s.csv", tag, *tag ? "_" : "", w->name);
-    study_csv(file, sweep_heading, r.count, COLUMNS, columns);
+    for (k = 0; k < 6; k++) {
+        snprintf(file, sizeof file, "%s_%s.svg", start, over_time[k].name);
+        values_draw(&r, over_time[k].quantity, over_time[k].lowest ? 0 : r.curves[0].decks, over_time[k].title, file);
+    }
+    for (i = 0; i < r.count; i++) {
+        snprintf(file, sizeof file, "%s_outputs_%s.svg", start, r.name[i]);
+        outputs_draw(&r.curves[i], r.name[i], file);
+    }
+    snprintf(file, sizeof file, "%s.csv", start);
+    csv = study_open(file);
+    if (csv) {
+        fputs("value", csv);
+        for (k = 0; k < MEASURES; k++) fprintf(csv, ",%s,spread", measures[k].name);
+        for (i = 0; i < r.count; i++)
+            for (k = -1; k < MEASURES; k++)
+                if (k < 0) fprintf(csv, "\n%.9g", r.value[i]);
+                else fprintf(csv, ",%.9g,%.3g", r.mean[k][i], r.spread[k][i]);
+        fputc('\n', csv);
+        study_close(csv, file);
+    }
+    snprintf(file, sizeof file, "%s_curves.csv", start);
+    csv = study_open(file);
+    if (csv) {
+        sifting_heading(csv);
+        for (i = 0; i < r.count; i++) sifting_rows(&r.curves[i], csv, r.name[i]);
+        study_close(csv, file);
+    }
 }
 static const sweep *sweep_of(const char *name) {
     size_t i;
@@ -769,7 +938,6 @@ static void also(const struct screener_options *o, const char *name) {
 
 int main(int argc, char **argv) {
     struct screener_options o;
-    int i;
     study_options(argc, argv, "A tumbling screening machine after [ALK07] section 4.4.", table,
                   (int)(sizeof table/sizeof *table));
     if (options.quick) { /* options given by name keep their values */
@@ -786,12 +954,8 @@ int main(int argc, char **argv) {
     if (is(o.study, "run")) {
         static screener s;
         FILE *report;
-        const double *columns[6];
         if (!screener_run(&s, &o, "screener")) {
-            columns[0] = s.time; columns[1] = s.efficiency; columns[2] = s.gangue;
-            columns[3] = s.left; columns[4] = s.present; columns[5] = s.fed;
-            study_csv("time.csv", "time,efficiency_number,gangue_mass,left,present,fed", s.samples,
-                      6, columns);
+            sifting_write(&s.curves, "curves");
             report = study_open("report.txt");
             if (report) { dem_world_report(s.world, report); study_close(report, "report.txt"); }
         }
@@ -802,6 +966,8 @@ int main(int argc, char **argv) {
     else if (is(o.study, "inclination")) {
         sweep_run(sweep_of("alpha"), &o, "");
         sweep_run(sweep_of("beta"), &o, "");
+        o.alpha = 0;
+        sweep_run(sweep_of("level_beta"), &o, "");
     } else if (is(o.study, "eccentricity")) {
         if (o.beta < 0) o.beta = 1;            /* as its Fig 4.20 */
         sweep_run(sweep_of("ecc"), &o, "");
@@ -814,24 +980,16 @@ int main(int argc, char **argv) {
         o.factor = 0;
         if (o.zeta < 0) o.zeta = 0;            /* as its Fig 4.22 */
         sweep_run(sweep_of("mu"), &o, "");
-    } else if (is(o.study, "size")) {
-        static const int balls[3] = {775, 4950, 9900};
-        static const double seconds[3] = {20, 25, 45}, hours[3] = {2.5, 36, 153};
-        char name[32];
+    } else if (is(o.study, "size")) {          /* as its Fig 4.23 */
         o.machine = "glass";
         o.factor = 0;
-        for (i = 0; i < 3; i++) {
-            o.balls = i ? balls[i] : 0;
-            if (!(options.seconds > 0)) o.seconds = seconds[i];
-            snprintf(name, sizeof name, "N%d", balls[i]);
-            also(&o, name);
-            snprintf(name, sizeof name, "N%d.thesis_compute", balls[i]);
-            study_result(name, 3600*hours[i], "s");
-        }
-    } else if (is(o.study, "holes")) {
-        static const char *const holes[4] = {"model1", "model2", "wires", "plate"};
-        for (i = 0; i < 4; i++) { o.holes = holes[i]; also(&o, holes[i]); }
-    } else if (is(o.study, "choices")) {
+        sweep_run(sweep_of("N"), &o, "");
+    } else if (is(o.study, "parameters")) sweep_run(sweep_of("parameter"), &o, "");
+    else if (is(o.study, "grains")) {
+        if (reduced(&o)) o.holes = "wires";
+        sweep_run(sweep_of("grains"), &o, "");
+    } else if (is(o.study, "holes") || is(o.study, "nozzle") || is(o.study, "rim")) sweep_run(sweep_of(o.study), &o, "");
+    else if (is(o.study, "choices")) {
         also(&o, "chosen");
         o.restitution = 0.8;        also(&o, "restitution0.8"); o = options;
         o.stiffness = 8e4;          also(&o, "stiffness8e4");   o = options;

@@ -21,6 +21,8 @@
      metal.landed, metal.brushed      grains; fraction of the mass that the brush took (x < -R/2)
      splitterNN.purity, .recovery     %: metal in the mass beyond splitter NN; mass of metal beyond it in all metal that
                                       landed; NN = 00 to 59, from --splitter-from over 200 mm
+     products.*                       with middlings: purity and recovery (%) of plastic, middlings and metal at the two
+                                      splitters for which the mean of purity + recovery - 100 over the three is largest
      best_splitter, best_quality      m; %: the splitter at which purity + recovery - 100 is largest, and this value
      fed, binned, present, missing    grains; missing = fed - binned - present is 0
      unbalanced_steps                 steps at which the balance of a class or material was wrong: 0
@@ -33,7 +35,7 @@
 #include "study.h"
 #include "study_replay.h"
 
-enum { BINS = 200, SPLITTERS = 60, GROUPS = 3 + SEPARATOR_PARTS, VALUES = 8, REPEATS = 32 };
+enum { BINS = 200, SPLITTERS = 60, GROUPS = 3 + SEPARATOR_PARTS, VALUES = 12, REPEATS = 32 };
 static const double bin_first = -0.4, bin_wide = 0.005;      /* m */
 
 static struct separator_options {
@@ -44,9 +46,9 @@ static struct separator_options {
     double brush_middle, brush_half, scatter, coulomb, wind_x, wind_y, swirl, bins, splitter_from;
     double dt, tolerance, range, young, mixed, air_density, air_viscosity, feeder_length, feeder_edge, near_interval,
         touch;
-    double roughness, at_contact;
+    double roughness, at_contact, in_flight, field_share, image_permittivity;
     const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *out;
-    int sweeps, cold, threads, seed, repeats, image, pull, quick, brief, replay, check;
+    int sweeps, cold, threads, seed, repeats, image, pull, in_front, quick, brief, replay, check;
 } options = {
     30, 44.8, 0.160, 0.019, 0.267, 30, 0.03, 0.182, 5000, 6, 2,
     0.72, 20, 1, 2, 4, 1.5, 0.5, 0, 0.5,
@@ -54,9 +56,9 @@ static struct separator_options {
     -1, 1e-4, 0.1, 0.21, -10, 50, 10, 1e-4, 10, 5e-3,
     270, 19.3, 0.3, 10, 0, 0, 0, -0.5, 0.2,
     0, 0, 0, 5e6, 0, 1.204, 1.81e-5, 0.07, -0.015, 1, 2,
-    0.8, 0.832,
+    0.8, 0.832, 1, 1, 1,
     "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "build/out/separator",
-    0, -1, 1, 1, 1, 1, 1, 0, 0, 0, 0};
+    0, -1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"voltage", STUDY_REAL, &options.voltage, -100, 100, "kV", "of the electrode; its sign is that of the ions"},
@@ -118,6 +120,10 @@ static const study_option table[] = {
     {"near-interval", STUDY_REAL, &options.near_interval, 1e-3, 10, "ms", "from one list of pairs to the next"},
     {"touch", STUDY_REAL, &options.touch, 1e-3, 1000, "um", "gap up to which a grain touches the rotor"},
     {"at-contact", STUDY_REAL, &options.at_contact, 0, 1, "", "share of Q E that lifts metal off the rotor"},
+    {"in-flight", STUDY_REAL, &options.in_flight, 0, 1, "", "share of Q E that acts on metal off the rotor"},
+    {"in-front", STUDY_INT, &options.in_front, 0, 1, "", "1: metal takes its charge in the corona's window, without contact"},
+    {"field-share", STUDY_REAL, &options.field_share, 0, 10, "", "factor on the electrode's field; .206: as the program of [CRI14]"},
+    {"image-permittivity", STUDY_REAL, &options.image_permittivity, 1, 100, "", "er that divides the image force"},
     {"image", STUDY_INT, &options.image, 0, 1, "", "1: image force"},
     {"pull", STUDY_INT, &options.pull, 0, 1, "", "1: the field pulls ions' charge; 0: as [CRI14] has it"},
     {"drag", STUDY_CHOICE, &options.drag, 0, 0, "none|stokes|schiller", "of the air"},
@@ -147,7 +153,7 @@ static const study_option table[] = {
     {"check", STUDY_FLAG, &options.check, 0, 0, "", "equal bits for 1, 2, 3, 4, 8 threads and after a restart"},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|speed|voltage|shape|settings|steps|choices",
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|settings|solvers|steps|choices|papers",
         "what to run"},
 };
 enum { OPTIONS = sizeof table/sizeof *table };
@@ -218,7 +224,8 @@ static void charging_set(separator_desc *d, const struct separator_options *o) {
     c->range = o->coulomb/1000;
     c->image = o->image; c->pull = o->pull;
     c->touch = 1e-6*o->touch;
-    c->at_contact = o->at_contact;
+    c->at_contact = o->at_contact; c->in_flight = o->in_flight; c->in_front = o->in_front;
+    c->field_share = o->field_share; c->image_permittivity = o->image_permittivity;
     c->air_density = o->air_density; c->air_viscosity = o->air_viscosity;
     c->drag = is(o->drag, "none") ? CORONA_DRAG_NONE : is(o->drag, "stokes") ? CORONA_DRAG_STOKES
         : CORONA_DRAG_SCHILLER;
@@ -291,6 +298,7 @@ typedef struct outcome {
     char name[GROUPS][32];             /* names of the groups: the stuffs, then the parts of stuffs that have two forms */
     double count[GROUPS], mass[GROUPS], mean[GROUPS], sd[GROUPS], brushed[GROUPS], bins[GROUPS][BINS];
     double purity[SPLITTERS], recovery[SPLITTERS], best, quality;    /* shares; m */
+    double beyond[3][SPLITTERS];       /* kg of each stuff beyond the splitters */
     double sweeps, residual, unsolved, overlap, steps, compute, grain_steps, fed, binned, present, unbalanced;
     int impulses;
 } outcome;
@@ -328,6 +336,9 @@ static void landing_count(const separator *s, outcome *r, int g, const separator
 static void splitters_take(const separator *s, const struct separator_options *o, outcome *r) {
     int i, k;
     r->quality = -1;
+    for (i = 0; i < s->landed_count; i++)
+        for (k = 0; k < SPLITTERS && s->landed[i].x >= splitter_place(o, k); k++)
+            r->beyond[s->desc.parts[s->landed[i].part].stuff][k] += s->landed[i].mass;
     for (k = 0; k < SPLITTERS; k++) {
         double beyond = 0, metal = 0, all = 0;
         for (i = 0; i < s->landed_count; i++) {
@@ -345,6 +356,35 @@ static void splitters_take(const separator *s, const struct separator_options *o
             r->best = splitter_place(o, k);
         }
     }
+}
+/* Three products: plastic before the splitter `near`, middlings from there to `far`, metal beyond. Returns the purity of one,
+   1 if its bin is empty, and its recovery: shares of the mass of its own stuff, middlings being a stuff of their own. */
+static double product_get(const outcome *r, int stuff, int near, int far, double *recovery) {
+    double own = 0, all = 0;
+    int g;
+    for (g = 0; g < 3; g++) {
+        const double mass = stuff == SEPARATOR_METAL ? r->beyond[g][far]
+            : stuff == SEPARATOR_MIDDLING ? r->beyond[g][near] - r->beyond[g][far] : r->mass[g] - r->beyond[g][near];
+        all += mass;
+        if (g == stuff) own = mass;
+    }
+    *recovery = r->mass[stuff] > 0 ? own/r->mass[stuff] : 0;
+    return all > 1e-12 ? own/all : 1;
+}
+/* Returns the mean over the three products of purity + recovery - 1. */
+static double products_quality(const outcome *r, int near, int far) {
+    double sum = 0, recovery;
+    int g;
+    for (g = 0; g < 3; g++) sum += product_get(r, g, near, far, &recovery) + recovery - 1;
+    return sum/3;
+}
+static void products_best(const outcome *r, int *near, int *far) {
+    double most = -1;
+    int a, b;
+    *near = *far = 0;
+    for (a = 0; a < SPLITTERS; a++)
+        for (b = a; b < SPLITTERS; b++)
+            if (products_quality(r, a, b) > most) { most = products_quality(r, a, b); *near = a; *far = b; }
 }
 static void outcome_take(const separator *s, const struct separator_options *o, outcome *r) {
     const dem_counters c = dem_counters_get(s->world);
@@ -568,6 +608,69 @@ static void tables_write(const struct separator_options *o, const outcome *r) {
     study_csv("splitter.csv", "splitter_m,purity,recovery", SPLITTERS, 3, splitters);
 }
 
+/* Draws maps over both splitters, of the quality of all products and of purity and recovery of the middlings, and curves of
+   metal and plastic, which one splitter decides. NAME_products.csv has the numbers. */
+static void products_draw(const struct separator_options *o, const outcome *r, const char *name) {
+    static const char *const titles[3] = {"Quality of three products [%]", "Purity of middlings [%]", "Recovery of middlings [%]"};
+    static const char *const files[3] = {"quality", "purity", "recovery"};
+    static double map[3][SPLITTERS*SPLITTERS];
+    double x[SPLITTERS], curve[4][SPLITTERS], recovery;
+    const double first = 1000*splitter_place(o, 0), last = 1000*splitter_place(o, SPLITTERS - 1);
+    char file[96];
+    study_figure f;
+    FILE *csv;
+    int a, b, k, g;
+    snprintf(file, sizeof file, "%s%sproducts.csv", name, *name ? "_" : "");
+    csv = study_open(file);
+    if (csv) fputs("near_m,far_m,plastic_purity,plastic_recovery,middling_purity,middling_recovery,metal_purity,metal_recovery\n", csv);
+    for (a = 0; a < SPLITTERS; a++)
+        for (b = 0; b < SPLITTERS; b++) {
+            const int at = SPLITTERS*b + a;
+            for (k = 0; k < 3; k++) map[k][at] = nan("");
+            if (b < a) continue;
+            map[0][at] = 100*products_quality(r, a, b);
+            map[1][at] = 100*product_get(r, SEPARATOR_MIDDLING, a, b, &recovery);
+            map[2][at] = 100*recovery;
+            if (csv) fprintf(csv, "%.6g,%.6g", splitter_place(o, a), splitter_place(o, b));
+            for (g = 1; g < 4 && csv; g++) {
+                const double purity = product_get(r, g == 1 ? SEPARATOR_PLASTIC : g == 2 ? SEPARATOR_MIDDLING : SEPARATOR_METAL,
+                                                  a, b, &recovery);
+                fprintf(csv, ",%.6g,%.6g%s", purity, recovery, g == 3 ? "\n" : "");
+            }
+        }
+    if (csv) study_close(csv, file);
+    for (k = 0; k < 3; k++) {
+        memset(&f, 0, sizeof f);
+        f.title = titles[k];
+        f.x_label = "splitter of plastic and middlings [mm]"; f.y_label = "splitter of middlings and metal [mm]";
+        f.equal = 1;
+        f.size = 480;
+        f.x0 = f.y0 = first; f.x1 = f.y1 = last;
+        f.nx = f.ny = SPLITTERS;
+        f.value = map[k];
+        f.hi = 100;
+        snprintf(file, sizeof file, "%s%sproducts_%s.svg", name, *name ? "_" : "", files[k]);
+        study_figure_write(&f, file);
+    }
+    memset(&f, 0, sizeof f);
+    f.title = "Products that one splitter decides";
+    f.x_label = "splitter [mm]"; f.y_label = "%";
+    f.y1 = 105;
+    for (a = 0; a < SPLITTERS; a++) {
+        x[a] = 1000*splitter_place(o, a);
+        curve[0][a] = 100*product_get(r, SEPARATOR_METAL, a, a, &recovery);
+        curve[1][a] = 100*recovery;
+        curve[2][a] = 100*product_get(r, SEPARATOR_PLASTIC, a, a, &recovery);
+        curve[3][a] = 100*recovery;
+    }
+    study_curve(&f, "metal, purity", STUDY_LINE, SPLITTERS, x, curve[0]);
+    study_curve(&f, "metal, recovery", STUDY_DASHED, SPLITTERS, x, curve[1]);
+    study_curve(&f, "plastic, purity", STUDY_LINE, SPLITTERS, x, curve[2]);
+    study_curve(&f, "plastic, recovery", STUDY_DASHED, SPLITTERS, x, curve[3]);
+    snprintf(file, sizeof file, "%s%sproducts_ends.svg", name, *name ? "_" : "");
+    study_figure_write(&f, file);
+}
+
 /* ---- sweeps: some values, each with some seeds ---- */
 
 typedef struct sweep {
@@ -586,6 +689,33 @@ static void set_setting(struct separator_options *o, double v) {
     o->setting = words[(int)v];
 }
 static void set_dt(struct separator_options *o, double v) { o->dt = 1e-3*v; }
+/* Feeds at least as many grains as in --seconds at 20,000 a second. */
+static void set_crowd(struct separator_options *o, double v) { o->rate = v; o->seconds *= fmax(1, 20000/v); }
+static void set_distance(struct separator_options *o, double v) { o->distance = v; }
+static void set_angle(struct separator_options *o, double v) { o->angle = v; }
+static void set_middling(struct separator_options *o, double v) {
+    o->metal = 0.3; o->middling = 0.1;
+    o->middling_metal = v;
+}
+static void set_mixture(struct separator_options *o, double v) { o->metal = v; }
+static void set_size(struct separator_options *o, double v) { o->size_mean = v; }
+static void set_solver(struct separator_options *o, double v) {
+    static const char *const words[4] = {"seidel", "jacobi", "apgd", "spectral"};
+    o->solver = words[(int)v];
+}
+/* The physics of the papers: each change alone, then all together, then with the weaker field of their program as well. */
+static void set_papers(struct separator_options *o, double v) {
+    const int n = (int)v, all = n >= 9;
+    if (n == 1 || all) o->setting = "seeds";
+    if (n == 2 || all) o->drag = "stokes";
+    if (n == 3 || all) o->coulomb = 0;
+    if (n == 4 || all) o->pull = 0;
+    if (n == 5 || all) o->current = 0;
+    if (n == 6 || all) { o->in_front = 1; o->in_flight = 0.832; }
+    if (n == 7 || all) o->contact_time = 0;
+    if (n == 8 || all) o->image_permittivity = o->permittivity;
+    if (n == 10) o->field_share = 0.206;
+}
 static void set_choice(struct separator_options *o, double v) {
     switch ((int)v) {
     case 1: o->rolling = 1; break;
@@ -600,11 +730,22 @@ static void set_choice(struct separator_options *o, double v) {
 }
 static const sweep sweeps[] = {
     {"feed", "Feed rate", "feed [grains/s]", 4, {1000, 3000, 10000, 20000}, {0}, set_rate},
+    {"crowd", "Feed rate, as many grains at each", "feed [grains/s]", 6, {100, 1000, 3000, 10000, 20000, 35000}, {0}, set_crowd},
     {"speed", "Rotor speed", "rotor [1/min]", 6, {25, 35, 45, 55, 65, 80}, {0}, set_rpm},
     {"voltage", "Voltage", "electrode [kV]", 6, {0, 10, 20, 25, 30, 35}, {0}, set_voltage},
+    {"distance", "Distance of the electrode", "between the axes [m]", 5, {0.21, 0.235, 0.267, 0.3, 0.35}, {0}, set_distance},
+    {"angle", "Angle of the electrode", "above the horizontal [deg]", 6, {0, 15, 30, 45, 60, 75}, {0}, set_angle},
+    {"middlings", "Share of metal in middlings", "share by volume", 5, {0.1, 0.3, 0.5, 0.7, 0.9}, {0}, set_middling},
+    {"mixture", "Share of metal in the feed", "share by number", 5, {0.1, 0.3, 0.5, 0.7, 0.9}, {0}, set_mixture},
+    {"sizes", "Mean size", "mean diameter [mm]", 5, {1.2, 1.5, 2, 2.5, 3}, {0}, set_size},
     {"shape", "Shape", "0 sphere, 1 flake, 2 shaving, 3 fragment", 4, {0, 1, 2, 3},
         {"sphere", "flake", "shaving", "fragment"}, set_form},
     {"settings", "Contacts", "0 ours, 1 seeds, 2 springs", 3, {0, 1, 2}, {"ours", "seeds", "springs"}, set_setting},
+    {"solvers", "Solvers", "0 Gauss-Seidel, 1 Jacobi, 2 accelerated, 3 spectral", 4, {0, 1, 2, 3},
+        {"seidel", "jacobi", "apgd", "spectral"}, set_solver},
+    {"papers", "Physics of the papers", "change, as in the table", 11, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10},
+        {"chosen", "setting", "stokes", "no_coulomb", "no_pull", "at_once", "in_front", "discharge", "image_er", "all",
+         "all_weak_field"}, set_papers},
     {"steps", "Step", "step [ms]", 5, {0.05, 0.1, 0.25, 0.5, 1}, {0}, set_dt},
     {"choices", "Choices", "choice, as in the table", 8, {0, 1, 2, 3, 4, 5, 6, 7},
         {"chosen", "rolling1", "strength0", "pinned", "no_pull", "no_coulomb", "stokes", "swirl1"}, set_choice},
@@ -634,6 +775,8 @@ static swept kept[VALUES];
 static void outcome_add(outcome *sum, const outcome *r, double share) {
     int g, k;
     memcpy(sum->name, r->name, sizeof sum->name);
+    for (g = 0; g < 3; g++)
+        for (k = 0; k < SPLITTERS; k++) sum->beyond[g][k] += share*r->beyond[g][k];
     for (g = 0; g < GROUPS; g++) {
         sum->mass[g] += share*r->mass[g];
         for (k = 0; k < BINS; k++) sum->bins[g][k] += share*r->bins[g][k];
@@ -643,7 +786,27 @@ static void outcome_add(outcome *sum, const outcome *r, double share) {
         sum->recovery[k] += share*r->recovery[k];
     }
 }
-static void value_tell(swept *v, int repeats) {
+/* Reports the three products at the two splitters that are best for all seeds together. */
+static void products_tell(const outcome *mean, const struct separator_options *o, int repeats) {
+    double number[3][REPEATS];
+    int near, far, g, i;
+    char text[48];
+    products_best(mean, &near, &far);
+    study_result("products.near_splitter", splitter_place(o, near), "m");
+    study_result("products.far_splitter", splitter_place(o, far), "m");
+    for (g = 0; g < 3; g++) {
+        for (i = 0; i < repeats; i++) {
+            number[0][i] = 100*product_get(&trials[i], g, near, far, &number[1][i]);
+            number[1][i] *= 100;
+            number[2][i] = 100*products_quality(&trials[i], near, far);
+        }
+        snprintf(text, sizeof text, "products.%s", stuff_names[g]);
+        spread_tell(text, "purity", spread_of(number[0], repeats), "%");
+        spread_tell(text, "recovery", spread_of(number[1], repeats), "%");
+    }
+    spread_tell("products", "quality", spread_of(number[2], repeats), "%");
+}
+static void value_tell(swept *v, const struct separator_options *base, int repeats) {
     double number[REPEATS];
     int g, i;
     memset(&v->mean, 0, sizeof v->mean);
@@ -661,6 +824,7 @@ static void value_tell(swept *v, int repeats) {
     spread_tell("", "best_quality", v->quality = spread_of(number, repeats), "%");
     for (i = 0; i < repeats; i++) number[i] = trials[i].best;
     spread_tell("", "best_splitter", spread_of(number, repeats), "m");
+    if (v->mean.mass[SEPARATOR_MIDDLING] > 0) products_tell(&v->mean, base, repeats);
     for (i = 0; i < repeats; i++) number[i] = trials[i].compute;
     spread_tell("", "compute", v->compute = spread_of(number, repeats), "s");
 }
@@ -678,7 +842,8 @@ static int value_run(const struct separator_options *base, const char *name, swe
         separator_end(&s);
     }
     snprintf(study.prefix, sizeof study.prefix, "%s.", name);
-    if (!bad) value_tell(v, base->repeats);
+    if (!bad) value_tell(v, base, base->repeats);
+    if (!bad && v->mean.mass[SEPARATOR_MIDDLING] > 0) products_draw(base, &v->mean, name);
     study.prefix[0] = 0;
     return bad;
 }
@@ -700,7 +865,7 @@ static void barred_draw(study_figure *f, barred *b, const char *name, const doub
     study_curve(f, 0, STUDY_OUTLINE, 3*count, b->bar_x, b->bar_y);
 }
 static void sweep_means_draw(const sweep *w, const double *value, int count) {
-    static barred b[5];
+    static barred b[7];
     char file[64];
     study_figure f[3];
     int g, k;
@@ -713,11 +878,11 @@ static void sweep_means_draw(const sweep *w, const double *value, int count) {
         const double room = 0.05*(value[count - 1] - value[0]);
         f[k].x_label = w->label;
         f[k].x0 = value[0] - room; f[k].x1 = value[count - 1] + room;
-        for (g = 0; g < 2 && k < 2; g++)
+        for (g = 0; g < 3 && k < 2; g++)
             if (kept[0].mean.mass[g] > 0)
-                barred_draw(&f[k], &b[2*k + g], stuff_names[g], value, k ? &kept[0].sd[g] : &kept[0].x[g],
+                barred_draw(&f[k], &b[3*k + g], stuff_names[g], value, k ? &kept[0].sd[g] : &kept[0].x[g],
                             sizeof *kept, count);
-        if (k == 2) barred_draw(&f[k], &b[4], "best", value, &kept[0].quality, sizeof *kept, count);
+        if (k == 2) barred_draw(&f[k], &b[6], "best", value, &kept[0].quality, sizeof *kept, count);
         snprintf(file, sizeof file, "%s_%s.svg", w->name, names[k]);
         study_figure_write(&f[k], file);
     }
@@ -751,7 +916,7 @@ static void sweep_curves_draw(const sweep *w, const struct separator_options *o,
     }
 }
 static void sweep_table_write(const sweep *w, const double *value, int count) {
-    enum { COLUMNS = 12 };
+    enum { COLUMNS = 16 };
     double column[COLUMNS][VALUES];
     const double *columns[COLUMNS];
     char file[64];
@@ -763,11 +928,14 @@ static void sweep_table_write(const sweep *w, const double *value, int count) {
             column[3 + 4*g][i] = kept[i].sd[g].mean; column[4 + 4*g][i] = kept[i].sd[g].error;
         }
         column[9][i] = kept[i].quality.mean; column[10][i] = kept[i].quality.error;
-        column[11][i] = kept[i].compute.mean;
+        column[11][i] = kept[i].x[2].mean; column[12][i] = kept[i].x[2].error;
+        column[13][i] = kept[i].sd[2].mean; column[14][i] = kept[i].sd[2].error;
+        column[15][i] = kept[i].compute.mean;
     }
     for (i = 0; i < COLUMNS; i++) columns[i] = column[i];
     snprintf(file, sizeof file, "%s.csv", w->name);
-    study_csv(file, "value,metal_x,error,metal_sd,error,plastic_x,error,plastic_sd,error,quality,error,compute", count,
+    study_csv(file, "value,metal_x,error,metal_sd,error,plastic_x,error,plastic_sd,error,quality,error,"
+              "middling_x,error,middling_sd,error,compute", count,
               COLUMNS, columns);
 }
 static void sweep_run(const sweep *w, const struct separator_options *base) {
@@ -849,6 +1017,7 @@ static void one_run(const struct separator_options *o) {
         outcome_tell(&r, 1);
         distribution_draw(&r);
         splitter_draw(o, &r);
+        if (r.mass[SEPARATOR_MIDDLING] > 0) products_draw(o, &r, "");
         tables_write(o, &r);
         report = study_open("report.txt");
         if (report) { dem_world_report(s.world, report); study_close(report, "report.txt"); }

@@ -5,7 +5,7 @@
    vertical. It carries a plate inclined by alpha and beta. On the plate, off the axis of the main
    shaft by `eccentricity`, an auxiliary shaft carries the barrel. Relative to the ground the barrel
    rotates by psi about its own axis, which tumbles. Z, C and B are rotations of the coordinates about
-   z, x and y; phi = speed t, chi = psi - phi:
+   z, x and y; phi = phase + speed t, chi = psi - phi:
 
        A_lg = Z(chi) B(beta) C(alpha) Z(phi)           eq 4.2, 4.3; local = A_lg (world - r_oc)
        r_oc = Z(phi)^T p,  p = (u (1 - cos b), eps - e (1 - cos a) - u sin a sin b,
@@ -28,6 +28,7 @@ typedef struct tumbler {
     double alpha, beta;            /* rad, inclination of the plate */
     double u, e;                   /* m, dimensions of the plate */
     double eccentricity;           /* m */
+    double phase;                  /* rad, of the main shaft at the start */
     double factor;                 /* K: speed of the barrel about its own axis over `speed`. 1: it
                                       rotates freely, 0: it is held */
     double period;                 /* s; > 0: the barrel swings to and fro at constant speed; 0: it
@@ -50,7 +51,7 @@ static inline double tumbler_swing(const tumbler *m, double time, double *rate) 
 /* Writes rotation (row-major, local to world), position, velocity and spin of the barrel. */
 static inline void tumbler_barrel(const tumbler *m, double time, double R[9], double x[3],
                                   double v[3], double spin[3]) {
-    const double phi = fmod(m->speed*time, 6.283185307179586476925);
+    const double phi = fmod(m->phase + m->speed*time, 6.283185307179586476925);
     const double ca = cos(m->alpha), sa = sin(m->alpha), cb = cos(m->beta), sb = sin(m->beta);
     const double c = cos(phi), s = sin(phi);
     const double p[3] = {m->u*(1 - cb), m->eccentricity - m->e*(1 - ca) - m->u*sa*sb,

@@ -12,6 +12,7 @@ static tumbler machine(double factor, double period) {
     m.alpha = 0.3; m.beta = 0.2;               /* far steeper than any machine: errors show */
     m.u = 0.4; m.e = 0.3; m.eccentricity = 0.05;
     m.factor = factor; m.period = period;
+    m.phase = 0;
     return m;
 }
 /* Eq 4.3 as printed; b: angle of the barrel. */
@@ -51,6 +52,22 @@ int main(int argc, char **argv) {
                 CHECK_NEAR(x[1], m.u*S - m.u*S*cb - m.e*C + eps*C - m.u*C*sa*sb + m.e*C*ca, 1e-14);
                 CHECK_NEAR(x[2], m.u*sb*ca + m.e*sa, 1e-14);
             }
+    }
+
+    TEST("a phase of the main shaft is a later start of a held barrel") {
+        tumbler early = machine(0, 0);
+        const tumbler late = early;
+        double R[2][9], x[2][3], v[2][3], w[2][3];
+        int k;
+        early.phase = 0.7;
+        tumbler_barrel(&early, 0.2, R[0], x[0], v[0], w[0]);
+        tumbler_barrel(&late, 0.2 + 0.7/late.speed, R[1], x[1], v[1], w[1]);
+        for (k = 0; k < 9; k++) CHECK_NEAR(R[0][k], R[1][k], 1e-14);
+        for (k = 0; k < 3; k++) {
+            CHECK_NEAR(x[0][k], x[1][k], 1e-15);
+            CHECK_NEAR(v[0][k], v[1][k], 1e-14);
+            CHECK_NEAR(w[0][k], w[1][k], 1e-14);
+        }
     }
 
     TEST("the frame's velocity and spin are the derivatives of its place and rotation") {
