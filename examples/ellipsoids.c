@@ -80,9 +80,9 @@ static const double restitutions[RESTITUTIONS] = {0.9, 0.95, 0.98};
 static struct gas_options {
     double xi, restitution, fraction, overlap, collisions, run_in, dt, seconds, spread;
     const char *damping, *hold, *integrator, *rotation, *out;
-    int count, seed, repeats, threads, slabs, quick, brief, all, theory, direct, speeds, integrators, sizes, replay;
+    int count, seed, repeats, threads, slabs, quick, brief, all, theory, direct, speeds, integrators, sizes, contact, replay;
 } options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, 0, "exact", "true", "verlet", "spiral", "build/out/ellipsoids",
-             512, 1, 3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+             512, 1, 3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
@@ -104,6 +104,7 @@ static const study_option table[] = {
     {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "integrators, sizes: runs of each, with the seeds that follow"},
     {"slabs", STUDY_INT, &options.slabs, 0, 64, "", "speeds: of one world, in one process; 0: no slabs"},
     {"integrators", STUDY_FLAG, &options.integrators, 0, 0, "", "drift of the energy and cooling with each scheme"},
+    {"contact", STUDY_FLAG, &options.contact, 0, 0, "", "time of the quartic of [RUB15] beside that of the contact function"},
     {"sizes", STUDY_FLAG, &options.sizes, 0, 0, "", "cooling of gases of several sizes"},
     {"seed", STUDY_INT, &options.seed, 1, 1e9, "", "of the random start"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
@@ -1004,6 +1005,161 @@ static choice chosen(void) {
     return c;
 }
 
+/* ---- the contact of two ellipsoids after [RUB15] ---- */
+
+/* P = R diag(1/a2) R^T, row-major */
+static void quadric(const dem_ellipsoid *e, double P[9]) {
+    const double axes[3] = {e->semi_axes.x, e->semi_axes.y, e->semi_axes.z};
+    int i, j, k;
+    for (i = 0; i < 9; i++) P[i] = 0;
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 along = dem_quat_rotate(e->orientation, dem_vec3_make(k == 0, k == 1, k == 2));
+        const double u[3] = {along.x, along.y, along.z};
+        for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) P[3*i + j] += u[i]*u[j]/(axes[k]*axes[k]);
+    }
+}
+static void adjoint(const double *P, double *A) {      /* of a symmetric matrix */
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++) {
+            const int a = (i + 1)%3, b = (i + 2)%3, c = (j + 1)%3, d = (j + 2)%3;
+            A[3*i + j] = P[3*a + c]*P[3*b + d] - P[3*a + d]*P[3*b + c];
+        }
+}
+static double product(const double *A, const double *B) { /* trace of A B, both symmetric */
+    double sum = 0;
+    int i;
+    for (i = 0; i < 9; i++) sum += A[i]*B[i];
+    return sum;
+}
+static double bilinear(const double *A, const double *v) {
+    return v[0]*(A[0]*v[0] + A[1]*v[1] + A[2]*v[2]) + v[1]*(A[3]*v[0] + A[4]*v[1] + A[5]*v[2]) +
+           v[2]*(A[6]*v[0] + A[7]*v[1] + A[8]*v[2]);
+}
+/* The quartic det(t A + B) of eq 9 and 10 for two ellipsoids shrunk by W: det K(t) (m + w - (1 - w) t) - v.adj(K(t)) v, with
+   K = t PA + PB, d from a to b, v = PB d, m = d.v - 1, w = 1 - W2. The search for W changes w alone. */
+typedef struct quartic { double PA[9], PB[9], v[3], k[4], q[3], m; } quartic;
+static quartic quartic_of(const dem_ellipsoid *a, const dem_ellipsoid *b) {
+    const double d[3] = {b->position.x - a->position.x, b->position.y - a->position.y, b->position.z - a->position.z};
+    quartic f;
+    double A[9], B[9], sum[9], both[9];
+    int i;
+    quadric(a, f.PA);
+    quadric(b, f.PB);
+    for (i = 0; i < 3; i++) f.v[i] = f.PB[3*i]*d[0] + f.PB[3*i + 1]*d[1] + f.PB[3*i + 2]*d[2];
+    for (i = 0; i < 9; i++) sum[i] = f.PA[i] + f.PB[i];
+    adjoint(f.PA, A);
+    adjoint(f.PB, B);
+    adjoint(sum, both);
+    f.k[3] = product(A, f.PA)/3; f.k[2] = product(A, f.PB); f.k[1] = product(B, f.PA); f.k[0] = product(B, f.PB)/3;
+    f.q[2] = bilinear(A, f.v); f.q[0] = bilinear(B, f.v);
+    f.q[1] = bilinear(both, f.v) - f.q[2] - f.q[0];
+    f.m = dot3(d, f.v) - 1;
+    return f;
+}
+static void quartic_at(const quartic *f, double W, double c[5]) {
+    const double w = 1 - W*W;
+    int i;
+    for (i = 0; i < 5; i++)
+        c[i] = (i < 4 ? (f->m + w)*f->k[i] : 0) - (i ? (1 - w)*f->k[i - 1] : 0) - (i < 3 ? f->q[i] : 0);
+}
+/* Eq 11 and the sign of P: returns 1 if the two are apart. */
+static int quartic_apart(const double c[5]) {
+    const double A = c[4], B = c[3], C = c[2], D = c[1], E = c[0];
+    const double delta = 256*A*A*A*E*E*E - 192*A*A*B*D*E*E - 128*A*A*C*C*E*E + 144*A*A*C*D*D*E - 27*A*A*D*D*D*D +
+        144*A*B*B*C*E*E - 6*A*B*B*D*D*E - 80*A*B*C*C*D*E + 18*A*B*C*D*D*D + 16*A*C*C*C*C*E - 4*A*C*C*C*D*D -
+        27*B*B*B*B*E*E + 18*B*B*B*C*D*E - 4*B*B*B*D*D*D - 4*B*B*C*C*C*E + B*B*C*C*D*D;
+    return delta > 0 && 8*A*C - 3*B*B < 0;
+}
+/* Searches the shrinkage W at which the two touch, by bisection to `within`; then the eigenvector of the double root, which is
+   the contact point relative to a, and the normal there. */
+static double quartic_contact(const dem_ellipsoid *a, const dem_ellipsoid *b, double within, double n[3]) {
+    const quartic f = quartic_of(a, b);
+    double lo = 0.5, hi = 1, c[5], K[9], J[9], x[3], t, more = 1;
+    int i;
+    while (hi - lo > within) {
+        const double middle = (lo + hi)/2;
+        quartic_at(&f, middle, c);
+        if (quartic_apart(c)) lo = middle; else hi = middle;
+    }
+    quartic_at(&f, lo, c);
+    for (t = 0, i = 0; i < 4; i++) t = fmax(t, fabs(c[i]/c[4]));
+    for (t += 1, i = 0; i < 60 && fabs(more) > 1e-12*t; i++) {      /* Newton from above: the largest root of f' */
+        more = (((4*c[4]*t + 3*c[3])*t + 2*c[2])*t + c[1])/((12*c[4]*t + 6*c[3])*t + 2*c[2]);
+        t -= more;
+    }
+    for (i = 0; i < 9; i++) K[i] = t*f.PA[i] + f.PB[i];
+    adjoint(K, J);
+    for (i = 0; i < 3; i++) x[i] = dot3(J + 3*i, f.v)*3/product(J, K);
+    for (i = 0; i < 3; i++) n[i] = dot3(f.PA + 3*i, x);
+    unit3(n);
+    return lo;
+}
+static void mean_tell(const char *name, const double *value, int count, const char *unit);
+
+/* Times both on the same pairs, which overlap by up to 1 % of their size, as in the gas. */
+static void contact_run(void) {
+    enum { PAIRS = 1000 };
+    static dem_ellipsoid pair[PAIRS][2];
+    static double lambda[PAIRS];
+    static const char *const names[4] = {"contact.function", "contact.function_warm", "contact.quartic", "contact.sign_test"};
+    double time[4][20], worst[2] = {0, 0}, iterations = 0, sum = 0;
+    static gas g;
+    int i, k, n, kind;
+    g.random = (uint64_t)options.seed;
+    if (!(options.xi > 0)) options.xi = 2;
+    for (i = 0; i < PAIRS; i++) {
+        dem_ellipsoid_contact c;
+        double d[3], W = 0.99 + 0.01*uniform(&g), n_quartic[3];
+        for (k = 0; k < 2; k++) {
+            pair[i][k].semi_axes = dem_vec3_make(1, 1, options.xi);
+            pair[i][k].orientation = dem_quat_make(normal(&g), normal(&g), normal(&g), normal(&g));
+            { /* of length one */
+                dem_quat *q = &pair[i][k].orientation;
+                const double l = sqrt(q->w*q->w + q->x*q->x + q->y*q->y + q->z*q->z);
+                *q = dem_quat_make(q->w/l, q->x/l, q->y/l, q->z/l);
+            }
+            d[k] = normal(&g);
+        }
+        d[2] = normal(&g);
+        unit3(d);
+        pair[i][0].position = dem_vec3_make(0, 0, 0);
+        pair[i][1].position = dem_vec3_make(d[0], d[1], d[2]);
+        W /= dem_ellipsoids_contact_get(&pair[i][0], &pair[i][1], 0).scale;
+        pair[i][1].position = dem_vec3_make(W*d[0], W*d[1], W*d[2]);
+        c = dem_ellipsoids_contact_get(&pair[i][0], &pair[i][1], 0);
+        lambda[i] = c.lambda;
+        iterations += c.iterations/(double)PAIRS;
+        worst[0] = fmax(worst[0], fabs(quartic_contact(&pair[i][0], &pair[i][1], 1e-6, n_quartic)/c.scale - 1));
+        worst[1] = fmax(worst[1], 1 - fabs(n_quartic[0]*c.normal.x + n_quartic[1]*c.normal.y + n_quartic[2]*c.normal.z));
+    }
+    for (n = 0; n < options.repeats; n++)
+        for (kind = 0; kind < 4; kind++) {
+            const double begun = (double)clock()/CLOCKS_PER_SEC;
+            double spent = 0, rounds = 0;
+            while (spent < (options.brief ? 0.02 : 0.3)) {
+                for (i = 0; i < PAIRS; i++) {
+                    double n_quartic[3], c[5];
+                    if (kind < 2) sum += dem_ellipsoids_contact_get(&pair[i][0], &pair[i][1], kind ? lambda[i] : 0).scale;
+                    else if (kind == 2) sum += quartic_contact(&pair[i][0], &pair[i][1], 1e-6, n_quartic);
+                    else {
+                        const quartic f = quartic_of(&pair[i][0], &pair[i][1]);
+                        quartic_at(&f, 1, c);
+                        sum += quartic_apart(c);
+                    }
+                }
+                rounds++;
+                spent = (double)clock()/CLOCKS_PER_SEC - begun;
+            }
+            time[kind][n] = 1e9*spent/rounds/PAIRS;
+        }
+    for (kind = 0; kind < 4; kind++) mean_tell(names[kind], time[kind], options.repeats, "ns");
+    study_result("contact.iterations", iterations, "");
+    study_result("contact.scale_difference", worst[0], "");
+    study_result("contact.normal_difference", sqrt(2*worst[1]), "rad");
+    if (!(sum > 0) || worst[0] > 1e-5) study_fail("the quartic and the contact function differ by %g", worst[0]);
+}
+
 static void mean_tell(const char *name, const double *value, int count, const char *unit) {
     double mean = 0, spread = 0;
     char text[96];
@@ -1181,6 +1337,7 @@ int main(int argc, char **argv) {
     if (options.theory) theory_tell();
     else if (options.direct) direct_run();
     else if (options.speeds) speeds_run();
+    else if (options.contact) contact_run();
     else if (options.integrators || options.sizes) schemes_run();
     else cases_run();
     return study_end();

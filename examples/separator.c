@@ -300,7 +300,7 @@ typedef struct outcome {
     double purity[SPLITTERS], recovery[SPLITTERS], best, quality;    /* shares; m */
     double beyond[3][SPLITTERS];       /* kg of each stuff beyond the splitters */
     double sweeps, residual, unsolved, overlap, steps, compute, grain_steps, fed, binned, present, unbalanced;
-    int impulses;
+    int impulses;                      /* 1: overlaps are checked; the steps of the papers are too long for that */
 } outcome;
 
 static const char *const stuff_names[3] = {"metal", "plastic", "middling"};
@@ -358,7 +358,7 @@ static void splitters_take(const separator *s, const struct separator_options *o
     }
 }
 /* Three products: plastic before the splitter `near`, middlings from there to `far`, metal beyond. Returns the purity of one,
-   1 if its bin is empty, and its recovery: shares of the mass of its own stuff, middlings being a stuff of their own. */
+   0 if its bin is empty, and its recovery: shares of the mass of its own stuff, middlings being a stuff of their own. */
 static double product_get(const outcome *r, int stuff, int near, int far, double *recovery) {
     double own = 0, all = 0;
     int g;
@@ -369,7 +369,7 @@ static double product_get(const outcome *r, int stuff, int near, int far, double
         if (g == stuff) own = mass;
     }
     *recovery = r->mass[stuff] > 0 ? own/r->mass[stuff] : 0;
-    return all > 1e-12 ? own/all : 1;
+    return all > 1e-12 ? own/all : 0;
 }
 /* Returns the mean over the three products of purity + recovery - 1. */
 static double products_quality(const outcome *r, int near, int far) {
@@ -412,7 +412,7 @@ static void outcome_take(const separator *s, const struct separator_options *o, 
     r->residual = s->residual_max;
     r->unsolved = (double)c.unsolved;
     r->overlap = (double)c.overlap_max;
-    r->impulses = s->desc.response == DEM_RESPONSE_IMPULSES;
+    r->impulses = s->desc.response == DEM_RESPONSE_IMPULSES && s->desc.cone == DEM_CONE_COULOMB;
     r->steps = (double)c.steps;
 }
 static void outcome_tell(const outcome *r, int splitters) {
@@ -660,8 +660,10 @@ static void products_draw(const struct separator_options *o, const outcome *r, c
         x[a] = 1000*splitter_place(o, a);
         curve[0][a] = 100*product_get(r, SEPARATOR_METAL, a, a, &recovery);
         curve[1][a] = 100*recovery;
+        if (!(recovery > 0)) curve[0][a] = nan("");            /* an empty bin */
         curve[2][a] = 100*product_get(r, SEPARATOR_PLASTIC, a, a, &recovery);
         curve[3][a] = 100*recovery;
+        if (!(recovery > 0)) curve[2][a] = nan("");
     }
     study_curve(&f, "metal, purity", STUDY_LINE, SPLITTERS, x, curve[0]);
     study_curve(&f, "metal, recovery", STUDY_DASHED, SPLITTERS, x, curve[1]);
