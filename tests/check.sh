@@ -35,7 +35,7 @@ companions=$dir/companions.c
 printf '#include "dem.h"\n' > $companions
 printf '#include "examples/%s.h"\n' corona drum lesson moldyn separator sorting tumbler >> $companions
 printf '#include "%s"\n' examples/laws/*.h >> $companions
-try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/corona.h examples/drum.h examples/moldyn.h examples/separator.h examples/sorting.h examples/tumbler.h examples/laws/*.h"
+try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/corona.h examples/drum.h examples/moldyn.h examples/separator.h examples/sifting.h examples/sorting.h examples/tumbler.h examples/laws/*.h"
 one_file="-DDEM_IMPLEMENTATION $user"
 strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
 float="-DDEM_REAL=float"
