@@ -642,29 +642,52 @@ static void map_toe_shoulder(mill *m, const map *a) { /* in both directions from
     m->shoulder = at;
 }
 
-/* Returns how much the free surface is bent to an S: the amplitude of one sine over the chord from toe to shoulder, over the
-   length of the chord; positive if the surface is below the chord near the toe and above it near the shoulder. The surface is
-   where the solid fraction first exceeds half of the bulk's, seen from the free side. */
+/* Returns the mean solid fraction over a square of half the side `reach` (m) about a point; empty cells count as 0. */
+static double map_near(const mill *m, const map *a, double x, double y, double reach) {
+    const double R = m->o.diameter/2;
+    const int i0 = (int)floor((1 + (x - reach)/R)*a->n/2), i1 = (int)floor((1 + (x + reach)/R)*a->n/2);
+    const int j0 = (int)floor((1 + (y - reach)/R)*a->n/2), j1 = (int)floor((1 + (y + reach)/R)*a->n/2);
+    double sum = 0;
+    int i, j;
+    for (j = j0; j <= j1; j++)
+        for (i = i0; i <= i1; i++)
+            if (i >= 0 && j >= 0 && i < a->n && j < a->n && a->mass[i + a->n*j] > 0) sum += a->solid[i + a->n*j];
+    return sum/((i1 - i0 + 1)*(j1 - j0 + 1));
+}
+/* Returns how much the free surface is bent to an S: the amplitude of one sine over its chord, over the length of the chord;
+   positive if the surface is below the chord near the toe and above it near the shoulder. The surface is where the solid
+   fraction, a mean over a square of two bead diameters, exceeds half of the bulk's. The chord is between the two places where
+   it does so on a circle three bead radii inside the shell. */
 static double map_bend(const mill *m, const map *a) {
     enum { POINTS = 41 };
-    const double R = m->o.diameter/2, r = 0.84*m->shell, toe = m->toe*PI/180, top = m->shoulder*PI/180;
-    const double x0 = r*sin(toe), y0 = -r*cos(toe), x1 = r*sin(top), y1 = -r*cos(top);
-    const double length = hypot(x1 - x0, y1 - y0), tx = (x1 - x0)/length, ty = (y1 - y0)/length;
-    double sum = 0, used = 0;
+    const double R = m->o.diameter/2, bead = m->o.radius, r = m->shell - 3*bead, edge = m->solidicity/2;
+    double best = 0, most = 0, at, end[2][2], sum = 0, length, tx, ty;
     int k;
+    for (at = -180; at < 180; at++) {          /* the middle of the charge on the circle */
+        double covered = 0, turn;
+        for (turn = -40; turn <= 40; turn += 4)
+            covered += map_near(m, a, r*sin((at + turn)*PI/180), -r*cos((at + turn)*PI/180), 2*bead);
+        if (covered > most) { most = covered; best = at; }
+    }
+    for (k = 0; k < 2; k++) {
+        for (at = best; fabs(at - best) < 180; at += k ? 0.5 : -0.5)
+            if (map_near(m, a, r*sin(at*PI/180), -r*cos(at*PI/180), 2*bead) < edge) break;
+        end[k][0] = r*sin(at*PI/180);
+        end[k][1] = -r*cos(at*PI/180);
+    }
+    length = hypot(end[1][0] - end[0][0], end[1][1] - end[0][1]);
+    tx = (end[1][0] - end[0][0])/length;
+    ty = (end[1][1] - end[0][1])/length;
     for (k = 1; k + 1 < POINTS; k++) {
         const double s = length*k/(POINTS - 1);
         double h;
-        for (h = 0.5*R; h > -0.5*R; h -= 0.002*R) {
-            const double x = x0 + tx*s - ty*h, y = y0 + ty*s + tx*h;
-            const int i = (int)floor((1 + x/R)*a->n/2), j = (int)floor((1 + y/R)*a->n/2);
-            if (hypot(x, y) > r || i < 0 || j < 0 || i >= a->n || j >= a->n) continue;
-            if (a->solid[i + a->n*j] > m->solidicity/2) break;
+        for (h = 0.6*R; h > -0.6*R; h -= 0.002*R) {     /* from the free side */
+            const double x = end[0][0] + tx*s - ty*h, y = end[0][1] + ty*s + tx*h;
+            if (hypot(x, y) < r && map_near(m, a, x, y, 2*bead) > edge) break;
         }
         sum -= h/length*sin(2*PI*k/(POINTS - 1));
-        used++;
     }
-    return 2*sum/used;
+    return 2*sum/(POINTS - 1);
 }
 
 static double map_shell_speed(const mill *m, const map *a) {
@@ -710,7 +733,7 @@ static void maps_write(mill *m) {
     fastest = map_shell_speed(m, &maps[2]);
     if (!m->o.brief || fastest > 0) study_result("shell_speed_ratio", fastest, "");
     fastest = 0;
-    m->bend = map_bend(m, &maps[1]);
+    m->bend = map_bend(m, &maps[2]);
     study_result("bend", m->bend, "");
     study_result("toe", m->toe, "degrees");
     study_result("shoulder", m->shoulder, "degrees");
@@ -941,7 +964,6 @@ static int study_control(void) {
             memset(&m, 0, sizeof m);
             m.o = options;
             m.o.seed += n;
-            if (m.o.brief) { m.o.radius = 0.0025; m.o.length = 0.0175; }     /* of the small drum of short runs */
             m.o.profile = cases[i].profile; m.o.wall = cases[i].wall; m.o.grains = cases[i].grains;
             m.o.friction = cases[i].friction; m.o.aspect = cases[i].aspect; m.o.speed = cases[i].speed;
             snprintf(text, sizeof text, "%s_seed%d", cases[i].name, m.o.seed);

@@ -984,8 +984,10 @@ int main(int argc, char **argv) {
         o.machine = "glass";
         o.factor = 0;
         sweep_run(sweep_of("N"), &o, "");
-    } else if (is(o.study, "parameters")) sweep_run(sweep_of("parameter"), &o, "");
-    else if (is(o.study, "grains")) {
+    } else if (is(o.study, "parameters")) {
+        if (o.brief) o.share *= 0.3;
+        sweep_run(sweep_of("parameter"), &o, "");
+    } else if (is(o.study, "grains")) {
         if (reduced(&o)) o.holes = "wires";
         sweep_run(sweep_of("grains"), &o, "");
     } else if (is(o.study, "holes") || is(o.study, "nozzle") || is(o.study, "rim")) sweep_run(sweep_of(o.study), &o, "");
