@@ -949,8 +949,7 @@ static int study_control(void) {
         {"lined_fast", "none", "grains", "sphere", 0.154, 1, 0.7},
         {"rough", "none", "grains", "sphere", 0.44, 1, 0.5},
         {"pair", "none", "grains", "pair", 0.154, 1.5, 0.5},
-        {"tetra", "none", "grains", "tetra", 0.154, 1, 0.5},
-        {"smooth_pair", "none", "mesh", "pair", 0.154, 1.5, 0.5}};
+        {"tetra", "none", "grains", "tetra", 0.154, 1, 0.5}};
     static const struct { const char *name, *unit; } names[4] = {
         {"bend", ""}, {"torque", "N m"}, {"shoulder", "degrees"}, {"toe", "degrees"}};
     size_t i;
