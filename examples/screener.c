@@ -199,7 +199,7 @@ static void screener_settle(screener *s) {
     if (!(o->feed_height > 0)) o->feed_height = o->spacing;
     if (o->vane < 0) o->vane = s->R/8;
     if (o->eccentricity < 0) o->eccentricity = is(o->machine, "small") ? 8 : 40;
-    if (o->brief && is(o->feed, "hopper")) o->share *= 0.03;
+    if (o->brief && !is(o->feed, "rate")) o->share *= is(o->feed, "hopper") ? 0.03 : 0.3;   /* all at once */
     for (i = 0; i < s->classes; i++) s->number[i] = ceil(s->number[i]*o->share);
     o->rate *= o->share;
     s->machine.speed = o->rpm*2*PI/60;
