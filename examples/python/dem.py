@@ -1075,6 +1075,8 @@ class MotionKind(enum.IntEnum):
     USER = 4
     # through the poses of `table`, smoothly
     TABLE = 5
+    # along `velocity`, to and fro, so that grains bear `load`
+    SERVO = 6
 
 
 class EdgeRule(enum.IntEnum):
@@ -1358,27 +1360,34 @@ class Wall(Id):
         self.world._ok(_lib.dem_wall_reals_set(self.world._at, self, reals))
 
     def motion_set(self, *, kind=0, velocity=None, point=None, axis=None, speed=0, amplitude=0, frequency=0,
-            phase=0, start=0, function=None, user=None, ramp=0, table=None, table_count=0, table_repeats=0):
+            phase=0, start=0, function=None, user=None, ramp=0, load=0, area=0, travel=0, table=None, table_count=0,
+            table_repeats=0):
         """Sets the motion of a wall, which begins at its present pose.
 
-        velocity: m/s, of translating walls; of oscillating ones the direction only
+        velocity: m/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in
+            which they press, and their largest speed
         point: m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0
             means along z. Rotating walls need an axis.
         speed: rad/s, of rotating walls
         amplitude: m, Hz, rad: of oscillating walls
-        start: s. Until then rotating and translating walls are at rest. A time in the past means now.
+        start: s. Until then rotating, translating and servo walls are at rest. A time in the past means now.
         function: what DEM_MOTION_USER calls
         user: passed to function
-        ramp: s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3, u = (time
-            - start)/ramp, to its full value. 0 means at once.
+        ramp: s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 - 2
+            u^3, u = (time - start)/ramp, to its full value. 0 means at once.
+        load: N, of servo walls: the force with which the wall presses the grains along `velocity`. A table replaces
+            it: linear between rows, constant after the last. Servo walls whose motions are equal are one piston and
+            bear the load together. They need DEM_RESPONSE_SPRINGS.
+        area: m2, >= 0: load is a stress (Pa) on it; 0 means a force (N)
+        travel: m, >= 0, of servo walls: largest distance; 0 means no limit
         table: The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity and spin
             are continuous (tangents of the parabola through three rows). The wall is at rest before the first row and
-            after the last. With table_repeats = 1 the table starts again after its last row without stopping; that
-            row should have the pose of the first. From row to row the wall rotates by less than pi.
+            after the last. With table_repeats = 1 the table starts again after its last row, which should equal the
+            first. From row to row the wall rotates by less than pi.
         """
         motion = Motion(kind=kind, velocity=velocity, point=point, axis=axis, speed=speed, amplitude=amplitude,
-            frequency=frequency, phase=phase, start=start, function=function, user=user, ramp=ramp, table=table,
-            table_count=table_count, table_repeats=table_repeats)
+            frequency=frequency, phase=phase, start=start, function=function, user=user, ramp=ramp, load=load,
+            area=area, travel=travel, table=table, table_count=table_count, table_repeats=table_repeats)
         motion = self.world._bound(motion, ('dem_wall_motion_set', self))
         self.world._ok(_lib.dem_wall_motion_set(self.world._at, self, motion))
 
@@ -1405,6 +1414,14 @@ class Wall(Id):
     def loads_reset(self):
         """Sets the sums of a wall's loads to 0."""
         self.world._ok(_lib.dem_wall_loads_reset(self.world._at, self))
+
+    @property
+    def servo(self):
+        """Writes the state of a servo wall to servo."""
+        servo = Servo()
+        self.world._ok(_lib.dem_wall_servo_get(self.world._at, self, servo))
+        self.world._with(servo)
+        return servo
 
     def loads_csv_write(self, path):
         """Appends the loads of a wall to a CSV file: time (s), force (N), torque (N m), axial torque (N m), power (W),
@@ -2124,13 +2141,14 @@ class BodyCounts(Struct):
 
 @_struct
 class MotionRow(Struct):
-    """A pose of a wall at a time."""
+    """A pose or, for DEM_MOTION_SERVO, a load of a wall at a time."""
     __slots__ = ()
     c_name = 'dem_motion_row'
     rows = [
         ('time', ctypes.c_double, 's, after start; the first is 0, ascending'),
         ('position', Vec3, 'm, displacement from the pose in which the motion started'),
         ('rotation', Quat, 'from that pose, about the displaced `point`; 0: not rotated'),
+        ('load', Real, 'N, or Pa: see `load` of dem_motion; used instead of a pose'),
     ]
 
 
@@ -2157,7 +2175,9 @@ class Motion(Struct):
     counts = {'table_count': ('table', 1)}
     rows = [
         ('kind', MotionKind, ''),
-        ('velocity', Vec3, 'm/s, of translating walls; of oscillating ones the direction only'),
+        ('velocity', Vec3,
+         'm/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in '
+         'which they press, and their largest speed'),
         ('point', Vec3,
          'm; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0 '
          'means along z. Rotating walls need an axis.'),
@@ -2167,18 +2187,23 @@ class Motion(Struct):
         ('frequency', Real, ""),
         ('phase', Real, ""),
         ('start', ctypes.c_double,
-         's. Until then rotating and translating walls are at rest. A time in the past means now.'),
+         's. Until then rotating, translating and servo walls are at rest. A time in the past means now.'),
         ('function', MotionFn, 'what DEM_MOTION_USER calls'),
         ('user', ctypes.c_void_p, 'passed to function'),
         ('ramp', ctypes.c_double,
-         's, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3, u = '
-         '(time - start)/ramp, to its full value. 0 means at once.'),
+         's, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 -'
+         ' 2 u^3, u = (time - start)/ramp, to its full value. 0 means at once.'),
+        ('load', Real,
+         'N, of servo walls: the force with which the wall presses the grains along `velocity`. A table '
+         'replaces it: linear between rows, constant after the last. Servo walls whose motions are equal are '
+         'one piston and bear the load together. They need DEM_RESPONSE_SPRINGS.'),
+        ('area', Real, 'm2, >= 0: load is a stress (Pa) on it; 0 means a force (N)'),
+        ('travel', Real, 'm, >= 0, of servo walls: largest distance; 0 means no limit'),
         ('table', View(MotionRow, const=True),
          'The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity and '
          'spin are continuous (tangents of the parabola through three rows). The wall is at rest before the '
-         'first row and after the last. With table_repeats = 1 the table starts again after its last row '
-         'without stopping; that row should have the pose of the first. From row to row the wall rotates by '
-         'less than pi.'),
+         'first row and after the last. With table_repeats = 1 the table starts again after its last row, '
+         'which should equal the first. From row to row the wall rotates by less than pi.'),
         ('table_count', ctypes.c_int, ''),
         ('table_repeats', ctypes.c_int, ''),
     ]
@@ -2724,6 +2749,27 @@ class ContactInfo(Struct):
 
 
 @_struct
+class Servo(Struct):
+    """What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of its velocity, in
+    which it presses the grains; a piston of several walls has one state.
+    """
+    __slots__ = ()
+    c_name = 'dem_servo'
+    rows = [
+        ('target', ctypes.c_double, 'N: force to reach and force on the grains, now'),
+        ('force', ctypes.c_double, ""),
+        ('speed', ctypes.c_double, 'm/s; m, from the pose in which the motion began'),
+        ('travel', ctypes.c_double, ""),
+        ('stiffness', ctypes.c_double,
+         'N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). They set '
+         'the gain. The speed changes from u to v with stiffness dt (v - 0.9 u) + damping (v - u) = (target - '
+         'force)/2, and is at most the largest one (>>servo).'),
+        ('damping', ctypes.c_double, ""),
+        ('time', ctypes.c_double, ""),
+    ]
+
+
+@_struct
 class FieldDesc(Struct):
     """A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress over a window of
     time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller than grains need a long window; or
@@ -3120,7 +3166,7 @@ ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ct
 ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0 to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
-structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, FieldDesc, FieldData, FieldCell, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
+structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Servo, FieldDesc, FieldData, FieldCell, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
 
 
 class World(WorldBase):
@@ -4573,6 +4619,7 @@ _FUNCTIONS = [
     ('dem_bonds_make', ctypes.c_int, [ctypes.c_void_p, Real, ContactFn.c, ctypes.c_void_p]),
     ('dem_candidates_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint32), ctypes.c_int]),
     ('dem_candidates_rebuild', ctypes.c_int, [ctypes.c_void_p]),
+    ('dem_wall_servo_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Servo)]),
     ('dem_field_add', Field, [ctypes.c_void_p, ctypes.POINTER(FieldDesc)]),
     ('dem_field_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.POINTER(FieldData)]),
     ('dem_field_cell_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_int, ctypes.c_int, ctypes.c_int,
