@@ -21,7 +21,8 @@
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
        >>maths             vectors, poses, random numbers
-       >>layout            data structures of the world
+       >>layout            data structures: lists, contacts, walls, feeds, joints
+       >>state             the state of a world
        >>memory            arrays of each body, errors, allocation
        >>rows              a row for each field of a desc: its limits and what is done with it
      law/ - contact laws and materials
@@ -29,9 +30,11 @@
        >>materials         materials, the pair table, damping from restitution
      body/ - shapes of grains, the grains, and how they move
        >>shapes            ellipsoids and clusters of spheres: mass properties, support points
+       >>balls             spheres of clusters, in their present orientations
        >>closed            inside and outside of a mesh: shells, open edges, flipped triangles
        >>hulls             convex polyhedra: hull of points, faces, mass properties
        >>unions            several shapes as one body; polygons of planar worlds
+       >>filed             contact histories between two lists, by slot
        >>bodies            grains: slots, arrays, insertion, removal
        >>integrators       kick, drift and prediction; rotation
      surface/ - walls
@@ -61,6 +64,7 @@
        >>meets             contacts of two bodies, by their shapes
        >>kept              contacts other than sphere on sphere: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
+       >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
        >>joints            hinges, ball joints, motors
@@ -3537,15 +3541,14 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    >>layout
    Data structures of the world, and the tables of shapes, walls and responses. Bodies are stored as
    flat arrays with four reals per body, so that a gather reads one cache line and a drift is one
-   long loop. Every array that grows is a field here. DEMI_GROW enlarges it and keeps its contents,
-   or leaves it unchanged and reports that memory ran out.
+   long loop.
 
    Words of the code, beside those of the glossary:
        word in names       meaning
        domain              a work group of some 2000 neighbouring bodies
        kept                a persistent contact: any contact other than sphere on sphere, for
-                           example with a wall. It is stored in a list of its own and followed from
-                           step to step
+                           example with a wall, stored in a list and followed from step to step
+       ball                a sphere of a pair: a member of a cluster, or a lone sphere
        near                the pruned neighbour list: the candidates that may touch within some
                            steps (>>near). Forces are computed for these only. The contact history
                            of two spheres is stored in its columns
@@ -3556,7 +3559,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
        species             spheres with the same material, radius and mass, all fixed or all free
        tile                some 32 or 64 pairs whose forces are computed together
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 1, DEMI_SOME = 16, DEMI_DOMAINS = 256,
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* reals in the widest vector register */
       DEMI_TILE = 4*DEMI_LANES,                 /* pairs of a tile */
       DEMI_ROOM = DEMI_TILE + 16,                /* column length of a tile: columns a power of two
@@ -3598,7 +3601,10 @@ typedef struct demi_near_balls {
 typedef struct demi_near {
     int stride;                    /* capacity per work group, a multiple of DEMI_LANES */
     int32_t *a, *b, *k;            /* body indices; entry in the candidate list */
+    int32_t *ball_a, *ball_b;      /* effects.clustered: spheres (bodies.centre_start), else null */
     unsigned char *image;          /* as in demi_list */
+    unsigned char *on;             /* likewise: 1: may have a contact history */
+    int32_t *hit;                  /* likewise: entries of the group that touch, ascending */
     demi_near_balls *balls;        /* empty if all bodies are spheres */
     dem_real *memory;              /* contact history of two spheres: w->memory_stride columns, 0
                                       while the pair does not touch */
@@ -3606,15 +3612,16 @@ typedef struct demi_near {
                                       are more than DEMI_SPECIES species */
     dem_real *coef;                /* in that second case: DEMI_PAIR_COLUMNS columns */
 } demi_near;
-enum { DEMI_M_EFF = DEMI_COEFS, DEMI_PAIR_COLUMNS };
+enum { DEMI_M_EFF = DEMI_COEFS,
+      DEMI_CN_ROOT, DEMI_CT_ROOT,               /* of clusters: see demi_coefficients_rooted */
+      DEMI_PAIR_COLUMNS };
 /* A species: spheres that are equal in everything that coefficients depend on. For up to
    DEMI_SPECIES species a table has a row of coefficients for every two of them. With more (radii
    drawn at random), every pair of the pruned list stores its own coefficients. */
 enum { DEMI_SPECIES = 32 };
 typedef struct demi_species {
     dem_real radius, mass, inv_mass;           /* m; kg; 1/kg, 0: fixed */
-    int32_t material, none;        /* 1 + index; padding, 0, because species are compared bytewise
-                                      */
+    int32_t material, shape;       /* 1 + index; dem_shape id of its cluster, 0: a lone sphere */
 } demi_species;
 
 /* Energies that each work group sums over one step, J; added in the order of work groups.
@@ -3744,7 +3751,7 @@ typedef struct demi_domain {
                                       a body that is not a sphere */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
-    int contacts;                  /* between bodies */
+    int contacts, merging;         /* between bodies; the most entries for the same two bodies */
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
     int kept_same;                 /* where demi_kept_same starts its search */
@@ -4023,10 +4030,18 @@ typedef struct demi_laws {
     const struct demi_law_row *normal, *tangent, *rolling;
     int at_rolling, at_normal, memory, vectors;     /* first reals; number of reals; bits of those
                                       that are vector components */
-    int at_sliding;                /* index of the real that is 1 while friction slides, the last of
-                                      `memory`; DEMI_MEMORY: no pair has static friction */
+    int at_sliding;                /* index of the real that is 1 while friction slides, behind
+                                      those of the laws; DEMI_MEMORY: no pair has static friction */
+    int at_grip;                   /* of the last weight of friction, if contacts of clusters are
+                                      merged; else DEMI_MEMORY */
 } demi_laws;
 
+/* ---------------------------------------------------------------------------------------------
+   >>state
+   The state of a world: its numbers, by the part that owns them, its bodies, and the world itself,
+   which owns everything else. Every array that grows is a field here. DEMI_GROW enlarges it and
+   keeps its contents, or leaves it unchanged and reports that memory ran out.
+   --------------------------------------------------------------------------------------------- */
 /* --- the numbers of a world, by the part that owns them. These structs are saved and copied whole,
        so a new field is saved too. Pointers and derived data do not belong here. --- */
 
@@ -4086,8 +4101,9 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int fixed_count;
     int tight;                     /* some body is so long that candidates are tested by more than
                                       bounding spheres */
-    int sticks, none;              /* 1: a pair has static friction above its sliding friction;
-                                      padding, 0 */
+    int sticks;                    /* a pair has static friction above its sliding friction */
+    int clustered;                 /* springs, and the scene has a cluster of spheres: pairs of the
+                                      pruned list are pairs of their member spheres (>>members) */
     int species_count;             /* DEMI_SPECIES + 1: more than that */
     demi_species species[DEMI_SPECIES];
     dem_real radius_min, radius_max;           /* m */
@@ -4137,8 +4153,11 @@ typedef struct demi_bodies {
     int32_t *shape;                /* dem_shape ids; 0: a sphere */
     int shaped;                    /* number of bodies that are not spheres */
     dem_real *centre;              /* x 4: member spheres: centre relative to the body's centre, and
-                                      radius, m */
-    int32_t *centre_start;           /* first member sphere of each body */
+                                      radius, m; a lone sphere is its own member */
+    dem_real *ball;                /* x 4: effects.clustered: the same, with centres in space */
+    dem_real *yield;               /* x 6: likewise, of bodies: inverse inertia in space, xx yy zz
+                                      xy xz yz, 1/(kg m2); 0: fixed, or a lone sphere */
+    int32_t *centre_start;         /* first member sphere of each body */
     int centres_valid;               /* they fit the bodies and their orientations */
     uint32_t *slot;                /* of each body */
     int32_t *material;             /* 1 + index */
@@ -4169,9 +4188,12 @@ typedef struct demi_bodies {
    fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain all of
    it. The entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`.
    */
+enum { DEMI_BALLS_MOST = 1024 };               /* > largest number of spheres of a cluster */
 typedef struct demi_filed {
     int32_t *start;                /* rows + 2 */
     int32_t *partner;              /* the higher slot; its complement (~) if that was body a */
+    int32_t *part;                 /* DEMI_BALLS_MOST times the member sphere of the lower slot,
+                                      plus that of the higher slot */
     dem_real *memory;              /* x stride */
     int count, rows;               /* entries; number of slots when they were saved */
     int stride;                    /* reals per entry */
@@ -4228,8 +4250,15 @@ typedef struct demi_lookers {
    its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
    velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
    joint in the linear system of all joints. */
-struct demi_meeting; struct demi_impulse; struct demi_beside; struct demi_twist;
-struct demi_mover; struct demi_run_sums; struct demi_rod; struct demi_knot; struct demi_link_of;
+struct demi_meeting;
+struct demi_impulse;
+struct demi_beside;
+struct demi_twist;
+struct demi_mover;
+struct demi_run_sums;
+struct demi_rod;
+struct demi_knot;
+struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
     struct demi_impulse *contacts; /* this and the next three are in the order of colours */
@@ -4411,6 +4440,8 @@ struct dem_world {
     int species_vary;              /* bits of the columns that differ between pairs */
     struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
+    demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
+    int merging_most;
     struct demi_solver solver;     /* >>impulses */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
@@ -4449,10 +4480,27 @@ DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
 DEM_INLINE int demi_reach_free(const dem_world *w) {
     return demi_response_is(w, DEMI_FORESEEN) && !(w->desc.law_range > 0);
 }
-/* Vector, m, from body a to the image of body b in entry `at` of the pruned neighbour list. */
-DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
+/* The spheres of entry `at` of the pruned neighbour list, which may be members of clusters: side 0
+   of body a, 1 of body b. Centre as seen from that of the body, m, and radius, m. */
+DEM_INLINE dem_vec3 demi_near_arm(const dem_world *w, size_t at, int side) {
+    const int32_t *ball = side ? w->near.ball_b : w->near.ball_a;
+    return w->effects.clustered ? demi_at(w->bodies.centre + 4*ball[at]) : demi_v(0, 0, 0);
+}
+DEM_INLINE dem_real demi_near_radius(const dem_world *w, size_t at, int side) {
+    const int32_t *ball = side ? w->near.ball_b : w->near.ball_a;
+    return w->effects.clustered ? w->bodies.centre[4*ball[at] + 3]
+        : w->bodies.pos[4*(side ? w->near.b : w->near.a)[at] + 3];
+}
+/* Vector, m, from the centre of a body to the image of the other in entry `at`; and that from the
+   centre of sphere a to the image of sphere b. */
+DEM_INLINE dem_vec3 demi_near_bodies_way(const dem_world *w, size_t at) {
     const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
     return demi_add(demi_sub(demi_at(y), demi_at(x)), demi_at(w->image_shift + w->near.image[at]));
+}
+DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
+    const dem_vec3 way = demi_near_bodies_way(w, at);
+    return w->effects.clustered
+        ? demi_add(way, demi_sub(demi_near_arm(w, at, 1), demi_near_arm(w, at, 0))) : way;
 }
 /* True if the law may write rates of the user-defined numbers of bodies. */
 DEM_INLINE int demi_exchanges(const dem_world *w) {
@@ -5223,10 +5271,10 @@ static int demi_law_known(const demi_law_row *rows, int kind) {
     return 0;
 }
 
-/* Returns the index of the real that stores whether a contact slides, and adds it to `memory`;
-   DEMI_MEMORY without static friction. */
-static int demi_laws_sliding(int *memory, int sticks) {
-    return sticks ? (*memory)++ : (int)DEMI_MEMORY;
+/* Appends a real to contact histories of `memory` reals, if needed, and returns its index;
+   DEMI_MEMORY if not. */
+static int demi_laws_append(int *memory, int needed) {
+    return needed ? (*memory)++ : (int)DEMI_MEMORY;
 }
 /* Sets the laws in force and lays out the contact history. sticks: 1 if a pair has static friction.
    */
@@ -5240,7 +5288,11 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
     laws->vectors = ((1 << 3*laws->tangent->vectors) - 1) |
                     ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
-    laws->at_sliding = demi_laws_sliding(&laws->memory, sticks && laws->tangent->law);
+    laws->at_sliding = demi_laws_append(&laws->memory, sticks && laws->tangent->law);
+}
+/* Returns the number of reals of a contact history that users and digests see. */
+static int demi_memory_told(const dem_world *w) {
+    return w->memory_stride - (demi_response_is(w, DEMI_LAWS) && w->laws.at_grip < DEMI_MEMORY);
 }
 /* Clears a result before the law is called. Member by member, because a memset would keep the
    struct in memory and prevent vectorisation. */
@@ -6506,32 +6558,19 @@ static const dem_real *demi_centres_of(const dem_world *w, int body) {
 /* Rotates the spheres of one cluster to its present orientation, once a step for all contacts. */
 static void demi_centres_rotate(dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
     const dem_real scale = demi_scale_of(w, body, shape);
-    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body];
-    int k;
-    for (k = 0; k < shape->count; k++, sphere += 4) {
-        demi_put(sphere, demi_scale(dem_quat_rotate(q, demi_at(shape->parts + 4*k)), scale));
-        sphere[3] = shape->parts[4*k + 3]*scale;
+    const dem_real *part = shape->parts;
+    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body], R[9];
+    double Q[9];
+    int k, e;
+    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), Q);
+    for (k = 0; k < 9; k++) R[k] = (dem_real)Q[k]*scale;
+    for (k = 0; k < shape->count; k++, sphere += 4, part += 4) {
+        DEMI_UNROLL
+        for (e = 0; e < 3; e++)
+            sphere[e] = R[3*e]*part[0] + R[3*e + 1]*part[1] + R[3*e + 2]*part[2];
+        sphere[3] = part[3]*scale;
     }
-}
-/* Computes the rotated spheres of all clusters. Returns 0 if memory ran out. */
-static int demi_centres_lay(dem_world *w) {
-    int32_t *start;
-    int i, n = 0;
-    if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
-    start = w->bodies.centre_start;
-    for (i = 0; i < w->bodies.count; i++) {
-        const demi_shape *shape = demi_shape_of(w, i);
-        start[i] = n;
-        if (shape && n > INT_MAX/8 - shape->count) return 0;
-        n += shape ? shape->count : 0;
-    }
-    if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1))) return 0;
-    w->bodies.centres_valid = 1;
-    for (i = 0; i < w->bodies.count; i++)
-        if (demi_shape_of(w, i) && demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
-    return 1;
 }
 static void demi_part_matrix(const demi_part *p, double *Q) {
     if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
@@ -6635,6 +6674,75 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
         }
     }
     return least;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>balls
+   The spheres of which bodies consist: members of clusters, and lone spheres, each the only member
+   of its body. They have two forms: as seen from the body's centre (bodies.centre), rotated with
+   the body in each step; and, where forces need it (effects.clustered), as points in space with a
+   velocity and an effective mass (bodies.ball). This part owns both.
+   --------------------------------------------------------------------------------------------- */
+/* Computes the spheres of all bodies in their present orientations. Returns 0 if memory ran out. */
+static int demi_centres_lay(dem_world *w) {
+    int32_t *start;
+    int i, n = 0;
+    if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
+    start = w->bodies.centre_start;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        start[i] = n;
+        if (shape && n > INT_MAX/8 - shape->count) return 0;
+        n += shape ? shape->count : 1;
+    }
+    start[i] = n;
+    if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1)) ||
+        (w->effects.clustered && (!DEMI_GROW(w, w->bodies.ball, 4*((size_t)n + 1)) ||
+                                  !DEMI_GROW(w, w->bodies.yield, 6*(size_t)w->bodies.count + 1))))
+        return 0;
+    w->bodies.centres_valid = 1;
+    for (i = 0; i < w->bodies.count; i++) {
+        dem_real *lone = w->bodies.centre + 4*start[i];
+        if (demi_shape_of(w, i)) {
+            if (demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
+        } else {
+            lone[0] = lone[1] = lone[2] = 0;
+            lone[3] = w->bodies.pos[4*i + 3];
+        }
+    }
+    return 1;
+}
+/* Sets W to the inverse inertia of a body in space, see bodies.yield. */
+static void demi_body_yield(const dem_world *w, int body, dem_real *W) {
+    const dem_real *I = w->bodies.moment + 4*body;
+    double R[9], a, b, c;
+    int k;
+    for (k = 0; k < 6; k++) W[k] = 0;
+    if (!demi_shape_of(w, body) || !(w->bodies.inv_mass[body] > 0)) return;
+    a = 1/(double)I[0]; b = 1/(double)I[1]; c = 1/(double)I[2];
+    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), R);
+    for (k = 0; k < 3; k++)
+        W[k] = (dem_real)(R[3*k]*R[3*k]*a + R[3*k + 1]*R[3*k + 1]*b + R[3*k + 2]*R[3*k + 2]*c);
+    W[3] = (dem_real)(R[0]*R[3]*a + R[1]*R[4]*b + R[2]*R[5]*c);
+    W[4] = (dem_real)(R[0]*R[6]*a + R[1]*R[7]*b + R[2]*R[8]*c);
+    W[5] = (dem_real)(R[3]*R[6]*a + R[4]*R[7]*b + R[5]*R[8]*c);
+}
+/* Sets the spheres of bodies begin .. end - 1 in space, and what their contacts need of the bodies
+   (bodies.ball, bodies.yield). */
+static void demi_balls_place(const dem_world *w, int begin, int end) {
+    int i, k, e;
+    for (i = begin; i < end; i++) {
+        const dem_real *x = w->bodies.pos + 4*i;
+        const int first = w->bodies.centre_start[i], last = w->bodies.centre_start[i + 1];
+        demi_body_yield(w, i, w->bodies.yield + 6*i);
+        for (k = first; k < last; k++) {
+            const dem_real *arm = w->bodies.centre + 4*k;
+            dem_real *ball = w->bodies.ball + 4*k;
+            DEMI_UNROLL
+            for (e = 0; e < 3; e++) ball[e] = x[e] + arm[e];
+            ball[3] = arm[3];
+        }
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -7947,12 +8055,143 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>filed
+   Contact histories of spheres between two neighbour lists. While a list is valid they are columns
+   of the pruned list; demi_list_drop files them by slot and member sphere, so that the next list
+   can restore them although indices have changed. Owns w->filed.
+   --------------------------------------------------------------------------------------------- */
+/* Allocates the file of contact histories (demi_filed): number of rows (slots), of entries, and of
+   reals per entry. Returns 0 if memory ran out. */
+static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
+    const size_t reals = (size_t)count*(size_t)stride;
+    const int ok = DEMI_GROW(w, w->filed.start, (size_t)rows + 2) &&
+                   DEMI_GROW(w, w->filed.partner, (size_t)count) &&
+                   DEMI_GROW(w, w->filed.part, (size_t)count) &&
+                   DEMI_GROW(w, w->filed.memory, reals);
+    return ok;
+}
+
+/* True if entry p of domain d's pruned neighbour list has a contact history. */
+static int demi_near_remembers(const dem_world *w, int d, int p) {
+    const dem_real *m = w->near.memory + (size_t)d*(size_t)w->memory_stride*(size_t)w->near.stride;
+    int e;
+    for (e = 0; e < w->memory_stride; e++) {
+        const dem_real value = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
+        if (value < 0 || value > 0) return 1;
+    }
+    return 0;
+}
+/* Returns the pair after p in a domain's pruned neighbour list. Its pairs are
+   p = 0 .. near_own - 1, then near_cross .. near_end - 1. */
+DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
+    return p + 1 == domain->near_own ? domain->near_cross : p + 1;
+}
+DEM_INLINE int demi_near_first(const demi_domain *domain) {
+    return domain->near_own ? 0 : domain->near_cross;
+}
+
+/* Returns the key of an entry's two member spheres in the file of contact histories. */
+static int32_t demi_near_part_key(const dem_world *w, size_t at) {
+    const int a = w->near.a[at], b = w->near.b[at];
+    const int32_t *start = w->bodies.centre_start;
+    int32_t i, j;
+    if (!w->effects.clustered) return 0;
+    i = w->near.ball_a[at] - start[a];
+    j = w->near.ball_b[at] - start[b];
+    return w->bodies.slot[a] < w->bodies.slot[b] ? DEMI_BALLS_MOST*i + j : DEMI_BALLS_MOST*j + i;
+}
+/* Files the contact history of all pairs of spheres by slot. The row is the lower slot. The
+   partner is the higher slot, or its complement if that was body a of the pair. Returns 0 if memory
+   ran out. */
+static int demi_carry_collect(dem_world *w) {
+    const int stride = w->memory_stride;
+    int d, p, e, k, total = 0, pass;
+    w->filed.count = 0;
+    if (!stride || !w->domain_count) return 1;
+    if (!demi_carry_reserve(w, w->bodies.slot_count, 0, stride)) return 0;
+    memset(w->filed.start, 0, ((size_t)w->bodies.slot_count + 2)*sizeof(int32_t));
+    for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
+        for (d = 0; d < w->domain_count; d++) {
+            const demi_domain *domain = &w->domains[d];
+            const dem_real *m = w->near.memory + (size_t)d*(size_t)stride*(size_t)w->near.stride;
+            for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+                const int at = d*w->near.stride + p;
+                int32_t a, b, row;
+                dem_real *to;
+                if (!demi_near_remembers(w, d, p)) continue;
+                a = (int32_t)w->bodies.slot[w->near.a[at]];
+                b = (int32_t)w->bodies.slot[w->near.b[at]];
+                row = DEMI_MIN(a, b);
+                if (pass == 0) { w->filed.start[row + 2]++; total++; continue; }
+                w->filed.partner[w->filed.start[row + 1]] = a < b ? b : ~a;
+                w->filed.part[w->filed.start[row + 1]] = demi_near_part_key(w, (size_t)at);
+                to = w->filed.memory + (size_t)w->filed.start[row + 1]++*(size_t)stride;
+                for (e = 0; e < stride; e++)
+                    to[e] = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
+            }
+        }
+        if (pass == 0) {
+            if (!demi_carry_reserve(w, w->bodies.slot_count, total, stride)) return 0;
+            for (k = 2; k < w->bodies.slot_count +
+                 2; k++) w->filed.start[k] += w->filed.start[k - 1];
+        }
+    }
+    w->filed.count = total;
+    w->filed.rows = w->bodies.slot_count;
+    w->filed.stride = stride;
+    return 1;
+}
+
+/* Returns the persistent contacts of domain d. */
+DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
+    return w->kept_now + w->kept_first[d];
+}
+/* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
+   Pairs of spheres are examined only before a list is dropped: contacts shorter than the life of a
+   list may be missed, lasting ones are always found. */
+static void demi_met_look(const dem_world *w, uint64_t *met) {
+    int d, p;
+    for (d = 0; d < w->domain_count && w->material_count > 1; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = 0; p < w->material_count; p++) met[p] |= domain->met[p];
+        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+            const int at = d*w->near.stride + p, a = w->near.a[at], b = w->near.b[at];
+            const int i = w->bodies.material[a] - 1, j = w->bodies.material[b] - 1;
+            const uint64_t bit = UINT64_C(1) << DEMI_MAX(i, j);
+            const dem_real radii = demi_near_radius(w, (size_t)at, 0) +
+                demi_near_radius(w, (size_t)at, 1);
+            const dem_vec3 way = demi_near_way(w, (size_t)at);
+            if (demi_dot(way, way) < radii*radii) met[DEMI_MIN(i, j)] |= bit;
+        }
+    }
+}
+/* Marks the neighbour list as invalid and files the contact history. Persistent contacts refer to
+   slots instead of indices from here on. Returns 0 if memory ran out; nothing has changed then. */
+static int demi_list_drop(dem_world *w) {
+    int d, k;
+    w->bodies.centres_valid = 0;
+    if (!w->stage.list_valid) return 1;
+    if (!demi_carry_collect(w)) return 0;
+    demi_met_look(w, w->booked.met);
+    for (d = 0; d < w->domain_count; d++) {
+        memset(w->domains[d].met, 0, sizeof w->domains[d].met);
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            c->a = (int32_t)w->bodies.slot[c->a];
+            if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
+        }
+    }
+    w->stage.list_valid = 0;
+    return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>bodies
    Storage of bodies: adding, removing, reading and setting them, and periodic images of positions.
    The slot of a body is its identity and never changes. Its index in the arrays changes whenever
-   the neighbour list is rebuilt. Code that changes indices must call demi_list_drop first, which
-   files the contact history by slot, so that the next list can restore it. Owns w->bodies and
-   w->filed. Other parts change values of bodies: >>integrators moves them, contacts add forces.
+   the neighbour list is rebuilt. Code that changes indices must call demi_list_drop (>>filed)
+   first. Owns w->bodies. Other parts change values of bodies: >>integrators moves them, contacts
+   add forces.
    --------------------------------------------------------------------------------------------- */
 
 /* --- periodic images. On a periodic axis a coordinate means all its images, a period apart.
@@ -8044,118 +8283,6 @@ static void demi_wrap(dem_world *w) {
 /* True if this body is a ghost particle: a copy of one that another slab owns (>>slabs). */
 DEM_INLINE int demi_is_ghost(const dem_world *w, int i) {
     return w->bodies.ghost && w->bodies.ghost[w->bodies.slot[i]] == 1;
-}
-
-/* Allocates the file of contact histories (demi_filed): number of rows (slots), of entries, and of
-   reals per entry. Returns 0 if memory ran out. */
-static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
-    const size_t reals = (size_t)count*(size_t)stride;
-    const int ok = DEMI_GROW(w, w->filed.start, (size_t)rows + 2) &&
-                   DEMI_GROW(w, w->filed.partner, (size_t)count) &&
-                   DEMI_GROW(w, w->filed.memory, reals);
-    return ok;
-}
-
-/* True if entry p of domain d's pruned neighbour list has a contact history. */
-static int demi_near_remembers(const dem_world *w, int d, int p) {
-    const dem_real *m = w->near.memory + (size_t)d*(size_t)w->memory_stride*(size_t)w->near.stride;
-    int e;
-    for (e = 0; e < w->memory_stride; e++) {
-        const dem_real value = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
-        if (value < 0 || value > 0) return 1;
-    }
-    return 0;
-}
-/* Returns the pair after p in a domain's pruned neighbour list. Its pairs are
-   p = 0 .. near_own - 1, then near_cross .. near_end - 1. */
-DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
-    return p + 1 == domain->near_own ? domain->near_cross : p + 1;
-}
-DEM_INLINE int demi_near_first(const demi_domain *domain) {
-    return domain->near_own ? 0 : domain->near_cross;
-}
-
-/* Files the contact history of all pairs of spheres by slot. The row is the lower slot. The
-   partner is the higher slot, or its complement if that was body a of the pair. Returns 0 if memory
-   ran out. */
-static int demi_carry_collect(dem_world *w) {
-    const int stride = w->memory_stride;
-    int d, p, e, k, total = 0, pass;
-    w->filed.count = 0;
-    if (!stride || !w->domain_count) return 1;
-    if (!demi_carry_reserve(w, w->bodies.slot_count, 0, stride)) return 0;
-    memset(w->filed.start, 0, ((size_t)w->bodies.slot_count + 2)*sizeof(int32_t));
-    for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
-        for (d = 0; d < w->domain_count; d++) {
-            const demi_domain *domain = &w->domains[d];
-            const dem_real *m = w->near.memory + (size_t)d*(size_t)stride*(size_t)w->near.stride;
-            for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
-                const int at = d*w->near.stride + p;
-                int32_t a, b, row;
-                dem_real *to;
-                if (!demi_near_remembers(w, d, p)) continue;
-                a = (int32_t)w->bodies.slot[w->near.a[at]];
-                b = (int32_t)w->bodies.slot[w->near.b[at]];
-                row = DEMI_MIN(a, b);
-                if (pass == 0) { w->filed.start[row + 2]++; total++; continue; }
-                w->filed.partner[w->filed.start[row + 1]] = a < b ? b : ~a;
-                to = w->filed.memory + (size_t)w->filed.start[row + 1]++*(size_t)stride;
-                for (e = 0; e < stride; e++)
-                    to[e] = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
-            }
-        }
-        if (pass == 0) {
-            if (!demi_carry_reserve(w, w->bodies.slot_count, total, stride)) return 0;
-            for (k = 2; k < w->bodies.slot_count +
-                 2; k++) w->filed.start[k] += w->filed.start[k - 1];
-        }
-    }
-    w->filed.count = total;
-    w->filed.rows = w->bodies.slot_count;
-    w->filed.stride = stride;
-    return 1;
-}
-
-/* Returns the persistent contacts of domain d. */
-DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
-    return w->kept_now + w->kept_first[d];
-}
-/* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
-   Pairs of spheres are examined only before a list is dropped: contacts shorter than the life of a
-   list may be missed, lasting ones are always found. */
-static void demi_met_look(const dem_world *w, uint64_t *met) {
-    int d, p;
-    for (d = 0; d < w->domain_count && w->material_count > 1; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (p = 0; p < w->material_count; p++) met[p] |= domain->met[p];
-        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
-            const int at = d*w->near.stride + p, a = w->near.a[at], b = w->near.b[at];
-            const int i = w->bodies.material[a] - 1, j = w->bodies.material[b] - 1;
-            const uint64_t bit = UINT64_C(1) << DEMI_MAX(i, j);
-            const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
-            const dem_vec3 way = demi_near_way(w, (size_t)at);
-            if (demi_dot(way, way) < radii*radii) met[DEMI_MIN(i, j)] |= bit;
-        }
-    }
-}
-/* Marks the neighbour list as invalid and files the contact history. Persistent contacts refer to
-   slots instead of indices from here on. Returns 0 if memory ran out; nothing has changed then. */
-static int demi_list_drop(dem_world *w) {
-    int d, k;
-    w->bodies.centres_valid = 0;
-    if (!w->stage.list_valid) return 1;
-    if (!demi_carry_collect(w)) return 0;
-    demi_met_look(w, w->booked.met);
-    for (d = 0; d < w->domain_count; d++) {
-        memset(w->domains[d].met, 0, sizeof w->domains[d].met);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            c->a = (int32_t)w->bodies.slot[c->a];
-            if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
-        }
-    }
-    w->stage.list_valid = 0;
-    return 1;
 }
 
 /* --- the arrays of bodies (demi_body_arrays) --- */
@@ -12832,16 +12959,19 @@ static void demi_bodies_sort(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) w->bodies.slot_index[w->bodies.slot[i]] = i;
 }
 
-/* Returns the index of a pair's saved contact history (demi_filed), or -1. *flip receives 1 if a
-   and b have exchanged their roles since. */
-static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
-    const int32_t sa = (int32_t)w->bodies.slot[a], sb = (int32_t)w->bodies.slot[b];
+/* Returns the index of the saved contact history (demi_filed) of entry `at` of the pruned list, or
+   -1. *flip receives 1 if a and b have exchanged their roles since. */
+static int demi_carry_find(const dem_world *w, size_t at, int *flip) {
+    const int32_t sa = (int32_t)w->bodies.slot[w->near.a[at]];
+    const int32_t sb = (int32_t)w->bodies.slot[w->near.b[at]];
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
+    const int32_t part = demi_near_part_key(w, at);
     int k;
     if (!w->filed.count || row >= w->filed.rows) return -1;
     if (w->filed.stride != w->memory_stride) return -1;     /* saved under other laws: invalid */
     for (k = w->filed.start[row]; k < w->filed.start[row + 1]; k++) {
         const int32_t p = w->filed.partner[k];
+        if (w->filed.part[k] != part) continue;
         if (p == other) { *flip = sa > sb; return k; }
         if (p == ~other) { *flip = sa < sb; return k; }
     }
@@ -13776,6 +13906,9 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->balls, w->bodies.shaped ? n : 0) &&
+                   (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
+                    DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
+                    DEMI_GROW(w, near->hit, n))) &&
                    DEMI_GROW(w, near->memory, m) &&
                    (w->effects.uniform || (demi_many_species(w)
                        ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)
@@ -13994,53 +14127,82 @@ static void demi_kept_move(dem_world *w, const int *first) {
        With many species, each pair stores its own coefficients. Species are determined at each
        search. A grain that a feed inserts in between must belong to one of them
        (demi_species_known), otherwise lists are rebuilt. --- */
-static demi_species demi_species_of(const dem_world *w, int body) {
+static demi_species demi_species_of(const dem_world *w, int body, dem_real radius) {
     demi_species s;
-    s.radius = w->bodies.pos[4*body + 3];
+    s.radius = radius;
     s.mass = w->bodies.mass[body];
     s.inv_mass = w->bodies.inv_mass[body];
     s.material = w->bodies.material[body];
-    s.none = 0;
+    s.shape = demi_shape_of(w, body) ? w->bodies.shape[body] : 0;
     return s;
 }
-/* Returns the species of a sphere, species_count if it has none. Compares every bit: a radius that
-   differs in the last bit is another species. */
-static int demi_species_find(const dem_world *w, int body) {
-    const demi_species s = demi_species_of(w, body);
+/* Returns the row of a species in the table, species_count if it has none. Compares every bit: a
+   radius that differs in the last bit is another species. */
+static int demi_species_find(const dem_world *w, const demi_species *s) {
     int k;
     for (k = 0; k < w->effects.species_count; k++)
-        if (!memcmp(&w->effects.species[k], &s, sizeof s)) break;
+        if (!memcmp(&w->effects.species[k], s, sizeof *s)) break;
     return k;
 }
-/* True if coefficients for this body are available. False if a checkpoint contains species that do
-   not fit its bodies. */
-static int demi_species_has(const dem_world *w, int body) {
-    return demi_many_species(w) || demi_species_find(w, body) < w->effects.species_count;
+/* The species of the sphere on a side of entry `at` of the pruned list. */
+static demi_species demi_near_species(const dem_world *w, size_t at, int side) {
+    return demi_species_of(w, (side ? w->near.b : w->near.a)[at], demi_near_radius(w, at, side));
 }
-/* Determines the species of all spheres. species_count becomes DEMI_SPECIES + 1 if there are more
-   than the table holds. */
+/* True if coefficients for both spheres of an entry are available. False if a checkpoint contains
+   species that do not fit its bodies. */
+static int demi_species_has(const dem_world *w, size_t at) {
+    const demi_species one = demi_near_species(w, at, 0), other = demi_near_species(w, at, 1);
+    return demi_many_species(w) || (demi_species_find(w, &one) < w->effects.species_count &&
+                                    demi_species_find(w, &other) < w->effects.species_count);
+}
+/* Determines the species of all spheres, with springs also of those of clusters. species_count
+   becomes DEMI_SPECIES + 1 if there are more than the table holds. */
 static void demi_species_count(dem_world *w) {
     demi_in_force *e = &w->effects;
-    int i;
+    int i, k;
     e->species_count = 0;
-    for (i = 0; i < w->bodies.count && e->species_count <= DEMI_SPECIES; i++) {
-        if (demi_shape_of(w, i) || demi_species_has(w, i)) continue;
-        if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = demi_species_of(w, i);
-        e->species_count++;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        const int count = !shape ? 1 : e->clustered ? shape->count : 0;
+        for (k = 0; k < count && e->species_count <= DEMI_SPECIES; k++) {
+            const demi_species s = demi_species_of(w, i, shape
+                ? shape->parts[4*k + 3]*demi_scale_of(w, i, shape) : w->bodies.pos[4*i + 3]);
+            if (demi_species_find(w, &s) < e->species_count) continue;
+            if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = s;
+            e->species_count++;
+        }
     }
 }
+/* Returns the largest inverse mass, 1/kg, with which a contact may find a body: that of a cluster
+   with the smallest effective mass (demi_shape.light). Stiffnesses that depend on masses use it, as
+   does the choice of the time step. */
+static double demi_give_at_most(const dem_world *w, dem_real inv_mass, int shape) {
+    return (double)inv_mass/(shape ? w->shapes[shape - 1].light : 1);
+}
+static double demi_body_give_at_most(const dem_world *w, int body) {
+    return demi_give_at_most(w, w->bodies.inv_mass[body],
+                             demi_shape_of(w, body) ? w->bodies.shape[body] : 0);
+}
 /* Computes the coefficients of two species. For equal radii R* is exactly half the radius, so that
-   the result has the same bits as in a world of equal spheres. */
+   the result has the same bits as in a world of equal spheres. If one is of a cluster, the
+   effective mass differs from contact to contact: then cn and ct lack the part that depends on it,
+   and the two columns DEMI_CN_ROOT and DEMI_CT_ROOT hold its factors. */
 static void demi_species_coefs(const dem_world *w, const demi_species *a, const demi_species *b,
                                dem_real *coef) {
     const double ra = (double)a->radius, rb = (double)b->radius;
+    const double r_eff = ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2;
     const double sum = (double)a->inv_mass + (double)b->inv_mass;
     /* in that convention a fixed grain has a mass too */
     const double inv = w->desc.convention == DEM_CONVENTION_MILL
         ? 1/(double)a->mass + 1/(double)b->mass : sum;
-    demi_coefficients(w, a->material - 1, b->material - 1,
-                      ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 1/inv, 0, coef);
-    coef[DEMI_M_EFF] = (dem_real)(1/sum);
+    coef[DEMI_CN_ROOT] = coef[DEMI_CT_ROOT] = 0;
+    if (a->shape || b->shape)
+        demi_coefficients_rooted(w, a->material - 1, b->material - 1, r_eff,
+                                 1/(demi_give_at_most(w, a->inv_mass, a->shape) +
+                                    demi_give_at_most(w, b->inv_mass, b->shape)), 0, coef,
+                                 coef + DEMI_CN_ROOT);
+    else demi_coefficients(w, a->material - 1, b->material - 1, r_eff, 1/inv, 1/inv, 0, coef);
+    coef[DEMI_M_EFF] = a->shape || b->shape ? 0 : (dem_real)(1/sum);
 }
 /* Determines which columns of coefficients differ between pairs and are read by a law. With a table
    it compares the rows. With too many species these are the columns that depend on radii and, if
@@ -14051,7 +14213,9 @@ static void demi_species_vary(dem_world *w) {
     const int own = (1 << DEMI_COEFS) - (1 << DEMI_K_UN);
     int e, k, materials = 0;
     w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
-    if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF | 1 << DEMI_M_EFF);
+    if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF);
+    if (!demi_laws_sized(w) && !w->effects.clustered) w->species_vary &= ~(1 << DEMI_M_EFF);
+    if (!w->effects.clustered) w->species_vary &= ~(1 << DEMI_CN_ROOT | 1 << DEMI_CT_ROOT);
     if (demi_many_species(w)) {
         for (k = 0; k < w->bodies.count; k++)
             materials |= w->bodies.material[k]^w->bodies.material[0];
@@ -14091,26 +14255,31 @@ static void demi_species_lay(dem_world *w) {
         demi_species_coefs(w, &w->effects.species[k/n], &w->effects.species[k%n],
                            w->species_coef + DEMI_PAIR_COLUMNS*k);
 }
-/* Sets the row or the coefficients of entry p of work group d, the pair of spheres a and b. Only
-   needed if bodies differ. */
-static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
-    const demi_species one = demi_species_of(w, a), other = demi_species_of(w, b);
+/* Returns the number of columns of coefficients in use. */
+static int demi_coef_columns(const dem_world *w) {
+    return w->effects.clustered ? DEMI_PAIR_COLUMNS : DEMI_CN_ROOT;
+}
+/* Sets the row or the coefficients of entry p of work group d, a pair of spheres. Only needed if
+   bodies differ. */
+static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p) {
+    const size_t at = (size_t)d*(size_t)near->stride + (size_t)p;
+    const demi_species one = demi_near_species(w, at, 0), other = demi_near_species(w, at, 1);
     dem_real coef[DEMI_PAIR_COLUMNS], *to;
     int e;
     if (!demi_many_species(w)) {
-        near->row[d*near->stride + p] = demi_species_find(w, a)*w->effects.species_count +
-            demi_species_find(w, b);
+        near->row[at] = demi_species_find(w, &one)*w->effects.species_count +
+            demi_species_find(w, &other);
         return;
     }
     demi_species_coefs(w, &one, &other, coef);
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
+    for (e = 0; e < demi_coef_columns(w); e++) to[(size_t)e*(size_t)near->stride] = coef[e];
 }
 /* Copies the coefficients of entry `from` of a list to entry `to` of the same or another list. */
 static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int to,
                                  const demi_near *last, int from) {
     const size_t columns = DEMI_PAIR_COLUMNS, stride = (size_t)near->stride;
-    const size_t last_stride = (size_t)last->stride;
+    const size_t last_stride = (size_t)last->stride, used = (size_t)demi_coef_columns(w);
     dem_real *m;
     const dem_real *old;
     size_t e;
@@ -14121,7 +14290,7 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
     }
     m = near->coef + (size_t)d*columns*stride + (size_t)to;
     old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
-    for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
+    for (e = 0; e < used; e++) m[e*stride] = old[e*last_stride];
 }
 /* Selects the pairs of spheres of the pruned list from a group's candidates, without a branch.
    Writes them from entry p on and returns their end, or -1 if there is no room. mixed: 1 if there
@@ -14148,10 +14317,6 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
     }
     return k < end ? -1 : p;
 }
-static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
-    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
-        : demi_near_pick_as(w, list, begin, end, d, p, 0);
-}
 /* Upper bound, m/s, on the approach speed of the surfaces of two bodies, rotation included. */
 static dem_real demi_approach(const dem_world *w, int a, int b) {
     const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
@@ -14169,14 +14334,11 @@ static dem_real demi_near_cut(const dem_world *w, int a, int b) {
         (dem_real)w->margin.span*demi_approach(w, a, b);
 }
 /* Returns the spheres of a body, rows of centre (relative to the body's) and radius, m, and their
-   number. lone: storage for the row of a sphere. Returns null if the body has other parts. */
-DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
+   number; null if the body has other parts. */
+DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, int *count) {
     const demi_shape *shape = demi_shape_of(w, body);
     *count = shape ? shape->count : 1;
-    if (shape) return shape->count ? demi_centres_of(w, body) : 0;
-    lone[0] = lone[1] = lone[2] = 0;
-    lone[3] = w->bodies.pos[4*body + 3];
-    return lone;
+    return *count ? demi_centres_of(w, body) : 0;
 }
 /* True if the gap of two bodies, or of two of their parts, is below `cut`, m. shift: m, to the
    image of b. */
@@ -14184,11 +14346,10 @@ static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *sh
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
     const dem_real far_b = w->bodies.pos[4*b + 3] + cut;
-    dem_real lone[2][4];
     const dem_real *x, *y;
     int na, nb, i, j;
-    x = demi_balls_of(w, a, lone[0], &na);
-    y = demi_balls_of(w, b, lone[1], &nb);
+    x = demi_balls_of(w, a, &na);
+    y = demi_balls_of(w, b, &nb);
     if (!x || !y) return demi_bodies_gap(w, a, b, shift, cut) < cut;
     for (i = 0; i < na; i++, x += 4) {
         const dem_vec3 to = demi_sub(r, demi_at(x));
@@ -14202,7 +14363,56 @@ static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *sh
     }
     return 0;
 }
-/* As demi_near_pick for pairs other than two spheres: tests the gap of their surfaces. */
+/* True if a body consists of spheres. */
+static int demi_has_balls(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape || shape->count;
+}
+/* True if the pruned list holds the pairs of spheres of two bodies, instead of the two bodies. */
+static int demi_pair_of_balls(const dem_world *w, int a, int b) {
+    return w->effects.clustered ? demi_has_balls(w, a) && demi_has_balls(w, b)
+        : !demi_shape_of(w, a) && !demi_shape_of(w, b);
+}
+/* The same with clusters: selects the pairs of spheres of two bodies that may touch. */
+static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, int end, int d,
+                                int p) {
+    const int room = w->near.stride - DEMI_LANES, first = d*w->near.stride;
+    int k, i, j;
+    for (k = begin; k < end; k++) {
+        const int a = list->a[k], b = list->b[k];
+        const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                             demi_at(w->bodies.pos + 4*a)),
+                                    demi_at(w->image_shift + list->image[k]));
+        const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
+        const dem_real all_a = w->bodies.pos[4*a + 3] + far_b;
+        const int32_t *start = w->bodies.centre_start;
+        if (!(demi_dot(r, r) < all_a*all_a) || !demi_has_balls(w, a) || !demi_has_balls(w, b))
+            continue;
+        for (i = start[a]; i < start[a + 1]; i++) {
+            const dem_real *x = w->bodies.centre + 4*i;
+            const dem_vec3 to = demi_sub(r, demi_at(x));
+            const dem_real all = x[3] + far_b;
+            if (!(demi_dot(to, to) < all*all)) continue;
+            for (j = start[b]; j < start[b + 1]; j++) {
+                const dem_real *y = w->bodies.centre + 4*j;
+                const dem_vec3 gap = demi_add(to, demi_at(y));
+                const dem_real near_by = x[3] + y[3] + cut;
+                if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
+                if (p >= room) return -1;
+                w->near.ball_a[first + p] = i;
+                w->near.ball_b[first + p] = j;
+                w->near.k[first + p++] = k;
+            }
+        }
+    }
+    return p;
+}
+static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
+    if (w->effects.clustered) return demi_near_pick_balls(w, list, begin, end, d, p);
+    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+        : demi_near_pick_as(w, list, begin, end, d, p, 0);
+}
+/* As demi_near_pick for all other pairs: tests the gap of their surfaces. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
     const int room = w->near.stride - DEMI_LANES;
@@ -14211,7 +14421,7 @@ static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin,
     for (k = begin; k < end && p < room; k++) {
         const int a = list->a[k], b = list->b[k];
         dem_real cut;
-        if (!demi_shape_of(w, a) && !demi_shape_of(w, b)) continue;
+        if (demi_pair_of_balls(w, a, b)) continue;
         cut = demi_near_cut(w, a, b);
         out[p] = k;
         p += demi_bodies_near(w, a, b, w->image_shift + list->image[k], cut);
@@ -14235,10 +14445,9 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
         demi_near_coefs_copy(w, near, d, p, last, from);
         return;
     }
-    if (!w->effects.uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
+    if (!w->effects.uniform) demi_near_coefs(w, near, d, p);
     for (e = 0; e < keep; e++) m[e*stride] = 0;
-    if (!keep || !w->near_fresh ||
-        (from = demi_carry_find(w, near->a[at], near->b[at], &flip)) < 0) return;
+    if (!keep || !w->near_fresh || (from = demi_carry_find(w, (size_t)at, &flip)) < 0) return;
     for (e = 0; e < keep; e++) {
         const dem_real value = w->filed.memory[(size_t)from*keep + e];
         m[e*stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
@@ -14263,6 +14472,10 @@ static void demi_near_adopt(dem_world *w, int d) {
             near->b[at + p] = near->b[at + end - 1];
             near->k[at + p] = near->k[at + end - 1];
             near->image[at + p] = near->image[at + end - 1];
+            if (w->effects.clustered) {
+                near->ball_a[at + p] = near->ball_a[at + end - 1];
+                near->ball_b[at + p] = near->ball_b[at + end - 1];
+            }
             for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
             demi_near_coefs_copy(w, near, d, p, near, end - 1);
         }
@@ -14273,8 +14486,8 @@ static void demi_near_adopt(dem_world *w, int d) {
         demi_list *list = l ? &w->cross : &w->own;
         const int count = l ? domain->cross : domain->own;
         if (count) memset(list->place + d*list->stride, 0, (size_t)count*sizeof *list->place);
-        for (p = l ? domain->near_cross : 0; p < (l ? domain->near_end : domain->near_own); p++)
-            list->place[near->k[d*near->stride + p]] = p + 1;
+        for (p = (l ? domain->near_end : domain->near_own) - 1; p >= (l ? domain->near_cross : 0);
+             p--) list->place[near->k[d*near->stride + p]] = p + 1;     /* the first of several */
         for (p = l ? domain->near_shaped_cross : domain->near_shaped;
              p < (l ? domain->near_shaped_end : domain->near_shaped_cross); p++)
             list->place[near->k[d*near->stride + p]] = p + 1;
@@ -14359,25 +14572,46 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
    group. Returns the new end. */
 static int demi_near_part(const dem_world *w, const demi_list *list, int d, int first, int end) {
     int32_t *out = w->near.k + d*w->near.stride;
-    int q, left = first;
+    int q, left = first, last = -1, parted = 0;
     if (!w->sheeted) return end;
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
-        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
-            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
-            demi_at(w->image_shift + list->image[k])))) continue;
+        if (k != last)
+            parted = (w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b,
+                demi_add(demi_sub(demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+                         demi_at(w->image_shift + list->image[k])));
+        last = k;
+        if (parted) continue;
+        if (w->effects.clustered) {
+            w->near.ball_a[d*w->near.stride + left] = w->near.ball_a[d*w->near.stride + q];
+            w->near.ball_b[d*w->near.stride + left] = w->near.ball_b[d*w->near.stride + q];
+        }
         out[left++] = k;
     }
     return left;
 }
 
+/* Returns the entry in the previous list of the pair of spheres at index `at` of the present one,
+   or -1. Those of one candidate are adjacent. */
+static int demi_near_was(const dem_world *w, const demi_list *list, int d, int at) {
+    const demi_near *last = &w->near_last;
+    const int k = w->near.k[at], base = d*last->stride;
+    const int end = base + w->domains[d].near_end;
+    int p = base + list->place[k] - 1;
+    if (!w->effects.clustered || p < base) return p - base;
+    for (; p < end && last->k[p] == k; p++)
+        if (last->ball_a[p] == w->near.ball_a[at] && last->ball_b[p] == w->near.ball_b[at])
+            return p - base;
+    return -1;
+}
 /* Builds the pruned list of a work group: first the pairs of spheres, then the others; in both, the
    pairs inside the group, then those with later groups. Sets `overflow` if there is no room. */
 static void demi_domain_near(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_near *near = &w->near;
-    int l, q, p = 0;
+    int l, q, p = 0, run = 0;
     domain->overflow &= ~8;
+    domain->merging = 0;
     for (l = 0; l < 2; l++) {
         const demi_list *list = l ? &w->cross : &w->own;
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
@@ -14390,8 +14624,11 @@ static void demi_domain_near(dem_world *w, int d) {
             near->a[at] = list->a[k];
             near->b[at] = list->b[k];
             near->image[at] = list->image[k];
+            if (w->effects.clustered) near->on[at] = 1;
+            run = q > first && near->k[at - 1] == k ? run + 1 : 1;
+            domain->merging = DEMI_MAX(domain->merging, run);
             if (w->memory_stride || !w->effects.uniform)
-                demi_near_recall(w, d, q, w->near_fresh ? -1 : list->place[k] - 1);
+                demi_near_recall(w, d, q, w->near_fresh ? -1 : demi_near_was(w, list, d, at));
         }
         if (l) domain->near_next_end = p;
         else domain->near_next_own = p;
@@ -14501,6 +14738,15 @@ static void demi_near_pass(dem_world *w, double change) {
 static int demi_near_due(const dem_world *w) {
     return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
 }
+/* Allocates the contacts of two bodies that >>members may merge. Returns 0 if memory runs out. */
+static int demi_merging_reserve(dem_world *w) {
+    int d, most = 0;
+    for (d = 0; d < w->domain_count; d++) most = DEMI_MAX(most, w->domains[d].merging);
+    if (w->laws.at_grip == DEMI_MEMORY) return 1;
+    if (!DEMI_GROW(w, w->merging, (size_t)w->domain_count*(size_t)most)) return 0;
+    w->merging_most = most;
+    return 1;
+}
 /* Builds the pruned list; fresh: 1 after a search. Returns 0 if memory runs out; the previous list
    then stays in use. */
 static int demi_near_make(dem_world *w, int fresh) {
@@ -14528,6 +14774,11 @@ static int demi_near_make(dem_world *w, int fresh) {
         w->near = swap;
         return 0;
     } while (again);
+    if (!demi_merging_reserve(w)) {
+        w->near_last = w->near;
+        w->near = swap;
+        return 0;
+    }
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
         demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
@@ -14556,9 +14807,11 @@ static void demi_effects_memory(dem_world *w) {
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
     if (w->desc.law) {
         w->laws.memory = w->desc.law_memory;
-        w->laws.at_sliding = demi_laws_sliding(&w->laws.memory, w->effects.sticks);
+        w->laws.at_sliding = demi_laws_append(&w->laws.memory, w->effects.sticks);
         w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
     }
+    w->laws.at_grip = demi_laws_append(&w->laws.memory, w->effects.clustered &&
+        w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED);
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
@@ -14592,12 +14845,20 @@ static double demi_reach_of(const dem_world *w, double radius) {
     }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
+/* True with springs if the scene has a cluster of spheres, whether or not a body has that shape:
+   all slabs must answer the same. */
+static int demi_clustered(const dem_world *w) {
+    int k, any = 0;
+    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count > 0;
+    return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
+}
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
     demi_pairs_rub(w, &friction, &rolling, &sticks);
     w->effects.sticks = sticks;
     w->normal = (int)w->desc.normal_law;
+    w->effects.clustered = demi_clustered(w);
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
     w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
@@ -14618,7 +14879,7 @@ static void demi_effects(dem_world *w) {
         w->effects.tight |= shape && shape->radius > 2*shape->equal;
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
-        !w->effects.fixed_count;
+        !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -14763,7 +15024,7 @@ static int demi_join_lack(const dem_world *w) {
    and only if all bodies are spheres. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
     if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
-        w->bodies.ghost) return 0;
+        w->effects.clustered || w->bodies.ghost) return 0;
     return demi_species_known(w, material, radius);
 }
 /* True if the two belong in the pruned list, by the test of demi_near_pick. */
@@ -14819,6 +15080,8 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
     for (k = 0; k < now->memory; k++) m[k] = k < own ? old[k] : 0;
     if (was->at_sliding < DEMI_MEMORY && now->at_sliding < DEMI_MEMORY)
         m[now->at_sliding] = old[was->at_sliding];
+    if (was->at_grip < DEMI_MEMORY && now->at_grip < DEMI_MEMORY)
+        m[now->at_grip] = old[was->at_grip];
     if (own >= 0) return;
     for (k = 0; k < now->tangent->memory && was->tangent == now->tangent; k++) m[k] = old[k];
     for (k = 0; k < now->rolling->memory && was->rolling == now->rolling; k++)
@@ -14982,7 +15245,8 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
     demi_bodies_sort(w);
     if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
-    if ((w->bodies.shaped && !demi_centres_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
+    if (((w->bodies.shaped || w->effects.clustered) && !demi_centres_lay(w)) ||
+        (w->levels.count && !demi_levels_lay(w)))
         return demi_no_memory(w, call);
     demi_image_shifts(w);
     demi_domains_deal(w);
@@ -15739,11 +16003,12 @@ typedef struct demi_tile {
 } demi_tile;
 /* Up to a tile of consecutive entries of the pruned neighbour list. */
 typedef struct demi_span {
-    const int32_t *a, *b;
+    const int32_t *a, *b, *k;      /* bodies; candidate (with a later work group: its slot) */
     const unsigned char *image;
     dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
     const int32_t *row;            /* of the table of species, or null */
     const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
+    const int32_t *ball;           /* of clusters: spheres of a, else null */
     size_t stride;
     int count;
 } demi_span;
@@ -15754,10 +16019,12 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     demi_span s;
     s.a = near->a + at;
     s.b = near->b + at;
+    s.k = near->k + at;
     s.image = near->image + at;
     s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
     s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
     s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
+    s.ball = 0;
     s.stride = stride;
     s.count = count;
     return s;
@@ -16177,15 +16444,17 @@ static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int 
     const dem_world *w = r->w;
     const int a = r->span->a[q], b = r->span->b[q];
     const demi_periods periods = demi_periods_of(w);
-    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
+    const dem_vec3 arm = r->span->ball
+        ? demi_at(w->bodies.centre + 4*r->span->ball[q]) : demi_v(0, 0, 0);
     c->who.a = dem_body_id_get(w, a);
     c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = x[3];
-    c->who.radius_b = y[3];
+    c->who.radius_a = ra;
+    c->who.radius_b = rb;
     c->who.mass_a = w->bodies.mass[a];
     c->who.mass_b = w->bodies.mass[b];
-    c->who.point = demi_place_of(&periods, demi_add(demi_at(x),
-        demi_scale(demi_rows_at(&t->gap, q), x[3]/(x[3] + y[3]))));
+    c->who.point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a), arm),
+        demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb))));
     c->who.time = w->clock.time;
     demi_who_reals(w, a, b, 0, rates, &c->who);
 }
@@ -16331,11 +16600,16 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.dt = dt;
     return r;
 }
+/* Returns the stage of force and torques. rolls: the laws return moments. */
+static demi_stage demi_answer_stage(const demi_run *r, int rolls) {
+    return !r->turning ? demi_stage_answer_bare
+        : rolls ? r->alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
+        : r->alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
+}
 /* Returns the run for contacts of two spheres. alike: for pairs of identical bodies; it gives the
    same bits as the general one. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const demi_stage whole = demi_whole_stage(w, alike);
-    const int rolls = w->laws.rolling->law != 0;
     demi_run r = demi_run_begin(w, dt);
     int k = 0;
     r.alike = alike;
@@ -16348,9 +16622,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     k = demi_run_laws(w, &r, k);
-    r.stage[k] = !r.turning ? demi_stage_answer_bare
-        : rolls ? r.alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
-        : r.alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
+    r.stage[k] = demi_answer_stage(&r, w->laws.rolling->law != 0);
     return r;
 }
 /* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
@@ -16492,13 +16764,15 @@ static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
     else demi_scatter(t, span, force, torque, 0, 0);
 }
-/* The same for pairs with later work groups: forces on b stay in slots, six reals each. */
+/* The same for pairs with later work groups: forces on b stay in slots `out`, six reals for each
+   candidate. */
 static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                                const demi_run *r, dem_real *DEMI_RESTRICT force,
-                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT out) {
+                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT slots) {
     const int second = r->parting ? 1 : 0;
     int q;
-    for (q = 0; q < span->count; q++, out += 6) {
+    for (q = 0; q < span->count; q++) {
+        dem_real *out = slots + 6*(size_t)span->k[q];
         dem_real *fa = DEMI_AT(force, span->a[q]), *ma = DEMI_AT(torque, span->a[q]);
         const dem_vec3 f = demi_row(t->force, q);
         fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
@@ -16511,18 +16785,19 @@ static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     }
 }
 
-/* Adds the rates that a law returned for user-defined numbers to both bodies. out: the first slot
-   for those of b, if b is of a later work group. */
+/* Adds the rates that a law returned for user-defined numbers to both bodies. out: the slots for
+   those of b, if b is of a later work group. */
 static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
                                        dem_real *out) {
     const int n = w->bodies.real_count;
     int q, k;
     for (q = 0; q < span->count; q++) {
-        dem_real *a = w->bodies.rates + n*span->a[q], *b = w->bodies.rates + n*span->b[q];
+        dem_real *a = w->bodies.rates + n*span->a[q];
+        dem_real *b = out ? out + (size_t)n*(size_t)span->k[q] : w->bodies.rates + n*span->b[q];
         const int touch = t->touch[q] > 0;
         for (k = 0; k < n; k++) {
             if (touch) a[k] += t->gains[q][k];
-            if (out) out[n*q + k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
+            if (out) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
             else if (touch) b[k] += t->gains[q][DEM_BODY_REALS + k];
         }
     }
@@ -16551,27 +16826,12 @@ static void demi_pairs(dem_world *w, int d) {
             demi_tile_tally(&tile, count, &tally);
             if (r->ranged) tally.contacts -= (dem_real)demi_tile_apart(&tile, count);
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
-            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque,
-                                w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
-                                                   (size_t)(p - begin)));
-            if (demi_exchanges(w))
-                demi_tile_rates(&tile, &span, w, !l ? 0 : w->cross_rate +
-                                (size_t)w->bodies.real_count*((size_t)d*(size_t)w->cross.stride +
-                                                              (size_t)(p - begin)));
+            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
+            if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
         }
     }
     domain->contacts = (int)tally.contacts;
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
-}
-
-/* Sets the force loop for the laws in force. Returns its name in reports. */
-static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = demi_pairs;
-#ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
-#endif
-    if (w->desc.law) return "your law, called";
-    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -20366,17 +20626,16 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
-    const dem_vec3 r = demi_near_way(w, (size_t)at);
+    const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
     const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
     const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);
     demi_kept *from = w->kept_next + w->kept_first[d] + first;
-    dem_real lone[2][4];
     const dem_real *x, *y;
     int na, nb, count;
     if (!(demi_dot(r, r) < far*far)) return;
-    x = demi_balls_of(w, a, lone[0], &na);
-    y = demi_balls_of(w, b, lone[1], &nb);
+    x = demi_balls_of(w, a, &na);
+    y = demi_balls_of(w, b, &nb);
     if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
@@ -20529,7 +20788,6 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     const int parts = demi_parts_count(w, body);
     demi_view v = demi_view_of(w, d, first, last);
     const dem_real *balls;
-    dem_real lone[4];
     int k, count;
     v.several = several;
     if (!demi_shape_of(w, body)) {
@@ -20537,7 +20795,7 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
         return;
     }
-    balls = demi_balls_of(w, body, lone, &count);
+    balls = demi_balls_of(w, body, &count);
     for (k = 0; k < parts; k++) {
         demi_part p;
         if (balls && demi_ball_clear(&v, demi_add(demi_at(w->bodies.pos + 4*body),
@@ -20694,11 +20952,11 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const dem_real *gap = w->wall_gap + d*w->wall_stride, gone = demi_walls_gone(w);
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
-    const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
+    if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
         while (k < walls && gap[k] > gone) k++; /* not close enough yet */
         a = k < walls ? body[k] : INT_MAX;
@@ -20712,7 +20970,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         for (; p < own_end && near_a[p] == a; p++)
             demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
+            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], old, (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
@@ -20752,7 +21010,7 @@ static int demi_kept_widen(dem_world *w) {
 static int demi_touch(dem_world *w) {
     int d, again;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
-    if (!w->wall_count && !w->bodies.shaped) return 1;
+    if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     demi_surfaces_follow(w);
@@ -20774,12 +21032,6 @@ static int demi_touch(dem_world *w) {
    to forces of bodies.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the largest inverse mass, 1/kg, with which a contact may find the body. It is used where
-   a stiffness depends on masses, and is also what the choice of the time step assumes. */
-static double demi_give_at_most(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    return (double)w->bodies.inv_mass[body]/(shape ? shape->light : 1);
-}
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
    the square root of m_eff (`root`). */
 static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
@@ -20790,8 +21042,8 @@ static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *ou
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     const double half = mill && grains ? 0.5 : 1;
     const int shaped = demi_shape_of(w, k->a) || (k->b >= 0 && demi_shape_of(w, k->b));
-    const double give = shaped ? demi_give_at_most(w, k->a) +
-        (k->b >= 0 ? demi_give_at_most(w, k->b) : 0) : 0;
+    const double give = shaped ? demi_body_give_at_most(w, k->a) +
+        (k->b >= 0 ? demi_body_give_at_most(w, k->b) : 0) : 0;
     demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
                              wall ? wall->material : w->bodies.material[k->b] - 1,
                              (double)k->r_eff, half*(shaped ? 1/give : (double)k->m_eff),
@@ -21361,41 +21613,510 @@ static void demi_kept_respond(dem_world *w, int d) {
     }
     if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
 }
-/* Clears the slots for forces on bodies of later work groups: contacts add to them. */
+/* Clears the slot of a candidate with a later work group: its contacts add to it. */
+static void demi_slot_clear(dem_world *w, int k) {
+    const size_t rates = demi_exchanges(w) ? (size_t)w->bodies.real_count : 0;
+    memset(w->cross_force + 6*(size_t)k, 0, 6*sizeof(dem_real));
+    if (rates) memset(w->cross_rate + rates*(size_t)k, 0, rates*sizeof(dem_real));
+}
+/* Clears the slots of all pairs of bodies that may have persistent contacts. */
 static void demi_kept_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
-    const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
-    const size_t first = (size_t)d*(size_t)w->cross.stride +
-                         (size_t)(domain->near_end - domain->near_cross);
-    const size_t rates = demi_exchanges(w) ? (size_t)w->bodies.real_count : 0;
-    if (pairs > 0) memset(w->cross_force + 6*first, 0, 6*(size_t)pairs*sizeof(dem_real));
-    if (pairs > 0 && rates)
-        memset(w->cross_rate + rates*first, 0, rates*(size_t)pairs*sizeof(dem_real));
+    int p;
+    for (p = domain->near_shaped_cross; p < domain->near_shaped_end; p++)
+        demi_slot_clear(w, w->near.k[d*w->near.stride + p]);
 }
 
 /* Adds the forces that pairs of earlier work groups left in slots for bodies of work group d. */
 static void demi_cross_gather(dem_world *w, int d) {
-    const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
-    const int stride = w->cross.stride;
-    int k, e, p, shaped, from = 0;
+    const int spins = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
+    int k, e;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
-        const dem_real *force;
-        size_t slot;
-        while (entry >= (from + 1)*stride) from++;
-        p = w->cross.place[entry] - 1;
-        if (p < 0) continue;
-        shaped = p >= w->domains[from].near_shaped;
-        p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
-        slot = (size_t)(from*stride + p - w->domains[from].near_cross);
-        force = w->cross_force + 6*slot;
+        const dem_real *force = w->cross_force + 6*(size_t)entry;
+        const int turning = spins || demi_shape_of(w, w->cross.a[entry]) || demi_shape_of(w, j/4);
+        if (!w->cross.place[entry]) continue;   /* not in the pruned list */
         for (e = 0; e < 3; e++) {
             w->bodies.force[j + e] += force[e];
-            if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
+            if (turning) w->bodies.torque[j + e] += force[3 + e];
         }
         for (e = 0; e < rates; e++)
-            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)rates*slot + (size_t)e];
+            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)(rates*entry + e)];
     }
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>members
+   Contact forces between spheres that may be members of clusters (springs, effects.clustered). The
+   pruned neighbour list then holds pairs of member spheres, and a lone sphere is the only member of
+   its body. A step tests all pairs of the list. Those that touch fill a tile with the relative
+   motion of the two spheres, which are points of their bodies, and the stages of >>respond
+   evaluate the laws as for lone spheres, whose forces have the same bits. Clusters differ in three
+   ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
+   same two bodies may be merged (>>kept), and a force acts at the centre of a member sphere. Owns
+   near.on, near.hit and the slots of its pairs.
+   --------------------------------------------------------------------------------------------- */
+
+/* Work of one group: a tile of contacts, which is evaluated when it is full. */
+typedef struct demi_member_tile {
+    demi_kept_tile t;              /* of these: rows, arm, spin, spun, share, grip, lift, still */
+    int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];      /* bodies; candidate */
+    int32_t p[DEMI_TILE];          /* entry in the pruned list of its work group */
+    int32_t ball[2][DEMI_TILE];    /* spheres */
+    dem_real inv[DEMI_ROOM], yield[2][6][DEMI_ROOM];       /* 1/kg, of both; as in demi_bodies */
+    demi_rows felt[2];             /* m, if any is merged: arms for effective masses */
+    dem_real base[5][DEMI_ROOM];   /* cn and ct without m*; their parts by root m*; m*, or 0 */
+    int merged[DEMI_TILE];         /* 1: with others of the same two bodies */
+    dem_vec3 at[2][DEMI_TILE], aside[DEMI_TILE];           /* of these: felt; see demi_kept_more */
+    demi_span span;                /* a, b and k, for stages that name bodies */
+    demi_run run, laws;            /* all stages; those of the laws only */
+    int count, weighted;           /* contacts; are any merged? */
+} demi_member_tile;
+
+/* Appends entry p of the pruned list to a tile. c: its weights if it is merged with others of the
+   same two bodies, or null: all weights are 1. */
+DEM_INLINE void demi_member_add(demi_member_tile *m, int p, const demi_kept *c) {
+    const int q = m->count++;
+    m->p[q] = p;
+    m->t.share[q] = m->t.grip[q] = 1;
+    m->t.lift[q] = 0;
+    m->merged[q] = 0;
+    if (!c) return;
+    m->t.share[q] = c->share;
+    m->t.grip[q] = c->grip;
+    m->t.lift[q] = c->lift - c->share;
+    m->merged[q] = 1;
+    m->at[0][q] = demi_sub(c->arm_a, c->felt);
+    m->at[1][q] = demi_sub(c->arm_b, c->felt);
+    m->aside[q] = c->odd ? c->more.aside : demi_v(0, 0, 0);
+    m->weighted = 1;
+}
+/* Fills the rows of a tile from its entries and the bodies. */
+DEM_INLINE void demi_member_fetch(const dem_world *w, demi_member_tile *DEMI_RESTRICT m,
+                                  size_t base, int full, int following) {
+    const int32_t *DEMI_RESTRICT near_a = w->near.a + base;
+    const int32_t *DEMI_RESTRICT near_b = w->near.b + base;
+    const int32_t *DEMI_RESTRICT ball_a = w->near.ball_a + base;
+    const int32_t *DEMI_RESTRICT ball_b = w->near.ball_b + base;
+    const int32_t *DEMI_RESTRICT k = w->near.k + base;
+    const unsigned char *DEMI_RESTRICT image = w->near.image + base;
+    const dem_real *DEMI_RESTRICT ball = w->bodies.ball, *DEMI_RESTRICT arm = w->bodies.centre;
+    const dem_real *DEMI_RESTRICT v = w->bodies.vel, *DEMI_RESTRICT u = w->bodies.half_vel;
+    const dem_real *DEMI_RESTRICT s = w->bodies.spin, *DEMI_RESTRICT sh = w->bodies.half_spin;
+    const dem_real *DEMI_RESTRICT inv = w->bodies.inv_mass, *DEMI_RESTRICT yield = w->bodies.yield;
+    demi_tile *DEMI_RESTRICT rows = &m->t.rows;
+    int n, e;
+    for (n = 0; n < full; n++) {
+        const size_t q = (size_t)n;
+        const int p = m->p[n], a = near_a[p], b = near_b[p], i = ball_a[p], j = ball_b[p];
+        const dem_real *x = ball + 4*i, *y = ball + 4*j;
+        m->a[n] = a; m->b[n] = b; m->k[n] = k[p];
+        m->ball[0][n] = i; m->ball[1][n] = j;
+        demi_rows_shifted(&rows->gap, q, y, x, w->image_shift + image[p]);
+        rows->radius[0][n] = x[3];
+        rows->radius[1][n] = y[3];
+        demi_rows_minus(&rows->rate, q, v + 4*a, v + 4*b);
+        demi_rows_put(&m->t.arm[0], n, demi_at(arm + 4*i));
+        demi_rows_put(&m->t.arm[1], n, demi_at(arm + 4*j));
+        demi_rows_put(&m->t.spin[0], n, demi_at(s + 4*a));
+        demi_rows_put(&m->t.spin[1], n, demi_at(s + 4*b));
+        m->inv[n] = inv[a] + inv[b];
+        DEMI_UNROLL
+        for (e = 0; e < 6; e++) {
+            m->yield[0][e][n] = yield[6*a + e];
+            m->yield[1][e][n] = yield[6*b + e];
+        }
+        if (!following) continue;
+        demi_rows_minus(&rows->gone, q, u + 4*a, u + 4*b);
+        demi_rows_put(&m->t.spun[0], n, demi_at(sh + 4*a));
+        demi_rows_put(&m->t.spun[1], n, demi_at(sh + 4*b));
+    }
+}
+/* Copies the histories of a tile's entries. If the weight of friction grows, a spring keeps its
+   force, as in demi_kept_hold. */
+static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
+                               int full) {
+    const size_t stride = (size_t)w->near.stride;
+    const int at_grip = w->laws.at_grip, keep = w->memory_stride;
+    int e, q;
+    for (e = 0; e < keep; e++) {
+        const dem_real *DEMI_RESTRICT memory = w->near.memory +
+            ((size_t)d*(size_t)keep + (size_t)e)*stride;
+        for (q = 0; q < full; q++) m->t.rows.memory[e][q] = memory[m->p[q]];
+    }
+    if (at_grip == DEMI_MEMORY) return;
+    for (q = 0; q < full; q++) {
+        const dem_real held = m->t.rows.memory[at_grip][q], now = m->t.grip[q];
+        m->t.rows.memory[at_grip][q] = now;
+        if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
+        for (e = 0; e < keep; e++)
+            if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
+    }
+}
+/* Copies the coefficients that differ from pair to pair. first: all of them, for a whole tile. */
+static void demi_member_coefs(const dem_world *w, demi_member_tile *m, int d, int full, int first) {
+    const size_t stride = (size_t)w->near.stride, base = (size_t)d*stride;
+    int e, q;
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
+        dem_real *to = e == DEMI_CN ? m->base[0] : e == DEMI_CT ? m->base[1]
+            : e == DEMI_CN_ROOT ? m->base[2] : e == DEMI_CT_ROOT ? m->base[3]
+            : e == DEMI_M_EFF ? m->base[4]
+            : m->t.rows.coef[e];
+        const dem_real *own = demi_many_species(w) ? w->near.coef +
+            (base*DEMI_PAIR_COLUMNS + (size_t)e*stride) : 0;
+        const dem_real *table = w->species_coef + e;
+        if (!first && !(w->species_vary >> e & 1)) continue;
+        for (q = 0; q < full; q++) {
+            const size_t at = (size_t)(first ? m->p[0] : m->p[q]);
+            to[q] = own ? own[at] : table[w->effects.uniform ? 0
+                : DEMI_PAIR_COLUMNS*w->near.row[base + at]];
+        }
+    }
+}
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
+/* Returns the arm at mid-step of a point of a body, whose arm now is c: with the rotation h of half
+   a step it solves mid + h x mid = c. Then the point moves by 2 h x mid in the step. */
+DEM_INLINE dem_vec3 demi_arm_mid(dem_vec3 c, dem_vec3 h) {
+    const dem_vec3 turned = demi_add(demi_sub(c, demi_cross(h, c)), demi_scale(h, demi_dot(h, c)));
+    return demi_scale(turned, 1/(1 + demi_dot(h, h)));
+}
+/* Turns the relative motion of two bodies into that of the centres of two of their spheres, and
+   sets sums and differences of spins. */
+DEM_INLINE void demi_member_swing_one(demi_member_tile *DEMI_RESTRICT m, dem_real half, int q,
+                                      int following) {
+    demi_tile *rows = &m->t.rows;
+    const dem_vec3 one = demi_rows_at(&m->t.arm[0], q), other = demi_rows_at(&m->t.arm[1], q);
+    const dem_vec3 wa = demi_rows_at(&m->t.spin[0], q), wb = demi_rows_at(&m->t.spin[1], q);
+    demi_rows_put(&rows->rate, q, demi_add(demi_rows_at(&rows->rate, q),
+                                           demi_sub(demi_cross(wa, one), demi_cross(wb, other))));
+    demi_rows_put(&rows->around, q, demi_add(wa, wb));
+    demi_rows_put(&rows->apart, q, demi_sub(wa, wb));
+    if (following) {
+        const dem_vec3 sa = demi_rows_at(&m->t.spun[0], q), sb = demi_rows_at(&m->t.spun[1], q);
+        const dem_vec3 ma = demi_arm_mid(one, demi_scale(sa, half));
+        const dem_vec3 mb = demi_arm_mid(other, demi_scale(sb, half));
+        demi_rows_put(&rows->gone, q, demi_add(demi_rows_at(&rows->gone, q),
+                                               demi_sub(demi_cross(sa, ma), demi_cross(sb, mb))));
+        demi_rows_put(&rows->turned, q, demi_add(sa, sb));
+        demi_rows_put(&rows->parted, q, demi_sub(sa, sb));
+    }
+}
+DEMI_CLONES static void demi_member_swing(demi_member_tile *DEMI_RESTRICT m, dem_real half,
+                                          int full) {
+    DEMI_ROWS(full) demi_member_swing_one(m, half, q, 0); DEMI_ROWS_END
+}
+DEMI_CLONES static void demi_member_swing_following(demi_member_tile *DEMI_RESTRICT m,
+                                                    dem_real half, int full) {
+    DEMI_ROWS(full) demi_member_swing_one(m, half, q, 1); DEMI_ROWS_END
+}
+/* Returns (c x n).W (c x n), 1/kg, with arm c, the normal n of row q and inverse inertia W. */
+DEM_INLINE dem_real demi_member_give(dem_vec3 c, dem_vec3 n, dem_real W[6][DEMI_ROOM], int q) {
+    const dem_vec3 v = demi_cross(c, n);
+    return W[0][q]*v.x*v.x + W[1][q]*v.y*v.y + W[2][q]*v.z*v.z +
+        2*(W[3][q]*v.x*v.y + W[4][q]*v.x*v.z + W[5][q]*v.y*v.z);
+}
+/* Effective mass at each contact, kg, unless known, and the part of the damping that depends on
+   it. felt: m, arms of both sides. */
+DEMI_CLONES static void demi_member_mass(demi_member_tile *DEMI_RESTRICT m, const demi_rows *felt,
+                                         int full) {
+    DEMI_ROWS(full)
+        const dem_vec3 n = demi_row(m->t.rows.normal, q);
+        const dem_real give = m->inv[q] +
+            demi_member_give(demi_rows_at(&felt[0], q), n, m->yield[0], q) +
+            demi_member_give(demi_rows_at(&felt[1], q), n, m->yield[1], q);
+        const dem_real known = m->base[4][q], mass = known > 0 ? known : 1/(give + DEMI_TINY);
+        const dem_real root = DEMI_SQRT(mass);
+        m->t.rows.coef[DEMI_M_EFF][q] = mass;
+        m->t.rows.coef[DEMI_CN][q] = m->base[0][q] + m->base[2][q]*root;
+        m->t.rows.coef[DEMI_CT][q] = m->base[1][q] + m->base[3][q]*root;
+    DEMI_ROWS_END
+}
+/* Multiplies forces, moments and energies by their weights, see demi_kept_book. */
+DEMI_CLONES static void demi_member_weigh(demi_kept_tile *DEMI_RESTRICT t, int full) {
+    demi_tile *rows = &t->rows;
+    DEMI_ROWS(full)
+        const dem_real share = t->share[q], grip = t->grip[q];
+        rows->repulsion[q] = share*rows->repulsion[q] + t->lift[q]*t->still[q];
+        demi_row_put(rows->tangent, q, demi_scale(demi_row(rows->tangent, q), grip));
+        demi_row_put(rows->moment, q, demi_scale(demi_row(rows->moment, q), grip));
+        rows->part[0][q] *= share; rows->part[1][q] *= share; rows->part[6][q] *= share;
+        rows->part[2][q] *= grip; rows->part[3][q] *= grip;
+        rows->part[4][q] *= grip; rows->part[5][q] *= grip;
+    DEMI_ROWS_END
+}
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
+/* Calls the user-defined law for each contact of a tile, once more at zero closing speed for the
+   elastic force of merged contacts. */
+static void demi_member_law(const dem_world *w, demi_member_tile *m) {
+    demi_tile *rows = &m->t.rows;
+    const demi_same same = m->run.same;
+    dem_real memory[DEMI_MEMORY];
+    dem_contact_force f;
+    dem_contact c;
+    int q, again;
+    demi_who_clear(&c.who);
+    for (q = 0; q < m->count; q++)
+        for (again = m->merged[q]; again >= 0; again--) {
+            demi_tile_own(rows, &m->run, &same, q, w->desc.law_who, &c);
+            if (again) c.closing_speed = 0;
+            demi_recall(rows, q, 0, m->run.keep, memory);
+            demi_law(w, &c, memory, &f);
+            if (again) { m->t.still[q] = f.normal; continue; }
+            demi_keep(rows, q, 0, m->run.keep, memory);
+            demi_normal_put(rows, &same, q, &f, 2);
+            demi_tangent_put(rows, &same, q, &f, 2);
+            demi_rolling_put(rows, &same, q, &f, 2);
+        }
+}
+/* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
+static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d) {
+    const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    const size_t base = (size_t)d*(size_t)w->near.stride;
+    demi_run *r = &m->run;
+    demi_tile *rows = &m->t.rows;
+    int k, q;
+    m->span.count = m->count;
+    r->span = &m->span;
+    for (q = m->count; q < full; q++) {         /* the last vector group is padded with copies */
+        m->p[q] = m->p[m->count - 1];
+        m->t.grip[q] = 1;
+    }
+    if (r->following) demi_member_fetch(w, m, base, full, 1);
+    else demi_member_fetch(w, m, base, full, 0);
+    demi_member_recall(w, m, d, full);
+    demi_member_coefs(w, m, d, full, 0);
+    for (q = 0; q < full && m->weighted; q++)
+        for (k = 0; k < 2; k++)
+            demi_rows_put(&m->felt[k], q, q < m->count && m->merged[q] ? m->at[k][q]
+                          : demi_rows_at(&m->t.arm[k], q));
+    (r->following ? demi_member_swing_following : demi_member_swing)(m, r->same.dt/2, full);
+    r->stage[0](rows, r, full);                 /* contact detection and relative motion */
+    demi_member_mass(m, m->weighted ? m->felt : m->t.arm, full);
+    if (!m->weighted) {
+        for (k = 1; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](rows, r, full);
+        return;
+    }
+    for (q = 0; q < full; q++) m->t.still[q] = 0;
+    if (w->desc.law) demi_member_law(w, m);
+    else {
+        demi_kept_still(&m->t, &m->laws, full);
+        for (k = 0; k < DEMI_STAGES && m->laws.stage[k]; k++)
+            m->laws.stage[k](rows, &m->laws, full);
+    }
+    demi_member_weigh(&m->t, full);
+    demi_answer_stage(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
+    for (q = 0; q < m->count; q++)              /* at the centre of the sphere: no torque */
+        if (m->merged[q]) demi_row_put(rows->force, q, demi_add(demi_row(rows->force, q),
+                                              demi_scale(m->aside[q], m->t.still[q])));
+}
+/* Prepares an empty tile for work group d. dt 0: forces only, history does not advance. */
+static void demi_member_begin(const dem_world *w, demi_member_tile *m, int d, dem_real dt) {
+    m->run = demi_run_of(w, dt, 0);
+    m->laws = demi_run_begin(w, dt);
+    if (!w->desc.law) demi_run_laws(w, &m->laws, 0);
+    m->span.a = m->a;
+    m->span.b = m->b;
+    m->span.k = m->k;
+    m->span.ball = m->ball[0];
+    m->count = m->weighted = 0;
+    demi_tile_begin(w, d, &m->t.rows);
+    m->p[0] = demi_near_first(&w->domains[d]);
+    demi_member_coefs(w, m, d, DEMI_TILE, 1);
+    memset(m->t.rows.moment, 0, sizeof m->t.rows.moment);
+}
+/* Adds the rates of user-defined numbers of row q to both bodies. */
+static DEMI_APART void demi_member_rates(dem_world *w, const demi_member_tile *m, int q, int send) {
+    const int n = w->bodies.real_count;
+    dem_real *b = send ? w->cross_rate + (size_t)n*(size_t)m->k[q] : w->bodies.rates + n*m->b[q];
+    int k;
+    for (k = 0; k < n; k++) {
+        const dem_real *gains = m->t.rows.gains[q];
+        w->bodies.rates[n*m->a[q] + k] += m->t.share[q]*gains[k];
+        b[k] += m->t.share[q]*gains[DEM_BODY_REALS + k];
+    }
+}
+/* Turns the torques of a tile about the centres of its spheres into those on the bodies. */
+DEMI_CLONES static void demi_member_torques(demi_member_tile *DEMI_RESTRICT m, int turning,
+                                            int full) {
+    demi_tile *rows = &m->t.rows;
+    if (!turning) memset(rows->torque, 0, sizeof rows->torque);
+    DEMI_ROWS(full)
+        const dem_vec3 f = demi_row(rows->force, q);
+        demi_row_put(rows->torque[0], q, demi_add(demi_row(rows->torque[0], q),
+                                                  demi_cross(demi_rows_at(&m->t.arm[0], q), f)));
+        demi_row_put(rows->torque[1], q, demi_sub(demi_row(rows->torque[1], q),
+                                                  demi_cross(demi_rows_at(&m->t.arm[1], q), f)));
+    DEMI_ROWS_END
+}
+/* Evaluates a tile, adds its forces to both bodies and stores its histories. send: 1 if the bodies
+   b are of later work groups, so that forces on them go to slots. */
+static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int send) {
+    demi_domain *domain = &w->domains[d];
+    demi_tile *rows = &m->t.rows;
+    const size_t stride = (size_t)w->near.stride;
+    dem_real *DEMI_RESTRICT force = w->bodies.force, *DEMI_RESTRICT torque = w->bodies.torque;
+    const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_tally tally = {0, 0};
+    int q, e;
+    if (!m->count) return;
+    demi_member_evaluate(w, m, d);
+    demi_member_torques(m, m->run.turning, full);
+    if (!send) demi_scatter(rows, &m->span, force, torque, 1, 1);
+    for (q = 0; q < m->count && send; q++) {
+        dem_real *slot = w->cross_force + 6*(size_t)m->k[q];
+        const dem_vec3 f = demi_row(rows->force, q);
+        demi_force_add(force + 4*m->a[q], f);
+        demi_force_add(torque + 4*m->a[q], demi_row(rows->torque[0], q));
+        demi_force_add(slot, demi_scale(f, -1));
+        demi_force_add(slot + 3, demi_row(rows->torque[1], q));
+    }
+    for (q = 0; q < m->count && demi_exchanges(w); q++) demi_member_rates(w, m, q, send);
+    for (e = 0; e < m->run.keep; e++) {
+        dem_real *memory = w->near.memory + ((size_t)d*(size_t)w->memory_stride + (size_t)e)*stride;
+        for (q = 0; q < m->count; q++) memory[m->p[q]] = rows->memory[e][q];
+    }
+    demi_tile_tally(rows, m->count, &tally);
+    if (m->run.ranged) tally.contacts -= (dem_real)demi_tile_apart(rows, m->count);
+    domain->contacts += (int)tally.contacts;
+    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
+    if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
+    if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
+    m->count = m->weighted = 0;
+}
+/* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
+   into w->merging. hit: their entries. Returns them. */
+static const demi_kept *demi_members_merge(const dem_world *w, int d, const int32_t *hit, int n) {
+    demi_kept *const first = w->merging + (size_t)d*(size_t)w->merging_most;
+    int i;
+    for (i = 0; i < n; i++) {
+        const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)hit[i];
+        const dem_real *x = w->bodies.centre + 4*w->near.ball_a[at];
+        const dem_real *y = w->bodies.centre + 4*w->near.ball_b[at];
+        demi_kept *c = first + i;
+        memset(c, 0, offsetof(demi_kept, coef));
+        c->a = w->near.a[at];
+        c->b = w->near.b[at];
+        c->part_a = w->near.ball_a[at] - w->bodies.centre_start[c->a];
+        c->part_b = w->near.ball_b[at] - w->bodies.centre_start[c->b];
+        c->share = c->slope = 1;
+        demi_balls_meet(w, demi_at(x), x[3], demi_at(y), y[3], demi_near_way(w, at), c);
+    }
+    demi_kept_share(w, first, n);
+    return first;
+}
+/* Finds which of entries p .. end - 1 touch or are within the range of the law, and clears the
+   history of those that no longer are. Writes them to `hit` and returns their number. */
+static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit) {
+    const size_t stride = (size_t)w->near.stride, base = (size_t)d*stride;
+    const int32_t *DEMI_RESTRICT one = w->near.ball_a + base;
+    const int32_t *DEMI_RESTRICT other = w->near.ball_b + base;
+    const dem_real *DEMI_RESTRICT ball = w->bodies.ball, *DEMI_RESTRICT shift = w->image_shift;
+    const unsigned char *DEMI_RESTRICT image = w->near.image + base;
+    unsigned char *DEMI_RESTRICT on = w->near.on + base;
+    dem_real *memory = w->near.memory + (size_t)d*(size_t)w->memory_stride*stride;
+    const dem_real range = w->margin.reach > 0 ? w->desc.law_range : 0;
+    const dem_real more = w->margin.reach > 0 ? 1 + w->desc.law_range_radii : 1;
+    int e, n = 0;
+    for (; p < end; p++) {
+        const dem_real *x = DEMI_AT(ball, one[p]), *y = DEMI_AT(ball, other[p]);
+        const dem_real *s = shift + image[p];
+        const dem_real dx = y[0] - x[0] + s[0], dy = y[1] - x[1] + s[1], dz = y[2] - x[2] + s[2];
+        const dem_real near_by = (x[3] + y[3])*more + range;
+        const int now = dx*dx + dy*dy + dz*dz < near_by*near_by;
+        hit[n] = p;
+        n += now;
+        if (on[p] && !now)
+            for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
+        on[p] = (unsigned char)now;
+    }
+    return n;
+}
+/* Returns how many of n hits are of the same two bodies as the first. */
+DEM_INLINE int demi_members_run(const int32_t *k, const int32_t *hit, int n) {
+    int i = 1;
+    while (i < n && k[hit[i]] == k[hit[0]]) i++;
+    return i;
+}
+/* Computes all pairs of a work group: those within it, then those with later ones. */
+static void demi_pairs_members(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
+    const int merges = w->laws.at_grip < DEMI_MEMORY;
+    const int32_t *k = w->near.k + d*w->near.stride;
+    int32_t *hit = w->near.hit + d*w->near.stride;
+    DEMI_ALIGNED demi_member_tile m;
+    int l, p, n, run;
+    domain->contacts = 0;
+    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
+    demi_member_begin(w, &m, d, dt);
+    for (l = 0; l < 2; l++) {
+        const int begin = l ? domain->near_cross : 0, end = l ? domain->near_end : domain->near_own;
+        for (p = begin; l && p < end; p++)
+            if (p == begin || k[p] != k[p - 1]) demi_slot_clear(w, k[p]);
+        n = demi_members_touch(w, d, begin, end, hit);
+        for (p = 0; p < n; p += run) {
+            const demi_kept *c = 0;
+            int i;
+            run = merges ? demi_members_run(k, hit + p, n - p) : 1;
+            if (run > 1) c = demi_members_merge(w, d, hit + p, run);
+            for (i = 0; i < run; i++) {
+                demi_member_add(&m, hit[p + i], c ? c + i : 0);
+                if (m.count == DEMI_TILE) demi_member_respond(w, &m, d, l);
+            }
+        }
+        demi_member_respond(w, &m, d, l);
+    }
+}
+/* True if the spheres of entry `at` touch, or are within the range of the law. */
+static int demi_member_touches(const dem_world *w, size_t at) {
+    const dem_real radii = demi_near_radius(w, at, 0) + demi_near_radius(w, at, 1);
+    return demi_length(demi_near_way(w, at)) < radii + demi_range(w, radii);
+}
+/* As `info` of demi_response_row: computes the force of one pair again, so that nothing changes. */
+static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                             dem_vec3 *gap) {
+    const demi_domain *domain = &w->domains[d];
+    const int32_t *k = w->near.k + d*w->near.stride;
+    int32_t *hit = w->near.hit + d*w->near.stride;
+    const size_t base = (size_t)d*(size_t)w->near.stride;
+    const int from = p >= domain->near_cross ? domain->near_cross : 0;
+    const int end = from ? domain->near_end : domain->near_own;
+    const demi_kept *c = 0;
+    DEMI_ALIGNED demi_member_tile m;
+    int i, n = 0, at = 0;
+    if (!demi_member_touches(w, base + (size_t)p)) return 0;
+    if (!out) return 1;
+    for (i = p; i > from && k[i - 1] == k[p];) i--;
+    for (; i < end && k[i] == k[p] && w->laws.at_grip < DEMI_MEMORY; i++) {
+        if (i == p) at = n;
+        if (demi_member_touches(w, base + (size_t)i)) hit[n++] = i;
+    }
+    if (n > 1) c = demi_members_merge(w, d, hit, n);
+    demi_balls_place(w, w->near.a[base + (size_t)p], w->near.a[base + (size_t)p] + 1);
+    demi_balls_place(w, w->near.b[base + (size_t)p], w->near.b[base + (size_t)p] + 1);
+    demi_member_begin(w, &m, d, 0);
+    demi_member_add(&m, p, c ? c + at : 0);
+    demi_member_evaluate(w, &m, d);
+    out->normal = demi_row(m.t.rows.normal, 0);
+    out->overlap = m.t.rows.overlap[0];
+    out->force = demi_row(m.t.rows.force, 0);
+    *gap = demi_rows_at(&m.t.rows.gap, 0);
+    return 1;
+}
+
+/* Sets the force loop for the laws in force. Returns its name in reports. */
+static const char *demi_kernel_choose(dem_world *w) {
+    w->kernel = w->effects.clustered ? demi_pairs_members : demi_pairs;
+#ifdef DEM_LAW
+    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
+#endif
+    if (w->desc.law) return "your law, called";
+    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -25729,15 +26450,15 @@ static void demi_press_rates(const dem_world *w, demi_press *press) {
         const demi_domain *domain = &w->domains[d];
         for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
             const demi_span span = demi_span_of(w, d, p, 1);
-            const dem_real *x = w->bodies.pos + 4*span.a[0], *y = w->bodies.pos + 4*span.b[0];
-            const dem_vec3 gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
-                                          demi_at(w->image_shift + span.image[0]));
-            const dem_real l = demi_length(gap), sum = x[3] + y[3];
+            const size_t at = (size_t)d*span.stride + (size_t)p;
+            const dem_vec3 gap = demi_near_way(w, at);
+            const dem_real ra = demi_near_radius(w, at, 0), rb = demi_near_radius(w, at, 1);
+            const dem_real l = demi_length(gap), sum = ra + rb;
             memset(&c, 0, sizeof c);
             c.range = demi_range(w, sum);
             c.overlap = sum - l;
             c.normal = demi_scale(gap, 1/DEMI_MAX(l, DEMI_TINY));
-            c.r_eff = x[3]*y[3]/sum;
+            c.r_eff = ra*rb/sum;
             if (c.overlap > -c.range) demi_press_relax(w, span.a[0], span.b[0], -1, &c, 1, press);
         }
         for (p = 0; p < domain->kept; p++) {
@@ -25772,7 +26493,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
             dem_real coef[DEMI_PAIR_COLUMNS];
             demi_pressed c;
-            if (!(l < sum) || !(l > 0)) continue;
+            if (!(l < sum) || !(l > 0) || demi_shape_of(w, a) || demi_shape_of(w, b)) continue;
             if (whole && !press[a].whole && !press[b].whole) continue;
             demi_span_coefs(w, &span, 0, coef);
             c.s = demi_stiffness_of(w, coef, (double)coef[DEMI_M_EFF], (double)(sum - l));
@@ -26442,6 +27163,12 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     dem_contact_force f;
     demi_calling was;
     int e;
+    if (w->effects.clustered) {
+        was = demi_look_calls(w, "a read of the contacts");
+        e = demi_members_info(w, d, p, out, gap);
+        demi_look_called(w, was);
+        return e;
+    }
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
@@ -26472,9 +27199,9 @@ typedef struct demi_response_row {
     void (*respond)(dem_world *w, int domain);  /* computes the forces of a domain's contacts, */
     void (*solve)(dem_world *w);                /* or of all contacts at once */
     void (*book)(dem_world *w);                 /* adds work and losses of a step to the ledger */
-    /* Returns 1 if the two bodies of entry p in a domain's pruned neighbour list act on each other,
-       or 0. If it returns 1 and `out` is not null, it also writes normal, overlap and force to
-       `out`, and the vector from the centre of a to that of b (m) to *gap. */
+    /* Returns 1 if the two spheres of entry p in a domain's pruned neighbour list act on each
+       other, or 0. If it returns 1 and `out` is not null, it also writes normal, overlap and force
+       to `out`, and the vector from the centre of sphere a to that of b (m) to *gap. */
     int (*info)(const dem_world *w, int domain, int p, dem_contact_info *out, dem_vec3 *gap);
 } demi_response_row;
 #define DEMI_RESPONSE_ROW(NAME, MEMORY, VECTORS, TRAITS, ...) {__VA_ARGS__},
@@ -26490,7 +27217,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
                               dem_vec3 *branch) {
     const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)p;
     const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const dem_real ra = demi_near_radius(w, at, 0), rb = demi_near_radius(w, at, 1);
     const demi_periods periods = demi_periods_of(w);
     dem_vec3 gap;
     if (!demi_responses[w->desc.response].info(w, d, p, out, &gap)) return 0;
@@ -26498,8 +27225,9 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     out->a = dem_body_id_get(w, a);
     out->b = dem_body_id_get(w, b);
     out->wall = 0;
-    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(gap, x[3]/(x[3] + y[3]))));
-    if (branch) *branch = gap;
+    out->point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a),
+        demi_near_arm(w, at, 0)), demi_scale(gap, ra/(ra + rb))));
+    if (branch) *branch = demi_near_bodies_way(w, at);
     return 1;
 }
 
@@ -27145,12 +27873,12 @@ static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         const demi_kept *kept = demi_kept_of(w, d);
-        for (k = 0; k < domain->near_end; k++) {
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
             const int at = d*w->near.stride + k, a = w->near.a[at], b = w->near.b[at];
-            const dem_real p = w->bodies.pos[4*a + 3], q = w->bodies.pos[4*b + 3];
+            const dem_real p = demi_near_radius(w, (size_t)at, 0);
+            const dem_real q = demi_near_radius(w, (size_t)at, 1);
             const dem_real way = demi_length(demi_near_way(w, (size_t)at));
             const double deep = (double)((p + q - way)/DEMI_MIN(p, q));
-            if (k >= domain->near_own && k < domain->near_cross) continue;
             if (deep > most) { most = deep; *first = a; *second = b; }
         }
         for (k = 0; k < domain->kept; k++)
@@ -28053,7 +28781,7 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     int i, friction = 1, rolling = 1, sticks = 1;
     *any = 0;
     if (w->memory_stride) demi_pairs_rub(w, &friction, &rolling, &sticks);
-    for (i = 0; i < w->memory_stride; i++) {
+    for (i = 0; i < demi_memory_told(w); i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
         if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
@@ -28071,13 +28799,14 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     }
     return h;
 }
-/* Returns the digest of the contact history of two spheres in slots sa and sb, the same whichever
-   of them is a; 0 if the history is empty. */
-static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
+/* Returns the digest of the contact history of two spheres of the bodies in slots sa and sb, the
+   same whichever of them is a; 0 if the history is empty. part: as in demi_filed. */
+static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb, int32_t part,
                                  const dem_real *memory, size_t stride) {
     const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
     uint64_t one = demi_hash(DEMI_HASH_START, &lo, sizeof lo);
     int any;
+    if (part) one = demi_hash(one, &part, sizeof part);
     one = demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, stride, sa > sb, &any);
     return any ? one : 0;
 }
@@ -28109,9 +28838,10 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
              : domain->near_end; k < domain->near_end;
              k = demi_near_next(domain, k)) {
             const demi_span span = demi_span_of(w, d, k, 1);
+            const size_t at = (size_t)d*span.stride + (size_t)k;
             if (demi_near_remembers(w, d, k))
                 sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
-                                        span.memory, span.stride);
+                                        demi_near_part_key(w, at), span.memory, span.stride);
         }
         for (k = 0; k < domain->kept; k++)
             sum += demi_kept_hash(w, demi_kept_of(w, d) + k);
@@ -28121,7 +28851,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
         for (k = w->filed.start[i]; k < w->filed.start[i + 1]; k++) {
             const int32_t p = w->filed.partner[k];
             const uint32_t row = (uint32_t)i, other = (uint32_t)(p < 0 ? ~p : p);
-            sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other,
+            sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other, w->filed.part[k],
                                     w->filed.memory + (size_t)k*(size_t)w->filed.stride, 1);
         }
     return demi_hash(h, &sum, sizeof sum);
@@ -31325,7 +32055,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     if (dem_contacts_each(world, demi_line_put, &l) < 0) return DEM_ERROR_ARGUMENT;
     l.room = l.count;
     l.count = 0;
-    l.stride = world->memory_stride;
+    l.stride = demi_memory_told(world);
     room = (size_t)l.room + 1;
     l.ends = (dem_real *)demi_alloc(world, (10 + (size_t)l.stride)*room, sizeof(dem_real));
     l.wall = (int32_t *)demi_alloc(world, room, sizeof(int32_t));
@@ -31815,7 +32545,7 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 19 };
+enum { DEMI_CHECKPOINT_VERSION = 20 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -32007,6 +32737,10 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     int p, e, l;
     demi_visit(s, w->near.a + from, 4*all);
     demi_visit(s, w->near.b + from, 4*all);
+    if (w->effects.clustered) {
+        demi_visit(s, w->near.ball_a + from, 4*remembering);
+        demi_visit(s, w->near.ball_b + from, 4*remembering);
+    }
     for (l = 0; l < 4; l++) {                   /* four stretches, with unused entries between */
         const int begin = l == 0 ? 0 : l == 1 ? domain->near_cross
             : l == 2 ? domain->near_shaped : domain->near_shaped_cross;
@@ -32076,6 +32810,7 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
     demi_visit(s, w->filed.partner, (size_t)w->filed.count*4);
+    demi_visit(s, w->filed.part, (size_t)w->filed.count*4);
     demi_visit(s, w->filed.memory,
                (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }
@@ -32543,6 +33278,8 @@ static int demi_numbers_check(const demi_reader *r) {
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
+             t->effects.clustered < 0 || t->effects.clustered > 1 ||
+             (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
              t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "laws in force", -1);
@@ -32587,8 +33324,9 @@ static int demi_domain_check(const demi_reader *r, int d) {
            demi_left(r, o->near_shaped_end, 8) &&
            o->near_cross == (o->near_own + group - 1)/group*group &&
            o->near_shaped == (o->near_end + group - 1)/group*group &&
-           o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
-           o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross;
+           (t->effects.clustered ||
+            (o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
+             o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross));
 }
 /* Checks all domains. Without a list, it limits their bodies to those that exist: the next rebuild
    starts from these limits. */
@@ -32660,6 +33398,14 @@ static int demi_bodies_sane(const demi_reader *r) {
     }
     return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
+/* True if the spheres of entry `at` of the pruned list belong to its bodies. */
+static int demi_balls_own(const dem_world *t, int at) {
+    const int32_t *start = t->bodies.centre_start;
+    const int a = t->near.a[at], b = t->near.b[at];
+    return !t->effects.clustered ||
+        (t->near.ball_a[at] >= start[a] && t->near.ball_a[at] < start[a + 1] &&
+         t->near.ball_b[at] >= start[b] && t->near.ball_b[at] < start[b + 1]);
+}
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
    be among the `count` candidates of this list, ascending. With shaped = 0 all pairs must be of two
    spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
@@ -32671,11 +33417,10 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
     int p, last = -1;
     for (p = begin; p < end; p++) {
         const int at = d*t->near.stride + p, k = t->near.k[at];
-        if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
-            t->near.b[at] != list->b[first + k] ||
-            shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])) ||
-            (!shaped && !demi_species_has(t, t->near.a[at])) ||
-            (!shaped && !demi_species_has(t, t->near.b[at])))
+        if (k < last || (k == last && (shaped || !t->effects.clustered)) || k >= count ||
+            t->near.a[at] != list->a[first + k] || t->near.b[at] != list->b[first + k] ||
+            shaped == demi_pair_of_balls(t, t->near.a[at], t->near.b[at]) ||
+            (!shaped && (!demi_balls_own(t, at) || !demi_species_has(t, (size_t)at))))
             return demi_lie(r, "neighbour pair of domain", d);
         last = k;
         t->near.k[at] = first + k;
@@ -32742,8 +33487,8 @@ static int demi_contacts_check(const demi_reader *r) {
         return demi_lie(r, "contact history of slot", t->filed.rows);
     for (k = 0; k < t->filed.count; k++) {
         const int32_t p = t->filed.partner[k], other = p < 0 ? ~p : p;
-        if (other >= t->bodies.slot_count) return demi_lie(r, "partner in the contact history, "
-                                                           "entry", k);
+        if (other >= t->bodies.slot_count || t->filed.part[k] < 0)
+            return demi_lie(r, "partner in the contact history, entry", k);
     }
     return 1;
 }
@@ -32878,10 +33623,11 @@ static int demi_twin_follow(dem_world *t) {
     if (!demi_walled_note(t)) return 0;
     if (!t->stage.pairs_changed) demi_species_lay(t);
     demi_species_vary(t);
-    if (t->bodies.shaped && !demi_centres_lay(t)) return 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int first = d*t->near.stride;
+        int run = 0;
+        t->domains[d].merging = 0;
         for (l = 0; l < 2; l++) {
             demi_list *list = l ? &t->cross : &t->own;
             const int begin = d*list->stride, count = l ? o->cross : o->own;
@@ -32891,14 +33637,18 @@ static int demi_twin_follow(dem_world *t) {
         for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
             const int a = t->near.a[first + k], b = t->near.b[first + k];
             t->near.image[first + k] = demi_pair_image(t, &p, a, b);
+            if (t->effects.clustered) t->near.on[first + k] = 1;
+            run = k && t->near.k[first + k] == t->near.k[first + k - 1] ? run + 1 : 1;
+            t->domains[d].merging = DEMI_MAX(t->domains[d].merging, run);
             if (!t->effects.uniform && !(t->stage.pairs_changed && demi_many_species(t)))
-                demi_near_coefs(t, &t->near, d, k, a, b);
+                demi_near_coefs(t, &t->near, d, k);
         }
         for (k = o->near_shaped; k < o->near_shaped_end; k++)
             t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
                                                        t->near.b[first + k]);
         demi_near_adopt(t, d);
     }
+    if (!demi_merging_reserve(t)) return 0;
     t->touching_valid = 0;
     demi_cross_index(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
@@ -32932,6 +33682,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
         !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
+    if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
+        return DEM_ERROR_MEMORY;
     if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
@@ -35589,6 +36341,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             if (mark != DEMI_ALL && marks[row] != mark && marks[other] != mark) continue;
             ok = demi_message_put(host, out, &row, sizeof row) &&
                  demi_message_put(host, out, &p, sizeof p) &&
+                 demi_message_put(host, out, &w->filed.part[k], sizeof p) &&
                  demi_message_put(host, out, w->filed.memory + (size_t)k*(size_t)stride,
                                  (size_t)stride*sizeof(dem_real));
             head.pairs++;
@@ -35641,7 +36394,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
 /* Adds `pairs` histories of a message to the filed ones, each at the end of its row. add: work
    array, the number of new entries of each row. */
 static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int pairs) {
-    const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
+    const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 3*sizeof(int32_t) + per;
     int32_t *start = w->filed.start, row, shift = pairs;
     int k;
     if (!pairs) return;
@@ -35657,6 +36410,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
         if (!n || !shift) continue;
         memmove(w->filed.partner + begin + shift, w->filed.partner + begin,
                 (size_t)n*sizeof(int32_t));
+        memmove(w->filed.part + begin + shift, w->filed.part + begin, (size_t)n*sizeof(int32_t));
         memmove(w->filed.memory + (size_t)(begin + shift)*(size_t)w->filed.stride,
                 w->filed.memory + (size_t)begin*(size_t)w->filed.stride, (size_t)n*per);
     }
@@ -35665,6 +36419,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
         demi_unpack(&from, &row, sizeof row);
         to = start[row + 1] - add[row]--;
         demi_unpack(&from, &w->filed.partner[to], sizeof(int32_t));
+        demi_unpack(&from, &w->filed.part[to], sizeof(int32_t));
         demi_unpack(&from, w->filed.memory + (size_t)to*(size_t)w->filed.stride, per);
     }
     w->filed.count += pairs;
@@ -35675,7 +36430,7 @@ static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_hea
     demi_domain *first = &w->domains[0];
     if (!h->pairs && !h->contacts) return;
     demi_pairs_unpack(w, add, from, h->pairs);
-    from += (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
+    from += (size_t)h->pairs*(3*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
         demi_unpack(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
     first->kept += h->contacts;

@@ -21,7 +21,8 @@
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
        >>maths             vectors, poses, random numbers
-       >>layout            data structures of the world
+       >>layout            data structures: lists, contacts, walls, feeds, joints
+       >>state             the state of a world
        >>memory            arrays of each body, errors, allocation
        >>rows              a row for each field of a desc: its limits and what is done with it
      law/ - contact laws and materials
@@ -29,9 +30,11 @@
        >>materials         materials, the pair table, damping from restitution
      body/ - shapes of grains, the grains, and how they move
        >>shapes            ellipsoids and clusters of spheres: mass properties, support points
+       >>balls             spheres of clusters, in their present orientations
        >>closed            inside and outside of a mesh: shells, open edges, flipped triangles
        >>hulls             convex polyhedra: hull of points, faces, mass properties
        >>unions            several shapes as one body; polygons of planar worlds
+       >>filed             contact histories between two lists, by slot
        >>bodies            grains: slots, arrays, insertion, removal
        >>integrators       kick, drift and prediction; rotation
      surface/ - walls
@@ -61,6 +64,7 @@
        >>meets             contacts of two bodies, by their shapes
        >>kept              contacts other than sphere on sphere: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
+       >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
        >>joints            hinges, ball joints, motors
@@ -173,14 +177,17 @@
 #include "core/platform.h"
 #include "core/maths.h"
 #include "core/layout.h"
+#include "core/state.h"
 #include "core/memory.h"
 #include "core/rows.h"
 #include "law/laws.h"
 #include "law/materials.h"
 #include "body/shapes.h"
+#include "body/balls.h"
 #include "body/closed.h"
 #include "body/hulls.h"
 #include "body/unions.h"
+#include "body/filed.h"
 #include "body/bodies.h"
 #include "body/integrators.h"
 #include "surface/facets.h"
@@ -207,6 +214,7 @@
 #include "contact/meets.h"
 #include "contact/kept.h"
 #include "contact/kept-respond.h"
+#include "contact/members.h"
 #include "impulse/impulses.h"
 #include "impulse/joints.h"
 #include "impulse/joints-solved.h"

@@ -76,6 +76,9 @@ static const refused_field refused_fields[] = {
     {"dem_motion", "function", offsetof(dem_motion, function), FIELD_POINTER, sizeof(((dem_motion *)0)->function)},
     {"dem_motion", "user", offsetof(dem_motion, user), FIELD_POINTER, sizeof(((dem_motion *)0)->user)},
     {"dem_motion", "ramp", offsetof(dem_motion, ramp), FIELD_DOUBLE, sizeof(((dem_motion *)0)->ramp)},
+    {"dem_motion", "load", offsetof(dem_motion, load), FIELD_REAL, sizeof(((dem_motion *)0)->load)},
+    {"dem_motion", "area", offsetof(dem_motion, area), FIELD_REAL, sizeof(((dem_motion *)0)->area)},
+    {"dem_motion", "travel", offsetof(dem_motion, travel), FIELD_REAL, sizeof(((dem_motion *)0)->travel)},
     {"dem_motion", "table", offsetof(dem_motion, table), FIELD_POINTER, sizeof(((dem_motion *)0)->table)},
     {"dem_motion", "table_count", offsetof(dem_motion, table_count), FIELD_INT, sizeof(((dem_motion *)0)->table_count)},
     {"dem_motion", "table_repeats", offsetof(dem_motion, table_repeats), FIELD_INT, sizeof(((dem_motion *)0)->table_repeats)},
@@ -188,6 +191,7 @@ TAKE_OUT(dem_finding)
 TAKE_CONST(dem_trials_desc)
 TAKE_OUT(dem_trials)
 TAKE_OUT(dem_contact_info)
+TAKE_OUT(dem_servo)
 TAKE_CONST(dem_field_desc)
 TAKE_OUT(dem_field_data)
 TAKE_OUT(dem_field_cell)
@@ -773,6 +777,12 @@ static int call_dem_candidates_rebuild(refuser *r) {
     return dem_candidates_rebuild(r->world) == DEM_OK;
 }
 
+static int call_dem_wall_servo_get(refuser *r) {
+    dem_wall wall = take_dem_wall(r, 2, "wall");
+    dem_servo *servo = take_out_dem_servo(r, 3, "servo");
+    return dem_wall_servo_get(r->world, wall, servo) == DEM_OK;
+}
+
 static int call_dem_field_add(refuser *r) {
     const dem_field_desc *desc = take_const_dem_field_desc(r, 2, "desc");
     return dem_field_add(r->world, desc).id != 0;
@@ -1111,6 +1121,7 @@ static const refused_call refused_calls[] = {
     {"dem_bonds_make", call_dem_bonds_make, 0},
     {"dem_candidates_get", call_dem_candidates_get, 1},
     {"dem_candidates_rebuild", call_dem_candidates_rebuild, 0},
+    {"dem_wall_servo_get", call_dem_wall_servo_get, 1},
     {"dem_field_add", call_dem_field_add, 0},
     {"dem_field_get", call_dem_field_get, 1},
     {"dem_field_cell_get", call_dem_field_cell_get, 1},

@@ -767,32 +767,19 @@ static const dem_real *demi_centres_of(const dem_world *w, int body) {
 /* Rotates the spheres of one cluster to its present orientation, once a step for all contacts. */
 static void demi_centres_rotate(dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
     const dem_real scale = demi_scale_of(w, body, shape);
-    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body];
-    int k;
-    for (k = 0; k < shape->count; k++, sphere += 4) {
-        demi_put(sphere, demi_scale(dem_quat_rotate(q, demi_at(shape->parts + 4*k)), scale));
-        sphere[3] = shape->parts[4*k + 3]*scale;
+    const dem_real *part = shape->parts;
+    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body], R[9];
+    double Q[9];
+    int k, e;
+    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), Q);
+    for (k = 0; k < 9; k++) R[k] = (dem_real)Q[k]*scale;
+    for (k = 0; k < shape->count; k++, sphere += 4, part += 4) {
+        DEMI_UNROLL
+        for (e = 0; e < 3; e++)
+            sphere[e] = R[3*e]*part[0] + R[3*e + 1]*part[1] + R[3*e + 2]*part[2];
+        sphere[3] = part[3]*scale;
     }
-}
-/* Computes the rotated spheres of all clusters. Returns 0 if memory ran out. */
-static int demi_centres_lay(dem_world *w) {
-    int32_t *start;
-    int i, n = 0;
-    if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
-    start = w->bodies.centre_start;
-    for (i = 0; i < w->bodies.count; i++) {
-        const demi_shape *shape = demi_shape_of(w, i);
-        start[i] = n;
-        if (shape && n > INT_MAX/8 - shape->count) return 0;
-        n += shape ? shape->count : 0;
-    }
-    if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1))) return 0;
-    w->bodies.centres_valid = 1;
-    for (i = 0; i < w->bodies.count; i++)
-        if (demi_shape_of(w, i) && demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
-    return 1;
 }
 static void demi_part_matrix(const demi_part *p, double *Q) {
     if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);

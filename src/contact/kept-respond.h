@@ -8,12 +8,6 @@
    to forces of bodies.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the largest inverse mass, 1/kg, with which a contact may find the body. It is used where
-   a stiffness depends on masses, and is also what the choice of the time step assumes. */
-static double demi_give_at_most(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    return (double)w->bodies.inv_mass[body]/(shape ? shape->light : 1);
-}
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
    the square root of m_eff (`root`). */
 static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
@@ -24,8 +18,8 @@ static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *ou
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     const double half = mill && grains ? 0.5 : 1;
     const int shaped = demi_shape_of(w, k->a) || (k->b >= 0 && demi_shape_of(w, k->b));
-    const double give = shaped ? demi_give_at_most(w, k->a) +
-        (k->b >= 0 ? demi_give_at_most(w, k->b) : 0) : 0;
+    const double give = shaped ? demi_body_give_at_most(w, k->a) +
+        (k->b >= 0 ? demi_body_give_at_most(w, k->b) : 0) : 0;
     demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
                              wall ? wall->material : w->bodies.material[k->b] - 1,
                              (double)k->r_eff, half*(shaped ? 1/give : (double)k->m_eff),
@@ -595,39 +589,34 @@ static void demi_kept_respond(dem_world *w, int d) {
     }
     if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
 }
-/* Clears the slots for forces on bodies of later work groups: contacts add to them. */
+/* Clears the slot of a candidate with a later work group: its contacts add to it. */
+static void demi_slot_clear(dem_world *w, int k) {
+    const size_t rates = demi_exchanges(w) ? (size_t)w->bodies.real_count : 0;
+    memset(w->cross_force + 6*(size_t)k, 0, 6*sizeof(dem_real));
+    if (rates) memset(w->cross_rate + rates*(size_t)k, 0, rates*sizeof(dem_real));
+}
+/* Clears the slots of all pairs of bodies that may have persistent contacts. */
 static void demi_kept_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
-    const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
-    const size_t first = (size_t)d*(size_t)w->cross.stride +
-                         (size_t)(domain->near_end - domain->near_cross);
-    const size_t rates = demi_exchanges(w) ? (size_t)w->bodies.real_count : 0;
-    if (pairs > 0) memset(w->cross_force + 6*first, 0, 6*(size_t)pairs*sizeof(dem_real));
-    if (pairs > 0 && rates)
-        memset(w->cross_rate + rates*first, 0, rates*(size_t)pairs*sizeof(dem_real));
+    int p;
+    for (p = domain->near_shaped_cross; p < domain->near_shaped_end; p++)
+        demi_slot_clear(w, w->near.k[d*w->near.stride + p]);
 }
 
 /* Adds the forces that pairs of earlier work groups left in slots for bodies of work group d. */
 static void demi_cross_gather(dem_world *w, int d) {
-    const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
-    const int stride = w->cross.stride;
-    int k, e, p, shaped, from = 0;
+    const int spins = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
+    int k, e;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
-        const dem_real *force;
-        size_t slot;
-        while (entry >= (from + 1)*stride) from++;
-        p = w->cross.place[entry] - 1;
-        if (p < 0) continue;
-        shaped = p >= w->domains[from].near_shaped;
-        p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
-        slot = (size_t)(from*stride + p - w->domains[from].near_cross);
-        force = w->cross_force + 6*slot;
+        const dem_real *force = w->cross_force + 6*(size_t)entry;
+        const int turning = spins || demi_shape_of(w, w->cross.a[entry]) || demi_shape_of(w, j/4);
+        if (!w->cross.place[entry]) continue;   /* not in the pruned list */
         for (e = 0; e < 3; e++) {
             w->bodies.force[j + e] += force[e];
-            if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
+            if (turning) w->bodies.torque[j + e] += force[3 + e];
         }
         for (e = 0; e < rates; e++)
-            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)rates*slot + (size_t)e];
+            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)(rates*entry + e)];
     }
 }

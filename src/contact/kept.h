@@ -473,17 +473,16 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
-    const dem_vec3 r = demi_near_way(w, (size_t)at);
+    const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
     const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
     const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);
     demi_kept *from = w->kept_next + w->kept_first[d] + first;
-    dem_real lone[2][4];
     const dem_real *x, *y;
     int na, nb, count;
     if (!(demi_dot(r, r) < far*far)) return;
-    x = demi_balls_of(w, a, lone[0], &na);
-    y = demi_balls_of(w, b, lone[1], &nb);
+    x = demi_balls_of(w, a, &na);
+    y = demi_balls_of(w, b, &nb);
     if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
@@ -636,7 +635,6 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     const int parts = demi_parts_count(w, body);
     demi_view v = demi_view_of(w, d, first, last);
     const dem_real *balls;
-    dem_real lone[4];
     int k, count;
     v.several = several;
     if (!demi_shape_of(w, body)) {
@@ -644,7 +642,7 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
         return;
     }
-    balls = demi_balls_of(w, body, lone, &count);
+    balls = demi_balls_of(w, body, &count);
     for (k = 0; k < parts; k++) {
         demi_part p;
         if (balls && demi_ball_clear(&v, demi_add(demi_at(w->bodies.pos + 4*body),
@@ -801,11 +799,11 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const dem_real *gap = w->wall_gap + d*w->wall_stride, gone = demi_walls_gone(w);
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
-    const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
+    if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
         while (k < walls && gap[k] > gone) k++; /* not close enough yet */
         a = k < walls ? body[k] : INT_MAX;
@@ -819,7 +817,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         for (; p < own_end && near_a[p] == a; p++)
             demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
+            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], old, (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
@@ -859,7 +857,7 @@ static int demi_kept_widen(dem_world *w) {
 static int demi_touch(dem_world *w) {
     int d, again;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
-    if (!w->wall_count && !w->bodies.shaped) return 1;
+    if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     demi_surfaces_follow(w);

@@ -52,11 +52,12 @@ typedef struct demi_tile {
 } demi_tile;
 /* Up to a tile of consecutive entries of the pruned neighbour list. */
 typedef struct demi_span {
-    const int32_t *a, *b;
+    const int32_t *a, *b, *k;      /* bodies; candidate (with a later work group: its slot) */
     const unsigned char *image;
     dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
     const int32_t *row;            /* of the table of species, or null */
     const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
+    const int32_t *ball;           /* of clusters: spheres of a, else null */
     size_t stride;
     int count;
 } demi_span;
@@ -67,10 +68,12 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     demi_span s;
     s.a = near->a + at;
     s.b = near->b + at;
+    s.k = near->k + at;
     s.image = near->image + at;
     s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
     s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
     s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
+    s.ball = 0;
     s.stride = stride;
     s.count = count;
     return s;
@@ -490,15 +493,17 @@ static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int 
     const dem_world *w = r->w;
     const int a = r->span->a[q], b = r->span->b[q];
     const demi_periods periods = demi_periods_of(w);
-    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
+    const dem_vec3 arm = r->span->ball
+        ? demi_at(w->bodies.centre + 4*r->span->ball[q]) : demi_v(0, 0, 0);
     c->who.a = dem_body_id_get(w, a);
     c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = x[3];
-    c->who.radius_b = y[3];
+    c->who.radius_a = ra;
+    c->who.radius_b = rb;
     c->who.mass_a = w->bodies.mass[a];
     c->who.mass_b = w->bodies.mass[b];
-    c->who.point = demi_place_of(&periods, demi_add(demi_at(x),
-        demi_scale(demi_rows_at(&t->gap, q), x[3]/(x[3] + y[3]))));
+    c->who.point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a), arm),
+        demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb))));
     c->who.time = w->clock.time;
     demi_who_reals(w, a, b, 0, rates, &c->who);
 }
@@ -644,11 +649,16 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.dt = dt;
     return r;
 }
+/* Returns the stage of force and torques. rolls: the laws return moments. */
+static demi_stage demi_answer_stage(const demi_run *r, int rolls) {
+    return !r->turning ? demi_stage_answer_bare
+        : rolls ? r->alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
+        : r->alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
+}
 /* Returns the run for contacts of two spheres. alike: for pairs of identical bodies; it gives the
    same bits as the general one. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const demi_stage whole = demi_whole_stage(w, alike);
-    const int rolls = w->laws.rolling->law != 0;
     demi_run r = demi_run_begin(w, dt);
     int k = 0;
     r.alike = alike;
@@ -661,9 +671,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     k = demi_run_laws(w, &r, k);
-    r.stage[k] = !r.turning ? demi_stage_answer_bare
-        : rolls ? r.alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
-        : r.alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
+    r.stage[k] = demi_answer_stage(&r, w->laws.rolling->law != 0);
     return r;
 }
 /* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
@@ -805,13 +813,15 @@ static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
     else demi_scatter(t, span, force, torque, 0, 0);
 }
-/* The same for pairs with later work groups: forces on b stay in slots, six reals each. */
+/* The same for pairs with later work groups: forces on b stay in slots `out`, six reals for each
+   candidate. */
 static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                                const demi_run *r, dem_real *DEMI_RESTRICT force,
-                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT out) {
+                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT slots) {
     const int second = r->parting ? 1 : 0;
     int q;
-    for (q = 0; q < span->count; q++, out += 6) {
+    for (q = 0; q < span->count; q++) {
+        dem_real *out = slots + 6*(size_t)span->k[q];
         dem_real *fa = DEMI_AT(force, span->a[q]), *ma = DEMI_AT(torque, span->a[q]);
         const dem_vec3 f = demi_row(t->force, q);
         fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
@@ -824,18 +834,19 @@ static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     }
 }
 
-/* Adds the rates that a law returned for user-defined numbers to both bodies. out: the first slot
-   for those of b, if b is of a later work group. */
+/* Adds the rates that a law returned for user-defined numbers to both bodies. out: the slots for
+   those of b, if b is of a later work group. */
 static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
                                        dem_real *out) {
     const int n = w->bodies.real_count;
     int q, k;
     for (q = 0; q < span->count; q++) {
-        dem_real *a = w->bodies.rates + n*span->a[q], *b = w->bodies.rates + n*span->b[q];
+        dem_real *a = w->bodies.rates + n*span->a[q];
+        dem_real *b = out ? out + (size_t)n*(size_t)span->k[q] : w->bodies.rates + n*span->b[q];
         const int touch = t->touch[q] > 0;
         for (k = 0; k < n; k++) {
             if (touch) a[k] += t->gains[q][k];
-            if (out) out[n*q + k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
+            if (out) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
             else if (touch) b[k] += t->gains[q][DEM_BODY_REALS + k];
         }
     }
@@ -864,27 +875,12 @@ static void demi_pairs(dem_world *w, int d) {
             demi_tile_tally(&tile, count, &tally);
             if (r->ranged) tally.contacts -= (dem_real)demi_tile_apart(&tile, count);
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
-            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque,
-                                w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
-                                                   (size_t)(p - begin)));
-            if (demi_exchanges(w))
-                demi_tile_rates(&tile, &span, w, !l ? 0 : w->cross_rate +
-                                (size_t)w->bodies.real_count*((size_t)d*(size_t)w->cross.stride +
-                                                              (size_t)(p - begin)));
+            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
+            if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
         }
     }
     domain->contacts = (int)tally.contacts;
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
-}
-
-/* Sets the force loop for the laws in force. Returns its name in reports. */
-static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = demi_pairs;
-#ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
-#endif
-    if (w->desc.law) return "your law, called";
-    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)

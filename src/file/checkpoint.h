@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 19 };
+enum { DEMI_CHECKPOINT_VERSION = 20 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -210,6 +210,10 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     int p, e, l;
     demi_visit(s, w->near.a + from, 4*all);
     demi_visit(s, w->near.b + from, 4*all);
+    if (w->effects.clustered) {
+        demi_visit(s, w->near.ball_a + from, 4*remembering);
+        demi_visit(s, w->near.ball_b + from, 4*remembering);
+    }
     for (l = 0; l < 4; l++) {                   /* four stretches, with unused entries between */
         const int begin = l == 0 ? 0 : l == 1 ? domain->near_cross
             : l == 2 ? domain->near_shaped : domain->near_shaped_cross;
@@ -279,6 +283,7 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
     demi_visit(s, w->filed.partner, (size_t)w->filed.count*4);
+    demi_visit(s, w->filed.part, (size_t)w->filed.count*4);
     demi_visit(s, w->filed.memory,
                (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }

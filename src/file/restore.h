@@ -155,6 +155,8 @@ static int demi_numbers_check(const demi_reader *r) {
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
+             t->effects.clustered < 0 || t->effects.clustered > 1 ||
+             (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
              t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "laws in force", -1);
@@ -199,8 +201,9 @@ static int demi_domain_check(const demi_reader *r, int d) {
            demi_left(r, o->near_shaped_end, 8) &&
            o->near_cross == (o->near_own + group - 1)/group*group &&
            o->near_shaped == (o->near_end + group - 1)/group*group &&
-           o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
-           o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross;
+           (t->effects.clustered ||
+            (o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
+             o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross));
 }
 /* Checks all domains. Without a list, it limits their bodies to those that exist: the next rebuild
    starts from these limits. */
@@ -272,6 +275,14 @@ static int demi_bodies_sane(const demi_reader *r) {
     }
     return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
+/* True if the spheres of entry `at` of the pruned list belong to its bodies. */
+static int demi_balls_own(const dem_world *t, int at) {
+    const int32_t *start = t->bodies.centre_start;
+    const int a = t->near.a[at], b = t->near.b[at];
+    return !t->effects.clustered ||
+        (t->near.ball_a[at] >= start[a] && t->near.ball_a[at] < start[a + 1] &&
+         t->near.ball_b[at] >= start[b] && t->near.ball_b[at] < start[b + 1]);
+}
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
    be among the `count` candidates of this list, ascending. With shaped = 0 all pairs must be of two
    spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
@@ -283,11 +294,10 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
     int p, last = -1;
     for (p = begin; p < end; p++) {
         const int at = d*t->near.stride + p, k = t->near.k[at];
-        if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
-            t->near.b[at] != list->b[first + k] ||
-            shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])) ||
-            (!shaped && !demi_species_has(t, t->near.a[at])) ||
-            (!shaped && !demi_species_has(t, t->near.b[at])))
+        if (k < last || (k == last && (shaped || !t->effects.clustered)) || k >= count ||
+            t->near.a[at] != list->a[first + k] || t->near.b[at] != list->b[first + k] ||
+            shaped == demi_pair_of_balls(t, t->near.a[at], t->near.b[at]) ||
+            (!shaped && (!demi_balls_own(t, at) || !demi_species_has(t, (size_t)at))))
             return demi_lie(r, "neighbour pair of domain", d);
         last = k;
         t->near.k[at] = first + k;
@@ -354,8 +364,8 @@ static int demi_contacts_check(const demi_reader *r) {
         return demi_lie(r, "contact history of slot", t->filed.rows);
     for (k = 0; k < t->filed.count; k++) {
         const int32_t p = t->filed.partner[k], other = p < 0 ? ~p : p;
-        if (other >= t->bodies.slot_count) return demi_lie(r, "partner in the contact history, "
-                                                           "entry", k);
+        if (other >= t->bodies.slot_count || t->filed.part[k] < 0)
+            return demi_lie(r, "partner in the contact history, entry", k);
     }
     return 1;
 }
@@ -490,10 +500,11 @@ static int demi_twin_follow(dem_world *t) {
     if (!demi_walled_note(t)) return 0;
     if (!t->stage.pairs_changed) demi_species_lay(t);
     demi_species_vary(t);
-    if (t->bodies.shaped && !demi_centres_lay(t)) return 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int first = d*t->near.stride;
+        int run = 0;
+        t->domains[d].merging = 0;
         for (l = 0; l < 2; l++) {
             demi_list *list = l ? &t->cross : &t->own;
             const int begin = d*list->stride, count = l ? o->cross : o->own;
@@ -503,14 +514,18 @@ static int demi_twin_follow(dem_world *t) {
         for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
             const int a = t->near.a[first + k], b = t->near.b[first + k];
             t->near.image[first + k] = demi_pair_image(t, &p, a, b);
+            if (t->effects.clustered) t->near.on[first + k] = 1;
+            run = k && t->near.k[first + k] == t->near.k[first + k - 1] ? run + 1 : 1;
+            t->domains[d].merging = DEMI_MAX(t->domains[d].merging, run);
             if (!t->effects.uniform && !(t->stage.pairs_changed && demi_many_species(t)))
-                demi_near_coefs(t, &t->near, d, k, a, b);
+                demi_near_coefs(t, &t->near, d, k);
         }
         for (k = o->near_shaped; k < o->near_shaped_end; k++)
             t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
                                                        t->near.b[first + k]);
         demi_near_adopt(t, d);
     }
+    if (!demi_merging_reserve(t)) return 0;
     t->touching_valid = 0;
     demi_cross_index(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
@@ -544,6 +559,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
         !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
+    if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
+        return DEM_ERROR_MEMORY;
     if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }

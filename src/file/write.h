@@ -418,7 +418,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     if (dem_contacts_each(world, demi_line_put, &l) < 0) return DEM_ERROR_ARGUMENT;
     l.room = l.count;
     l.count = 0;
-    l.stride = world->memory_stride;
+    l.stride = demi_memory_told(world);
     room = (size_t)l.room + 1;
     l.ends = (dem_real *)demi_alloc(world, (10 + (size_t)l.stride)*room, sizeof(dem_real));
     l.wall = (int32_t *)demi_alloc(world, room, sizeof(int32_t));

@@ -137,10 +137,10 @@ static int demi_law_known(const demi_law_row *rows, int kind) {
     return 0;
 }
 
-/* Returns the index of the real that stores whether a contact slides, and adds it to `memory`;
-   DEMI_MEMORY without static friction. */
-static int demi_laws_sliding(int *memory, int sticks) {
-    return sticks ? (*memory)++ : (int)DEMI_MEMORY;
+/* Appends a real to contact histories of `memory` reals, if needed, and returns its index;
+   DEMI_MEMORY if not. */
+static int demi_laws_append(int *memory, int needed) {
+    return needed ? (*memory)++ : (int)DEMI_MEMORY;
 }
 /* Sets the laws in force and lays out the contact history. sticks: 1 if a pair has static friction.
    */
@@ -154,7 +154,11 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
     laws->vectors = ((1 << 3*laws->tangent->vectors) - 1) |
                     ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
-    laws->at_sliding = demi_laws_sliding(&laws->memory, sticks && laws->tangent->law);
+    laws->at_sliding = demi_laws_append(&laws->memory, sticks && laws->tangent->law);
+}
+/* Returns the number of reals of a contact history that users and digests see. */
+static int demi_memory_told(const dem_world *w) {
+    return w->memory_stride - (demi_response_is(w, DEMI_LAWS) && w->laws.at_grip < DEMI_MEMORY);
 }
 /* Clears a result before the law is called. Member by member, because a memset would keep the
    struct in memory and prevent vectorisation. */

@@ -433,15 +433,15 @@ static void demi_press_rates(const dem_world *w, demi_press *press) {
         const demi_domain *domain = &w->domains[d];
         for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
             const demi_span span = demi_span_of(w, d, p, 1);
-            const dem_real *x = w->bodies.pos + 4*span.a[0], *y = w->bodies.pos + 4*span.b[0];
-            const dem_vec3 gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
-                                          demi_at(w->image_shift + span.image[0]));
-            const dem_real l = demi_length(gap), sum = x[3] + y[3];
+            const size_t at = (size_t)d*span.stride + (size_t)p;
+            const dem_vec3 gap = demi_near_way(w, at);
+            const dem_real ra = demi_near_radius(w, at, 0), rb = demi_near_radius(w, at, 1);
+            const dem_real l = demi_length(gap), sum = ra + rb;
             memset(&c, 0, sizeof c);
             c.range = demi_range(w, sum);
             c.overlap = sum - l;
             c.normal = demi_scale(gap, 1/DEMI_MAX(l, DEMI_TINY));
-            c.r_eff = x[3]*y[3]/sum;
+            c.r_eff = ra*rb/sum;
             if (c.overlap > -c.range) demi_press_relax(w, span.a[0], span.b[0], -1, &c, 1, press);
         }
         for (p = 0; p < domain->kept; p++) {
@@ -476,7 +476,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
             dem_real coef[DEMI_PAIR_COLUMNS];
             demi_pressed c;
-            if (!(l < sum) || !(l > 0)) continue;
+            if (!(l < sum) || !(l > 0) || demi_shape_of(w, a) || demi_shape_of(w, b)) continue;
             if (whole && !press[a].whole && !press[b].whole) continue;
             demi_span_coefs(w, &span, 0, coef);
             c.s = demi_stiffness_of(w, coef, (double)coef[DEMI_M_EFF], (double)(sum - l));

@@ -154,7 +154,7 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     int i, friction = 1, rolling = 1, sticks = 1;
     *any = 0;
     if (w->memory_stride) demi_pairs_rub(w, &friction, &rolling, &sticks);
-    for (i = 0; i < w->memory_stride; i++) {
+    for (i = 0; i < demi_memory_told(w); i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
         if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
@@ -172,13 +172,14 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     }
     return h;
 }
-/* Returns the digest of the contact history of two spheres in slots sa and sb, the same whichever
-   of them is a; 0 if the history is empty. */
-static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
+/* Returns the digest of the contact history of two spheres of the bodies in slots sa and sb, the
+   same whichever of them is a; 0 if the history is empty. part: as in demi_filed. */
+static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb, int32_t part,
                                  const dem_real *memory, size_t stride) {
     const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
     uint64_t one = demi_hash(DEMI_HASH_START, &lo, sizeof lo);
     int any;
+    if (part) one = demi_hash(one, &part, sizeof part);
     one = demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, stride, sa > sb, &any);
     return any ? one : 0;
 }
@@ -210,9 +211,10 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
              : domain->near_end; k < domain->near_end;
              k = demi_near_next(domain, k)) {
             const demi_span span = demi_span_of(w, d, k, 1);
+            const size_t at = (size_t)d*span.stride + (size_t)k;
             if (demi_near_remembers(w, d, k))
                 sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
-                                        span.memory, span.stride);
+                                        demi_near_part_key(w, at), span.memory, span.stride);
         }
         for (k = 0; k < domain->kept; k++)
             sum += demi_kept_hash(w, demi_kept_of(w, d) + k);
@@ -222,7 +224,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
         for (k = w->filed.start[i]; k < w->filed.start[i + 1]; k++) {
             const int32_t p = w->filed.partner[k];
             const uint32_t row = (uint32_t)i, other = (uint32_t)(p < 0 ? ~p : p);
-            sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other,
+            sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other, w->filed.part[k],
                                     w->filed.memory + (size_t)k*(size_t)w->filed.stride, 1);
         }
     return demi_hash(h, &sum, sizeof sum);

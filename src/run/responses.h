@@ -24,6 +24,12 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     dem_contact_force f;
     demi_calling was;
     int e;
+    if (w->effects.clustered) {
+        was = demi_look_calls(w, "a read of the contacts");
+        e = demi_members_info(w, d, p, out, gap);
+        demi_look_called(w, was);
+        return e;
+    }
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
@@ -54,9 +60,9 @@ typedef struct demi_response_row {
     void (*respond)(dem_world *w, int domain);  /* computes the forces of a domain's contacts, */
     void (*solve)(dem_world *w);                /* or of all contacts at once */
     void (*book)(dem_world *w);                 /* adds work and losses of a step to the ledger */
-    /* Returns 1 if the two bodies of entry p in a domain's pruned neighbour list act on each other,
-       or 0. If it returns 1 and `out` is not null, it also writes normal, overlap and force to
-       `out`, and the vector from the centre of a to that of b (m) to *gap. */
+    /* Returns 1 if the two spheres of entry p in a domain's pruned neighbour list act on each
+       other, or 0. If it returns 1 and `out` is not null, it also writes normal, overlap and force
+       to `out`, and the vector from the centre of sphere a to that of b (m) to *gap. */
     int (*info)(const dem_world *w, int domain, int p, dem_contact_info *out, dem_vec3 *gap);
 } demi_response_row;
 #define DEMI_RESPONSE_ROW(NAME, MEMORY, VECTORS, TRAITS, ...) {__VA_ARGS__},
@@ -72,7 +78,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
                               dem_vec3 *branch) {
     const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)p;
     const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const dem_real ra = demi_near_radius(w, at, 0), rb = demi_near_radius(w, at, 1);
     const demi_periods periods = demi_periods_of(w);
     dem_vec3 gap;
     if (!demi_responses[w->desc.response].info(w, d, p, out, &gap)) return 0;
@@ -80,7 +86,8 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     out->a = dem_body_id_get(w, a);
     out->b = dem_body_id_get(w, b);
     out->wall = 0;
-    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(gap, x[3]/(x[3] + y[3]))));
-    if (branch) *branch = gap;
+    out->point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a),
+        demi_near_arm(w, at, 0)), demi_scale(gap, ra/(ra + rb))));
+    if (branch) *branch = demi_near_bodies_way(w, at);
     return 1;
 }

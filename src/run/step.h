@@ -288,12 +288,12 @@ static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         const demi_kept *kept = demi_kept_of(w, d);
-        for (k = 0; k < domain->near_end; k++) {
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
             const int at = d*w->near.stride + k, a = w->near.a[at], b = w->near.b[at];
-            const dem_real p = w->bodies.pos[4*a + 3], q = w->bodies.pos[4*b + 3];
+            const dem_real p = demi_near_radius(w, (size_t)at, 0);
+            const dem_real q = demi_near_radius(w, (size_t)at, 1);
             const dem_real way = demi_length(demi_near_way(w, (size_t)at));
             const double deep = (double)((p + q - way)/DEMI_MIN(p, q));
-            if (k >= domain->near_own && k < domain->near_cross) continue;
             if (deep > most) { most = deep; *first = a; *second = b; }
         }
         for (k = 0; k < domain->kept; k++)

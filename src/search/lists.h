@@ -196,6 +196,9 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->balls, w->bodies.shaped ? n : 0) &&
+                   (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
+                    DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
+                    DEMI_GROW(w, near->hit, n))) &&
                    DEMI_GROW(w, near->memory, m) &&
                    (w->effects.uniform || (demi_many_species(w)
                        ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)

@@ -24,53 +24,82 @@
        With many species, each pair stores its own coefficients. Species are determined at each
        search. A grain that a feed inserts in between must belong to one of them
        (demi_species_known), otherwise lists are rebuilt. --- */
-static demi_species demi_species_of(const dem_world *w, int body) {
+static demi_species demi_species_of(const dem_world *w, int body, dem_real radius) {
     demi_species s;
-    s.radius = w->bodies.pos[4*body + 3];
+    s.radius = radius;
     s.mass = w->bodies.mass[body];
     s.inv_mass = w->bodies.inv_mass[body];
     s.material = w->bodies.material[body];
-    s.none = 0;
+    s.shape = demi_shape_of(w, body) ? w->bodies.shape[body] : 0;
     return s;
 }
-/* Returns the species of a sphere, species_count if it has none. Compares every bit: a radius that
-   differs in the last bit is another species. */
-static int demi_species_find(const dem_world *w, int body) {
-    const demi_species s = demi_species_of(w, body);
+/* Returns the row of a species in the table, species_count if it has none. Compares every bit: a
+   radius that differs in the last bit is another species. */
+static int demi_species_find(const dem_world *w, const demi_species *s) {
     int k;
     for (k = 0; k < w->effects.species_count; k++)
-        if (!memcmp(&w->effects.species[k], &s, sizeof s)) break;
+        if (!memcmp(&w->effects.species[k], s, sizeof *s)) break;
     return k;
 }
-/* True if coefficients for this body are available. False if a checkpoint contains species that do
-   not fit its bodies. */
-static int demi_species_has(const dem_world *w, int body) {
-    return demi_many_species(w) || demi_species_find(w, body) < w->effects.species_count;
+/* The species of the sphere on a side of entry `at` of the pruned list. */
+static demi_species demi_near_species(const dem_world *w, size_t at, int side) {
+    return demi_species_of(w, (side ? w->near.b : w->near.a)[at], demi_near_radius(w, at, side));
 }
-/* Determines the species of all spheres. species_count becomes DEMI_SPECIES + 1 if there are more
-   than the table holds. */
+/* True if coefficients for both spheres of an entry are available. False if a checkpoint contains
+   species that do not fit its bodies. */
+static int demi_species_has(const dem_world *w, size_t at) {
+    const demi_species one = demi_near_species(w, at, 0), other = demi_near_species(w, at, 1);
+    return demi_many_species(w) || (demi_species_find(w, &one) < w->effects.species_count &&
+                                    demi_species_find(w, &other) < w->effects.species_count);
+}
+/* Determines the species of all spheres, with springs also of those of clusters. species_count
+   becomes DEMI_SPECIES + 1 if there are more than the table holds. */
 static void demi_species_count(dem_world *w) {
     demi_in_force *e = &w->effects;
-    int i;
+    int i, k;
     e->species_count = 0;
-    for (i = 0; i < w->bodies.count && e->species_count <= DEMI_SPECIES; i++) {
-        if (demi_shape_of(w, i) || demi_species_has(w, i)) continue;
-        if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = demi_species_of(w, i);
-        e->species_count++;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        const int count = !shape ? 1 : e->clustered ? shape->count : 0;
+        for (k = 0; k < count && e->species_count <= DEMI_SPECIES; k++) {
+            const demi_species s = demi_species_of(w, i, shape
+                ? shape->parts[4*k + 3]*demi_scale_of(w, i, shape) : w->bodies.pos[4*i + 3]);
+            if (demi_species_find(w, &s) < e->species_count) continue;
+            if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = s;
+            e->species_count++;
+        }
     }
 }
+/* Returns the largest inverse mass, 1/kg, with which a contact may find a body: that of a cluster
+   with the smallest effective mass (demi_shape.light). Stiffnesses that depend on masses use it, as
+   does the choice of the time step. */
+static double demi_give_at_most(const dem_world *w, dem_real inv_mass, int shape) {
+    return (double)inv_mass/(shape ? w->shapes[shape - 1].light : 1);
+}
+static double demi_body_give_at_most(const dem_world *w, int body) {
+    return demi_give_at_most(w, w->bodies.inv_mass[body],
+                             demi_shape_of(w, body) ? w->bodies.shape[body] : 0);
+}
 /* Computes the coefficients of two species. For equal radii R* is exactly half the radius, so that
-   the result has the same bits as in a world of equal spheres. */
+   the result has the same bits as in a world of equal spheres. If one is of a cluster, the
+   effective mass differs from contact to contact: then cn and ct lack the part that depends on it,
+   and the two columns DEMI_CN_ROOT and DEMI_CT_ROOT hold its factors. */
 static void demi_species_coefs(const dem_world *w, const demi_species *a, const demi_species *b,
                                dem_real *coef) {
     const double ra = (double)a->radius, rb = (double)b->radius;
+    const double r_eff = ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2;
     const double sum = (double)a->inv_mass + (double)b->inv_mass;
     /* in that convention a fixed grain has a mass too */
     const double inv = w->desc.convention == DEM_CONVENTION_MILL
         ? 1/(double)a->mass + 1/(double)b->mass : sum;
-    demi_coefficients(w, a->material - 1, b->material - 1,
-                      ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 1/inv, 0, coef);
-    coef[DEMI_M_EFF] = (dem_real)(1/sum);
+    coef[DEMI_CN_ROOT] = coef[DEMI_CT_ROOT] = 0;
+    if (a->shape || b->shape)
+        demi_coefficients_rooted(w, a->material - 1, b->material - 1, r_eff,
+                                 1/(demi_give_at_most(w, a->inv_mass, a->shape) +
+                                    demi_give_at_most(w, b->inv_mass, b->shape)), 0, coef,
+                                 coef + DEMI_CN_ROOT);
+    else demi_coefficients(w, a->material - 1, b->material - 1, r_eff, 1/inv, 1/inv, 0, coef);
+    coef[DEMI_M_EFF] = a->shape || b->shape ? 0 : (dem_real)(1/sum);
 }
 /* Determines which columns of coefficients differ between pairs and are read by a law. With a table
    it compares the rows. With too many species these are the columns that depend on radii and, if
@@ -81,7 +110,9 @@ static void demi_species_vary(dem_world *w) {
     const int own = (1 << DEMI_COEFS) - (1 << DEMI_K_UN);
     int e, k, materials = 0;
     w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
-    if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF | 1 << DEMI_M_EFF);
+    if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF);
+    if (!demi_laws_sized(w) && !w->effects.clustered) w->species_vary &= ~(1 << DEMI_M_EFF);
+    if (!w->effects.clustered) w->species_vary &= ~(1 << DEMI_CN_ROOT | 1 << DEMI_CT_ROOT);
     if (demi_many_species(w)) {
         for (k = 0; k < w->bodies.count; k++)
             materials |= w->bodies.material[k]^w->bodies.material[0];
@@ -121,26 +152,31 @@ static void demi_species_lay(dem_world *w) {
         demi_species_coefs(w, &w->effects.species[k/n], &w->effects.species[k%n],
                            w->species_coef + DEMI_PAIR_COLUMNS*k);
 }
-/* Sets the row or the coefficients of entry p of work group d, the pair of spheres a and b. Only
-   needed if bodies differ. */
-static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
-    const demi_species one = demi_species_of(w, a), other = demi_species_of(w, b);
+/* Returns the number of columns of coefficients in use. */
+static int demi_coef_columns(const dem_world *w) {
+    return w->effects.clustered ? DEMI_PAIR_COLUMNS : DEMI_CN_ROOT;
+}
+/* Sets the row or the coefficients of entry p of work group d, a pair of spheres. Only needed if
+   bodies differ. */
+static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p) {
+    const size_t at = (size_t)d*(size_t)near->stride + (size_t)p;
+    const demi_species one = demi_near_species(w, at, 0), other = demi_near_species(w, at, 1);
     dem_real coef[DEMI_PAIR_COLUMNS], *to;
     int e;
     if (!demi_many_species(w)) {
-        near->row[d*near->stride + p] = demi_species_find(w, a)*w->effects.species_count +
-            demi_species_find(w, b);
+        near->row[at] = demi_species_find(w, &one)*w->effects.species_count +
+            demi_species_find(w, &other);
         return;
     }
     demi_species_coefs(w, &one, &other, coef);
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
+    for (e = 0; e < demi_coef_columns(w); e++) to[(size_t)e*(size_t)near->stride] = coef[e];
 }
 /* Copies the coefficients of entry `from` of a list to entry `to` of the same or another list. */
 static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int to,
                                  const demi_near *last, int from) {
     const size_t columns = DEMI_PAIR_COLUMNS, stride = (size_t)near->stride;
-    const size_t last_stride = (size_t)last->stride;
+    const size_t last_stride = (size_t)last->stride, used = (size_t)demi_coef_columns(w);
     dem_real *m;
     const dem_real *old;
     size_t e;
@@ -151,7 +187,7 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
     }
     m = near->coef + (size_t)d*columns*stride + (size_t)to;
     old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
-    for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
+    for (e = 0; e < used; e++) m[e*stride] = old[e*last_stride];
 }
 /* Selects the pairs of spheres of the pruned list from a group's candidates, without a branch.
    Writes them from entry p on and returns their end, or -1 if there is no room. mixed: 1 if there
@@ -178,10 +214,6 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
     }
     return k < end ? -1 : p;
 }
-static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
-    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
-        : demi_near_pick_as(w, list, begin, end, d, p, 0);
-}
 /* Upper bound, m/s, on the approach speed of the surfaces of two bodies, rotation included. */
 static dem_real demi_approach(const dem_world *w, int a, int b) {
     const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
@@ -199,14 +231,11 @@ static dem_real demi_near_cut(const dem_world *w, int a, int b) {
         (dem_real)w->margin.span*demi_approach(w, a, b);
 }
 /* Returns the spheres of a body, rows of centre (relative to the body's) and radius, m, and their
-   number. lone: storage for the row of a sphere. Returns null if the body has other parts. */
-DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
+   number; null if the body has other parts. */
+DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, int *count) {
     const demi_shape *shape = demi_shape_of(w, body);
     *count = shape ? shape->count : 1;
-    if (shape) return shape->count ? demi_centres_of(w, body) : 0;
-    lone[0] = lone[1] = lone[2] = 0;
-    lone[3] = w->bodies.pos[4*body + 3];
-    return lone;
+    return *count ? demi_centres_of(w, body) : 0;
 }
 /* True if the gap of two bodies, or of two of their parts, is below `cut`, m. shift: m, to the
    image of b. */
@@ -214,11 +243,10 @@ static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *sh
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
     const dem_real far_b = w->bodies.pos[4*b + 3] + cut;
-    dem_real lone[2][4];
     const dem_real *x, *y;
     int na, nb, i, j;
-    x = demi_balls_of(w, a, lone[0], &na);
-    y = demi_balls_of(w, b, lone[1], &nb);
+    x = demi_balls_of(w, a, &na);
+    y = demi_balls_of(w, b, &nb);
     if (!x || !y) return demi_bodies_gap(w, a, b, shift, cut) < cut;
     for (i = 0; i < na; i++, x += 4) {
         const dem_vec3 to = demi_sub(r, demi_at(x));
@@ -232,7 +260,56 @@ static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *sh
     }
     return 0;
 }
-/* As demi_near_pick for pairs other than two spheres: tests the gap of their surfaces. */
+/* True if a body consists of spheres. */
+static int demi_has_balls(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape || shape->count;
+}
+/* True if the pruned list holds the pairs of spheres of two bodies, instead of the two bodies. */
+static int demi_pair_of_balls(const dem_world *w, int a, int b) {
+    return w->effects.clustered ? demi_has_balls(w, a) && demi_has_balls(w, b)
+        : !demi_shape_of(w, a) && !demi_shape_of(w, b);
+}
+/* The same with clusters: selects the pairs of spheres of two bodies that may touch. */
+static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, int end, int d,
+                                int p) {
+    const int room = w->near.stride - DEMI_LANES, first = d*w->near.stride;
+    int k, i, j;
+    for (k = begin; k < end; k++) {
+        const int a = list->a[k], b = list->b[k];
+        const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                             demi_at(w->bodies.pos + 4*a)),
+                                    demi_at(w->image_shift + list->image[k]));
+        const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
+        const dem_real all_a = w->bodies.pos[4*a + 3] + far_b;
+        const int32_t *start = w->bodies.centre_start;
+        if (!(demi_dot(r, r) < all_a*all_a) || !demi_has_balls(w, a) || !demi_has_balls(w, b))
+            continue;
+        for (i = start[a]; i < start[a + 1]; i++) {
+            const dem_real *x = w->bodies.centre + 4*i;
+            const dem_vec3 to = demi_sub(r, demi_at(x));
+            const dem_real all = x[3] + far_b;
+            if (!(demi_dot(to, to) < all*all)) continue;
+            for (j = start[b]; j < start[b + 1]; j++) {
+                const dem_real *y = w->bodies.centre + 4*j;
+                const dem_vec3 gap = demi_add(to, demi_at(y));
+                const dem_real near_by = x[3] + y[3] + cut;
+                if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
+                if (p >= room) return -1;
+                w->near.ball_a[first + p] = i;
+                w->near.ball_b[first + p] = j;
+                w->near.k[first + p++] = k;
+            }
+        }
+    }
+    return p;
+}
+static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
+    if (w->effects.clustered) return demi_near_pick_balls(w, list, begin, end, d, p);
+    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+        : demi_near_pick_as(w, list, begin, end, d, p, 0);
+}
+/* As demi_near_pick for all other pairs: tests the gap of their surfaces. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
     const int room = w->near.stride - DEMI_LANES;
@@ -241,7 +318,7 @@ static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin,
     for (k = begin; k < end && p < room; k++) {
         const int a = list->a[k], b = list->b[k];
         dem_real cut;
-        if (!demi_shape_of(w, a) && !demi_shape_of(w, b)) continue;
+        if (demi_pair_of_balls(w, a, b)) continue;
         cut = demi_near_cut(w, a, b);
         out[p] = k;
         p += demi_bodies_near(w, a, b, w->image_shift + list->image[k], cut);
@@ -265,10 +342,9 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
         demi_near_coefs_copy(w, near, d, p, last, from);
         return;
     }
-    if (!w->effects.uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
+    if (!w->effects.uniform) demi_near_coefs(w, near, d, p);
     for (e = 0; e < keep; e++) m[e*stride] = 0;
-    if (!keep || !w->near_fresh ||
-        (from = demi_carry_find(w, near->a[at], near->b[at], &flip)) < 0) return;
+    if (!keep || !w->near_fresh || (from = demi_carry_find(w, (size_t)at, &flip)) < 0) return;
     for (e = 0; e < keep; e++) {
         const dem_real value = w->filed.memory[(size_t)from*keep + e];
         m[e*stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
@@ -293,6 +369,10 @@ static void demi_near_adopt(dem_world *w, int d) {
             near->b[at + p] = near->b[at + end - 1];
             near->k[at + p] = near->k[at + end - 1];
             near->image[at + p] = near->image[at + end - 1];
+            if (w->effects.clustered) {
+                near->ball_a[at + p] = near->ball_a[at + end - 1];
+                near->ball_b[at + p] = near->ball_b[at + end - 1];
+            }
             for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
             demi_near_coefs_copy(w, near, d, p, near, end - 1);
         }
@@ -303,8 +383,8 @@ static void demi_near_adopt(dem_world *w, int d) {
         demi_list *list = l ? &w->cross : &w->own;
         const int count = l ? domain->cross : domain->own;
         if (count) memset(list->place + d*list->stride, 0, (size_t)count*sizeof *list->place);
-        for (p = l ? domain->near_cross : 0; p < (l ? domain->near_end : domain->near_own); p++)
-            list->place[near->k[d*near->stride + p]] = p + 1;
+        for (p = (l ? domain->near_end : domain->near_own) - 1; p >= (l ? domain->near_cross : 0);
+             p--) list->place[near->k[d*near->stride + p]] = p + 1;     /* the first of several */
         for (p = l ? domain->near_shaped_cross : domain->near_shaped;
              p < (l ? domain->near_shaped_end : domain->near_shaped_cross); p++)
             list->place[near->k[d*near->stride + p]] = p + 1;
@@ -389,25 +469,46 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
    group. Returns the new end. */
 static int demi_near_part(const dem_world *w, const demi_list *list, int d, int first, int end) {
     int32_t *out = w->near.k + d*w->near.stride;
-    int q, left = first;
+    int q, left = first, last = -1, parted = 0;
     if (!w->sheeted) return end;
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
-        if ((w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b, demi_add(demi_sub(
-            demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
-            demi_at(w->image_shift + list->image[k])))) continue;
+        if (k != last)
+            parted = (w->walled[a] || w->walled[b]) && demi_sheet_between(w, a, b,
+                demi_add(demi_sub(demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a)),
+                         demi_at(w->image_shift + list->image[k])));
+        last = k;
+        if (parted) continue;
+        if (w->effects.clustered) {
+            w->near.ball_a[d*w->near.stride + left] = w->near.ball_a[d*w->near.stride + q];
+            w->near.ball_b[d*w->near.stride + left] = w->near.ball_b[d*w->near.stride + q];
+        }
         out[left++] = k;
     }
     return left;
 }
 
+/* Returns the entry in the previous list of the pair of spheres at index `at` of the present one,
+   or -1. Those of one candidate are adjacent. */
+static int demi_near_was(const dem_world *w, const demi_list *list, int d, int at) {
+    const demi_near *last = &w->near_last;
+    const int k = w->near.k[at], base = d*last->stride;
+    const int end = base + w->domains[d].near_end;
+    int p = base + list->place[k] - 1;
+    if (!w->effects.clustered || p < base) return p - base;
+    for (; p < end && last->k[p] == k; p++)
+        if (last->ball_a[p] == w->near.ball_a[at] && last->ball_b[p] == w->near.ball_b[at])
+            return p - base;
+    return -1;
+}
 /* Builds the pruned list of a work group: first the pairs of spheres, then the others; in both, the
    pairs inside the group, then those with later groups. Sets `overflow` if there is no room. */
 static void demi_domain_near(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_near *near = &w->near;
-    int l, q, p = 0;
+    int l, q, p = 0, run = 0;
     domain->overflow &= ~8;
+    domain->merging = 0;
     for (l = 0; l < 2; l++) {
         const demi_list *list = l ? &w->cross : &w->own;
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
@@ -420,8 +521,11 @@ static void demi_domain_near(dem_world *w, int d) {
             near->a[at] = list->a[k];
             near->b[at] = list->b[k];
             near->image[at] = list->image[k];
+            if (w->effects.clustered) near->on[at] = 1;
+            run = q > first && near->k[at - 1] == k ? run + 1 : 1;
+            domain->merging = DEMI_MAX(domain->merging, run);
             if (w->memory_stride || !w->effects.uniform)
-                demi_near_recall(w, d, q, w->near_fresh ? -1 : list->place[k] - 1);
+                demi_near_recall(w, d, q, w->near_fresh ? -1 : demi_near_was(w, list, d, at));
         }
         if (l) domain->near_next_end = p;
         else domain->near_next_own = p;
@@ -531,6 +635,15 @@ static void demi_near_pass(dem_world *w, double change) {
 static int demi_near_due(const dem_world *w) {
     return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
 }
+/* Allocates the contacts of two bodies that >>members may merge. Returns 0 if memory runs out. */
+static int demi_merging_reserve(dem_world *w) {
+    int d, most = 0;
+    for (d = 0; d < w->domain_count; d++) most = DEMI_MAX(most, w->domains[d].merging);
+    if (w->laws.at_grip == DEMI_MEMORY) return 1;
+    if (!DEMI_GROW(w, w->merging, (size_t)w->domain_count*(size_t)most)) return 0;
+    w->merging_most = most;
+    return 1;
+}
 /* Builds the pruned list; fresh: 1 after a search. Returns 0 if memory runs out; the previous list
    then stays in use. */
 static int demi_near_make(dem_world *w, int fresh) {
@@ -558,6 +671,11 @@ static int demi_near_make(dem_world *w, int fresh) {
         w->near = swap;
         return 0;
     } while (again);
+    if (!demi_merging_reserve(w)) {
+        w->near_last = w->near;
+        w->near = swap;
+        return 0;
+    }
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
         demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);

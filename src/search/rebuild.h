@@ -16,9 +16,11 @@ static void demi_effects_memory(dem_world *w) {
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
     if (w->desc.law) {
         w->laws.memory = w->desc.law_memory;
-        w->laws.at_sliding = demi_laws_sliding(&w->laws.memory, w->effects.sticks);
+        w->laws.at_sliding = demi_laws_append(&w->laws.memory, w->effects.sticks);
         w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
     }
+    w->laws.at_grip = demi_laws_append(&w->laws.memory, w->effects.clustered &&
+        w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED);
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
@@ -52,12 +54,20 @@ static double demi_reach_of(const dem_world *w, double radius) {
     }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
+/* True with springs if the scene has a cluster of spheres, whether or not a body has that shape:
+   all slabs must answer the same. */
+static int demi_clustered(const dem_world *w) {
+    int k, any = 0;
+    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count > 0;
+    return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
+}
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
     demi_pairs_rub(w, &friction, &rolling, &sticks);
     w->effects.sticks = sticks;
     w->normal = (int)w->desc.normal_law;
+    w->effects.clustered = demi_clustered(w);
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
     w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
@@ -78,7 +88,7 @@ static void demi_effects(dem_world *w) {
         w->effects.tight |= shape && shape->radius > 2*shape->equal;
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
-        !w->effects.fixed_count;
+        !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -223,7 +233,7 @@ static int demi_join_lack(const dem_world *w) {
    and only if all bodies are spheres. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
     if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
-        w->bodies.ghost) return 0;
+        w->effects.clustered || w->bodies.ghost) return 0;
     return demi_species_known(w, material, radius);
 }
 /* True if the two belong in the pruned list, by the test of demi_near_pick. */
@@ -279,6 +289,8 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
     for (k = 0; k < now->memory; k++) m[k] = k < own ? old[k] : 0;
     if (was->at_sliding < DEMI_MEMORY && now->at_sliding < DEMI_MEMORY)
         m[now->at_sliding] = old[was->at_sliding];
+    if (was->at_grip < DEMI_MEMORY && now->at_grip < DEMI_MEMORY)
+        m[now->at_grip] = old[was->at_grip];
     if (own >= 0) return;
     for (k = 0; k < now->tangent->memory && was->tangent == now->tangent; k++) m[k] = old[k];
     for (k = 0; k < now->rolling->memory && was->rolling == now->rolling; k++)
@@ -442,7 +454,8 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
     demi_bodies_sort(w);
     if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
-    if ((w->bodies.shaped && !demi_centres_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
+    if (((w->bodies.shaped || w->effects.clustered) && !demi_centres_lay(w)) ||
+        (w->levels.count && !demi_levels_lay(w)))
         return demi_no_memory(w, call);
     demi_image_shifts(w);
     demi_domains_deal(w);

@@ -127,16 +127,19 @@ static void demi_bodies_sort(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) w->bodies.slot_index[w->bodies.slot[i]] = i;
 }
 
-/* Returns the index of a pair's saved contact history (demi_filed), or -1. *flip receives 1 if a
-   and b have exchanged their roles since. */
-static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
-    const int32_t sa = (int32_t)w->bodies.slot[a], sb = (int32_t)w->bodies.slot[b];
+/* Returns the index of the saved contact history (demi_filed) of entry `at` of the pruned list, or
+   -1. *flip receives 1 if a and b have exchanged their roles since. */
+static int demi_carry_find(const dem_world *w, size_t at, int *flip) {
+    const int32_t sa = (int32_t)w->bodies.slot[w->near.a[at]];
+    const int32_t sb = (int32_t)w->bodies.slot[w->near.b[at]];
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
+    const int32_t part = demi_near_part_key(w, at);
     int k;
     if (!w->filed.count || row >= w->filed.rows) return -1;
     if (w->filed.stride != w->memory_stride) return -1;     /* saved under other laws: invalid */
     for (k = w->filed.start[row]; k < w->filed.start[row + 1]; k++) {
         const int32_t p = w->filed.partner[k];
+        if (w->filed.part[k] != part) continue;
         if (p == other) { *flip = sa > sb; return k; }
         if (p == ~other) { *flip = sa < sb; return k; }
     }

@@ -188,6 +188,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             if (mark != DEMI_ALL && marks[row] != mark && marks[other] != mark) continue;
             ok = demi_message_put(host, out, &row, sizeof row) &&
                  demi_message_put(host, out, &p, sizeof p) &&
+                 demi_message_put(host, out, &w->filed.part[k], sizeof p) &&
                  demi_message_put(host, out, w->filed.memory + (size_t)k*(size_t)stride,
                                  (size_t)stride*sizeof(dem_real));
             head.pairs++;
@@ -240,7 +241,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
 /* Adds `pairs` histories of a message to the filed ones, each at the end of its row. add: work
    array, the number of new entries of each row. */
 static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int pairs) {
-    const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
+    const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 3*sizeof(int32_t) + per;
     int32_t *start = w->filed.start, row, shift = pairs;
     int k;
     if (!pairs) return;
@@ -256,6 +257,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
         if (!n || !shift) continue;
         memmove(w->filed.partner + begin + shift, w->filed.partner + begin,
                 (size_t)n*sizeof(int32_t));
+        memmove(w->filed.part + begin + shift, w->filed.part + begin, (size_t)n*sizeof(int32_t));
         memmove(w->filed.memory + (size_t)(begin + shift)*(size_t)w->filed.stride,
                 w->filed.memory + (size_t)begin*(size_t)w->filed.stride, (size_t)n*per);
     }
@@ -264,6 +266,7 @@ static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int 
         demi_unpack(&from, &row, sizeof row);
         to = start[row + 1] - add[row]--;
         demi_unpack(&from, &w->filed.partner[to], sizeof(int32_t));
+        demi_unpack(&from, &w->filed.part[to], sizeof(int32_t));
         demi_unpack(&from, w->filed.memory + (size_t)to*(size_t)w->filed.stride, per);
     }
     w->filed.count += pairs;
@@ -274,7 +277,7 @@ static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_hea
     demi_domain *first = &w->domains[0];
     if (!h->pairs && !h->contacts) return;
     demi_pairs_unpack(w, add, from, h->pairs);
-    from += (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
+    from += (size_t)h->pairs*(3*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
         demi_unpack(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
     first->kept += h->contacts;

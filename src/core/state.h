@@ -1,0 +1,424 @@
+/* ---------------------------------------------------------------------------------------------
+   >>state
+   The state of a world: its numbers, by the part that owns them, its bodies, and the world itself,
+   which owns everything else. Every array that grows is a field here. DEMI_GROW enlarges it and
+   keeps its contents, or leaves it unchanged and reports that memory ran out.
+   --------------------------------------------------------------------------------------------- */
+/* --- the numbers of a world, by the part that owns them. These structs are saved and copied whole,
+       so a new field is saved too. Pointers and derived data do not belong here. --- */
+
+/* Why an automatic time step is shorter than t_c/50, for the report. */
+enum { DEMI_HELD_NOT, DEMI_HELD_DASHPOT, DEMI_HELD_SPIN, DEMI_HELD_PRESSED, DEMI_HELD_RATE };
+typedef struct demi_held {
+    double from, limit, contacts;  /* t_c/50, s; the limit, s (of a spin: rad/s); number of contacts
+                                      that press the body */
+    int32_t by, body;              /* DEMI_HELD_...; the body's id, 0: unknown */
+} demi_held;
+typedef struct demi_timing {       /* >>step, >>advice */
+    double time;                   /* s: since.time + (steps - since.steps) since.dt */
+    demi_since since;              /* when the present dt came into force */
+    uint64_t steps, rebuilds;
+    uint64_t last_rebuild;         /* step */
+    double run_end;                /* s: requested end of the last run, */
+    uint64_t run_steps;            /* and the step at which it ended */
+    dem_real dt;                   /* s */
+    double half_kick;              /* s, half kick of the present step */
+    double assumed_speed;          /* m/s, impact speed that dt was chosen for */
+    uint64_t press_due;            /* step of the next search for pressed bodies (>>advice) */
+    uint64_t press_since;          /* step of the last change of the scene */
+    demi_held held;
+} demi_timing;
+/* Which of the data that a step needs are valid. A change of the scene clears dt_valid,
+   forces_valid and primed; adding or removing bodies also clears list_valid. dem_world_step
+   restores what is missing, in the order 1 to 4: */
+typedef struct demi_stages {
+    int dt_valid;                  /* 1: the time step suits the scene */
+    int list_valid;                /* 2: the candidate lists fit the bodies */
+    int pairs_changed;             /* properties of a pair of materials have changed since */
+    int forces_valid;              /* 3: forces belong to the present positions and velocities */
+    int primed;                    /* 4: half-step velocities belong to the previous half step */
+    int moved;                     /* bodies have moved in a step whose forces are missing, because
+                                      memory ran out */
+    int synced;                    /* no half kick is pending: see demi_finish */
+    int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
+    /* 1: a rebuild that ran out of memory had chosen the skin, or the span of the pruned list. The
+       next try keeps them, because the counts behind the choice may be lost */
+    int skin_chosen, near_chosen;
+} demi_stages;
+typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are valid */
+    double skin, gone, walls_gone; /* m: skin; largest displacement of a body and of a wall point
+                                      since the rebuild */
+    double step_gone;              /* m, largest displacement of any point of a body in a step */
+    double skin_auto;              /* m: skin proposed by the cost model; 0: none yet */
+    double span, age;              /* s: intended lifetime of the pruned list; its age */
+    double slack;                  /* m: allowance in the pruned list for changes of velocity */
+    double change, last_change;    /* m/s: bound on the change of a velocity since the list was
+                                      built; in the last step */
+    double creep;                  /* m: bound on the approach of two bodies by these changes */
+    double reach;                  /* m: largest gap at which a law is called; 0: only in contact */
+} demi_margin;
+typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
+    int tangent, rolling;          /* laws in force */
+    int uniform;                   /* one radius, one mass, one material, no fixed body */
+    int fixed_count;
+    int tight;                     /* some body is so long that candidates are tested by more than
+                                      bounding spheres */
+    int sticks;                    /* a pair has static friction above its sliding friction */
+    int clustered;                 /* springs, and the scene has a cluster of spheres: pairs of the
+                                      pruned list are pairs of their member spheres (>>members) */
+    int species_count;             /* DEMI_SPECIES + 1: more than that */
+    demi_species species[DEMI_SPECIES];
+    dem_real radius_min, radius_max;           /* m */
+    uint64_t scales;               /* bit k: tessellations for bodies of scale k exist */
+} demi_in_force;
+typedef struct demi_levels {       /* >>search */
+    int count, wide;               /* levels in use, 0: one grid; radii differ so much that levels
+                                      are cheaper */
+    demi_level level[DEMI_LEVELS]; /* the coarsest first */
+    double fine;                   /* m, largest radius of the finest class */
+    double tests[2];               /* estimated distance tests per body: one grid, levels */
+} demi_levels;
+typedef struct demi_booked {       /* >>ledger: totals and maxima since the beginning */
+    double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
+    double overlap_max, speed_max; /* relative to the radius; m/s */
+    uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
+    double due[4];                 /* J: energies that the impulses and walls will take in the next
+                                      step, see demi_impulses_tell */
+    double residual, residual_rms; /* m/s, of the last solve: largest, rms */
+    uint64_t unsolved;             /* solves that did not reach their tolerance */
+    int sweeps, none;              /* of the last solve; padding, 0 */
+} demi_booked;
+
+/* Bodies. A slot identifies a body and never changes; its index in the arrays changes with every
+   rebuild. Part >>bodies owns them, integrators move them, contacts add forces. demi_body_arrays
+   says how each array is used. "x 4": four reals per body. */
+typedef struct demi_bodies {
+    int count, capacity;           /* bodies */
+    dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted within a step). pos: x, y, z,
+                                      radius */
+    dem_real *half_vel, *half_spin;/* x 4; mean over the last step, i.e. at its half step */
+    dem_real *last_pos;            /* x 4; one step ago (position Verlet). Impulses: these two are
+                                      positions and orientations of the full step while contacts
+                                      are found at the half step */
+    dem_real *last_orient;
+    uint8_t *went;                 /* impulses: 1: the body has made a step since it was added or
+                                      set */
+    dem_real *force, *torque;      /* x 4 */
+    dem_real *inv_mass, *inv_inertia, *mass;     /* inv_inertia: only of moving spheres, else 0 */
+    int backward;                  /* last_pos exists */
+    int booked;                    /* `late` exists: a ledger, and a scheme that predicts */
+    dem_real *late;                /* x 4; m/s: error of the last prediction of the velocity */
+    int orienting;                 /* the next four exist */
+    dem_real *orient;              /* x 4: w x y z, principal axes -> world */
+    dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
+    dem_real *moment;              /* x 4: principal moments of inertia, kg m2; moment_arm, m */
+    int32_t *shape;                /* dem_shape ids; 0: a sphere */
+    int shaped;                    /* number of bodies that are not spheres */
+    dem_real *centre;              /* x 4: member spheres: centre relative to the body's centre, and
+                                      radius, m; a lone sphere is its own member */
+    dem_real *ball;                /* x 4: effects.clustered: the same, with centres in space */
+    dem_real *yield;               /* x 6: likewise, of bodies: inverse inertia in space, xx yy zz
+                                      xy xz yz, 1/(kg m2); 0: fixed, or a lone sphere */
+    int32_t *centre_start;         /* first member sphere of each body */
+    int centres_valid;               /* they fit the bodies and their orientations */
+    uint32_t *slot;                /* of each body */
+    int32_t *material;             /* 1 + index */
+    int32_t *slot_index;           /* slot -> index, < 0 if free */
+    uint32_t *slot_generation;
+    int slot_count, slot_capacity; /* slots used so far, capacity */
+    /* first of the free slots, which are linked (-1: none); pending slots become free at the next
+       rebuild */
+    int slot_free, slot_pending;
+    int real_count;                /* user-defined numbers per body; 0: the next two are null */
+    dem_real *reals, *rates;       /* x real_count; 1/s: their rates, by laws, at present forces */
+    int zoned;                     /* `zones` exists */
+    uint32_t *zones;               /* bit k: in the region of counting outlet k; 16 + k: known */
+    uint8_t *ghost;              /* by slot; 1: ghost, a copy owned by another slab; null outside
+                                    >>slabs */
+    dem_real *scratch;             /* x 4, for permuting */
+    int32_t *order, *cell_of;      /* permutation, cell of each body */
+    dem_body_counts balance;
+} demi_bodies;
+/* Saved contact history. While a list is valid, the history of two spheres is stored in the columns
+   of the pruned list; every other contact stores its own (demi_kept). A new pruned list copies the
+   columns of the previous one (near_last), pair by pair. Before a rebuild, and when bodies are
+   added or removed (demi_list_drop), indices are about to change. Then the history of spheres is
+   saved here, by slot, and persistent contacts store slots instead of indices. The next list reads
+   the saved history (demi_near_make), and persistent contacts move to the work groups of their
+   bodies (demi_kept_move). If the two bodies of a contact exchange their roles, because the other
+   one now has the lower index, vectors change sign. Nothing is discarded before the new list is
+   fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain all of
+   it. The entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`.
+   */
+enum { DEMI_BALLS_MOST = 1024 };               /* > largest number of spheres of a cluster */
+typedef struct demi_filed {
+    int32_t *start;                /* rows + 2 */
+    int32_t *partner;              /* the higher slot; its complement (~) if that was body a */
+    int32_t *part;                 /* DEMI_BALLS_MOST times the member sphere of the lower slot,
+                                      plus that of the higher slot */
+    dem_real *memory;              /* x stride */
+    int count, rows;               /* entries; number of slots when they were saved */
+    int stride;                    /* reals per entry */
+} demi_filed;
+
+/* Progress of an output. Part of the state; checkpoints store the whole struct. */
+typedef struct demi_written {
+    uint64_t what, when;           /* digests: of its kind and path; of its start and interval */
+    int64_t next;                  /* number of the next writing; DEMI_OUTPUT_UNKNOWN: the first
+                                      that is due, the present time included */
+    double last;                   /* s: time of the last writing; -1e300: none yet */
+} demi_written;
+enum { DEMI_OUTPUT_UNKNOWN = -1 };
+#define DEMI_OUTPUT_MOST 9e15      /* largest number: a double holds all integers up to there */
+#define DEMI_OUTPUT_LEAST 1e-12    /* s, shortest interval */
+typedef struct demi_output {
+    dem_output_desc desc;          /* its texts are copies that the world owns */
+    demi_written written;
+    int32_t id;                    /* outputs are sorted by id, ascending */
+    int resumes;                   /* 1 or, if a checkpoint that was read contained it, 2: later
+                                      lines of a CSV file have not been removed yet */
+} demi_output;
+
+/* The call that is running a user-defined function; who is null if none. within: 1 while lists and
+   sums are incomplete, 0 where the world is consistent and files may be written. */
+typedef struct demi_calling { const char *who; int within; } demi_calling;
+
+/* How many threads a world uses, see demi_crew_end. Not part of the state. */
+typedef struct demi_crew {
+    int now, best;                 /* threads of this step; of steps outside trials */
+    int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
+    double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
+    double since, wait;            /* s: since the last trial, until the next one */
+    uint64_t rebuilds;             /* when this step began */
+} demi_crew;
+
+/* Observers of a run: outputs, replays, progress. Not part of the state, except `written` of
+   outputs: reading a checkpoint does not change them. */
+typedef struct demi_lookers {
+    demi_calling calling;          /* see demi_calls */
+    int tenths_told;               /* progress into a file: last tenth of this run reported */
+    int under_way;                 /* > 0: an output runs a user-defined function; steps fail */
+    dem_replay *films;             /* open replays, which record frames automatically */
+    void (*films_look)(dem_world *w);           /* records their frames; null: no replays */
+    int output_count, reads;       /* reads: number of checkpoints read so far */
+    int32_t output_last;           /* the last id given to an output */
+    demi_output *outputs;
+    dem_result (*outputs_look)(dem_world *w);   /* writes what is due; null: no outputs */
+    void (*outputs_again)(dem_world *w);        /* called after reading a checkpoint */
+} demi_lookers;
+
+/* Data of the solvers for impulses, set up again in every step (>>impulses). demi_meeting: the
+   constraint of a contact. demi_impulse: the same contact as solvers iterate over it. demi_beside:
+   its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
+   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
+   joint in the linear system of all joints. */
+struct demi_meeting;
+struct demi_impulse;
+struct demi_beside;
+struct demi_twist;
+struct demi_mover;
+struct demi_run_sums;
+struct demi_rod;
+struct demi_knot;
+struct demi_link_of;
+typedef struct demi_solver {
+    struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
+    struct demi_impulse *contacts; /* this and the next three are in the order of colours */
+    struct demi_beside *beside;
+    struct demi_twist *twists;     /* null: no rolling or spinning friction */
+    dem_vec3 *arms;                /* x 2, m; null: all bodies are spheres */
+    struct demi_mover *movers;     /* one per body and per persistent contact; twice that for some
+                                      solvers */
+    dem_real *tensors;             /* x 6: inverse inertia in the world's frame; null: all bodies
+                                      are spheres */
+    dem_real *lifts;               /* x 4, m/s: velocities that remove overlaps, see
+                                      demi_impulses_lift */
+    uint64_t *colours;             /* of each body: bits of the colours of its contacts */
+    int32_t *degrees;              /* of each body: its number of contacts */
+    dem_vec3 *vectors;             /* work vectors of some solvers, one entry per contact */
+    struct demi_run_sums *runs;    /* sums over each run of contacts, a block of one colour */
+    struct demi_rod *rods;         /* one per joint */
+    int32_t *joined;               /* of each body: its first joint, see demi_joined */
+    struct demi_knot *knots;       /* unknowns of the joints' linear system: bodies and joints */
+    int32_t *knot_of, *rows;       /* knot of each body; row of each entry of the factor */
+    struct demi_link_of *links;
+    double *blocks;                /* x 36: pivots of the factor, and entries below them */
+    int knot_count, row_count, link_count, factored;
+    int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
+    int limited;                   /* contacts at their friction limit in the last unsolved step */
+    int twisted;                   /* 1: there is rolling or spinning friction */
+    int begins[65];                /* first contact of each colour */
+    int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
+    dem_real dt, step;             /* s; step length of some solvers */
+} demi_solver;
+
+/* A number for each body that crosses the border between two worlds of a team: its size, how it is
+   read from a body and how it is added to one. */
+typedef struct demi_record {
+    size_t (*size)(const dem_world *member);   /* bytes of one body */
+    void (*put)(const dem_world *member, int body, char *to);
+    void (*take)(dem_world *member, int body, const char *from);
+} demi_record;
+/* The worlds that step together (>>team). A single world has no team: it is its own head and its
+   only member. Slabs (>>slabs) are the members of a head, a world without bodies that holds the
+   numbers they share: time, time step, skin, error. A body near a border is in two members: one
+   owns it, the other has a copy, a ghost particle. */
+struct demi_grades;
+typedef struct demi_team {
+    dem_world *head, **members;
+    int count;                     /* members in this process */
+    /* Runs a task on all members. If it fails in one, the next call of agree returns the result. */
+    dem_result (*all)(dem_world *head, dem_result (*task)(dem_world *member));
+    /* Replaces most[0 .. count - 1] by the maxima over all processes. */
+    dem_result (*agree)(dem_world *head, double *most, int count);
+    void (*rest)(dem_world *member);            /* stops the ghosts, before a move */
+    dem_result (*rebuild)(dem_world *head);     /* chooses new ghosts and builds all lists */
+    dem_result (*lend)(dem_world *head);        /* sends states from owners to ghosts */
+    dem_result (*give)(dem_world *head, const demi_record *what);   /* adds numbers of ghosts to
+                                                                        those of their owners */
+    dem_result (*grades)(dem_world *head, struct demi_grades *g);   /* adds other processes */
+    dem_result (*feed)(dem_world *head);        /* inserts grains */
+    /* Sums `count` numbers that `part` finds for each member, in the order of members. */
+    dem_result (*sum)(dem_world *head, void (*part)(const dem_world *member, int of, double *out),
+                      int of, double *sums, int count);
+} demi_team;
+
+/* A world. Each group of fields belongs to the part named above it: that part writes them, and
+   every part may read them. Further writers are named. */
+struct dem_world {
+    demi_team *team;               /* >>slabs; null: a single world */
+    int member;                    /* index in team->members */
+    /* >>world */
+    dem_world_desc desc;           /* as given, with automatic choices filled in */
+    dem_world_desc asked;          /* as given */
+    char real_names[DEM_BODY_REALS*24];    /* body_reals of both descs point here, */
+    char memory_names[DEM_LAW_MEMORY*24];     /* and law_memory_names here */
+    /* >>memory: error messages (demi_fail), and all allocations */
+    char error[512];
+    char refusal[512];             /* message of the first failed call that builds the scene */
+    int refused;                   /* failed calls of that kind since dem_world_error_get */
+    char refused_calls[24][32];    /* their names */
+    size_t bytes;                  /* allocated */
+    struct demi_block *chains[DEMI_CHAINS];
+    /* numbers without pointers, saved and copied whole */
+    demi_timing clock;             /* >>step; dt and its reasons: >>advice */
+    demi_stages stage;             /* cleared by calls that change the scene, restored by >>step */
+    demi_margin margin;            /* skin: >>rebuild; pruned list: >>near; displacements: >>step */
+    demi_in_force effects;         /* >>rebuild */
+    demi_levels levels;            /* >>search */
+    demi_booked booked;            /* >>ledger; added, removed: >>bodies, >>feed, >>step */
+    /* >>materials */
+    int material_count;
+    dem_material_desc materials[DEMI_MATERIALS];
+    demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
+    /* >>shapes */
+    int shape_count;
+    demi_shape *shapes;
+    /* >>bodies; motion: >>integrators; forces: >>respond, >>kept */
+    demi_bodies bodies;
+    demi_filed filed;
+    /* >>walls; weights of facets: >>facets; poses and loads: >>step */
+    int wall_count;
+    demi_wall *walls;
+    double wall_fastest;           /* m/s, fastest wall point of the step */
+    dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
+    int repeating;                 /* 1: some wall repeats along a periodic axis */
+    demi_crew crew;                /* >>team: threads in use */
+    int facets_valid;              /* surfaces fit the walls and their motions */
+    int sheeted;                   /* 1: some surface of facets may be a sheet */
+    int facets_given;              /* for tests: facets in one plane are not merged */
+    int surface_count;             /* >>surfaces: joined surfaces */
+    demi_wall *surfaces;
+    /* >>measure, >>feed, >>placing, >>advice */
+    int field_count;
+    demi_field *fields;
+    int feed_count, outlet_count;
+    demi_feed *feeds;
+    demi_outlet *outlets;
+    int joint_count, joint_last;   /* >>joints: number of joints, last id */
+    demi_joint *joints;
+    int written_count;             /* >>output: outputs in the checkpoint that was read last */
+    demi_written *written;
+    struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */
+    struct demi_node *crowd_nodes;
+    dem_real *crowd_turned;        /* x 4: orientations of the bodies placed */
+    double dt_share;               /* trials: factor on the automatic time step; 0: 1 */
+    struct demi_press *press;      /* loads on bodies, while >>advice chooses the time step */
+    struct demi_press_whole *press_whole;
+    struct {                       /* s: time step that is checked; largest stable one, of this */
+        double dt, limit, least;   /* world and of all its team; the body that limits it here */
+        int worst;
+    } pressed;
+    /* >>rebuild: laws in force, work groups */
+    int normal;                    /* law in force */
+    demi_laws laws;                /* rows of the laws; unused with a user-defined law */
+    int memory_stride, vector_mask;/* reals of contact history; bits of the vector components */
+    int composed;                  /* for tests: always use one stage per law, never a fused one */
+    int domain_count;
+    demi_domain *domains;          /* the part that builds a list writes its counts */
+    /* >>search */
+    dem_real image_shift[27*4];    /* m, added to b - a to reach b's nearest image */
+    int32_t *cell_start;           /* first body of each cell */
+    int cells[3], cell_axes[3];    /* along x, y, z; axes, the one with the fewest cells first */
+    double cell_origin[3], cell_size[3];
+    demi_end *lll_ends[3];
+    struct demi_pair_key *lll_table;
+    int32_t *lll_rows, *lll_row_start;
+    int bins[3];                   /* number of bins along x, y, z: see demi_rows_bins */
+    double bin_size[3];            /* m */
+    int32_t *bin_of;               /* bodies x 6: for each axis the first bin and how many more */
+    int32_t *bin_start, *bin_items;/* bodies of each bin, ascending */
+    int lll_valid, lll_boxes, lll_size;    /* state of the linked linear list */
+    /* >>lists: candidates of pairs and on walls; persistent contacts */
+    demi_list own, cross;          /* pairs inside a work group; with a later group */
+    int join_room;                 /* candidates that inserted bodies may add, see demi_list_join */
+    int *cross_incoming_start;     /* domain_count + 1 */
+    int32_t *cross_incoming;       /* entries of `cross`, by work group of b, ascending */
+    dem_real *cross_force;          /* x 6: force and torque on body b of an entry */
+    int cross_entries;
+    int wall_stride;               /* capacity of wall candidates per work group */
+    int32_t *wall_body, *wall_id, *wall_element;
+    dem_real *wall_gap;            /* m, lower bound on the gap of grain and element when the list
+                                      was built */
+    dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
+    int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
+    int32_t *walled;               /* bodies: 1 + first wall candidate, 0: none (if `sheeted`) */
+    demi_wall_sum *wall_sums;      /* domain_count x wall_count */
+    /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
+       real_count for each entry of cross_force; else null */
+    double *wall_rates;
+    dem_real *cross_rate;
+    int touching_valid;            /* the next three are large enough for the present candidates */
+    demi_touching *touching;       /* contact points of one body and wall, for each work group */
+    int32_t *touching_table;
+    demi_link *touching_links;
+    int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
+    demi_kept *kept_now, *kept_next;
+    /* >>near */
+    demi_near near, near_last;     /* the pruned list, and the previous one; swapped for a new one
+                                      */
+    dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
+                                      species a and b when lists were built */
+    int species_vary;              /* bits of the columns that differ between pairs */
+    struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
+    int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
+    demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
+    int merging_most;
+    struct demi_solver solver;     /* >>impulses */
+    /* >>respond */
+    void (*kernel)(dem_world *w, int domain);
+    demi_lookers look;             /* >>step, >>output, >>replay */
+};
+/* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
+   index. So indices are reused, and the id of a removed wall stays invalid. */
+enum { DEMI_WALLS_MOST = 1 << 18 };
+static int demi_wall_place(dem_wall wall) { return (int)(((uint32_t)wall.id - 1)%DEMI_WALLS_MOST); }
+static int demi_wall_there(const dem_world *w, dem_wall wall) {
+    const int place = demi_wall_place(wall);
+    return wall.id > 0 && place < w->wall_count && w->walls[place].id == wall.id &&
+        w->walls[place].kind != DEMI_WALL_NONE;
+}
+/* True if a sieve consists of round wires or bars; others are plates. */
+static int demi_sieve_wires(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+}
