@@ -62,7 +62,7 @@
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
        >>meets             contacts of two bodies, by their shapes
-       >>kept              contacts other than sphere on sphere: persistent contacts
+       >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
        >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
@@ -3546,8 +3546,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    Words of the code, beside those of the glossary:
        word in names       meaning
        domain              a work group of some 2000 neighbouring bodies
-       kept                a persistent contact: any contact other than sphere on sphere, for
-                           example with a wall, stored in a list and followed from step to step
+       kept                a persistent contact, for example with a wall: see demi_kept
        ball                a sphere of a pair: a member of a cluster, or a lone sphere
        near                the pruned neighbour list: the candidates that may touch within some
                            steps (>>near). Forces are computed for these only. The contact history
@@ -3587,8 +3586,8 @@ typedef struct demi_list {
     unsigned char *image;          /* offset in image_shift of the shift to b's nearest image */
 } demi_list;
 
-/* Pairs of member spheres of two bodies that may touch: part a[k] of one body, b[k] of the other,
-   in the order of contacts. >>kept fills it when it first computes the pair. */
+/* With impulses: pairs of member spheres of two bodies that may touch: part a[k] of one body, b[k]
+   of the other, in the order of contacts. >>kept fills it when it first computes the pair. */
 typedef struct demi_near_balls {
     uint8_t count;                 /* pairs; DEMI_BALLS_UNKNOWN: not computed since the list was
                                       built; DEMI_BALLS_ALL: too many, test all */
@@ -3605,7 +3604,7 @@ typedef struct demi_near {
     unsigned char *image;          /* as in demi_list */
     unsigned char *on;             /* likewise: 1: may have a contact history */
     int32_t *hit;                  /* likewise: entries of the group that touch, ascending */
-    demi_near_balls *balls;        /* empty if all bodies are spheres */
+    demi_near_balls *balls;        /* null if all bodies are spheres, or effects.clustered */
     dem_real *memory;              /* contact history of two spheres: w->memory_stride columns, 0
                                       while the pair does not touch */
     int32_t *row;                  /* row of species_coef; unused if all bodies are alike or there
@@ -3690,13 +3689,14 @@ typedef struct demi_kept_more {
     dem_vec3 spread;               /* m, from the centre of pressure to this point */
     dem_real couple;               /* m: moment about the normal, over the normal force */
 } demi_kept_more;
-/* A persistent contact: any contact except sphere on sphere. (The history of two spheres is in the
-   pruned neighbour list.) It exists as long as the two touch. The contacts of a work group are in
-   the order of body a, pairs before walls; forces are added in this order. In each step, touch
-   builds the list kept_next from scratch and finds for each contact the one of the previous step
-   (kept_now) that it continues. respond copies the history from that contact and computes the
-   forces. Then the two lists are swapped, so touch can start again with more room. What all
-   contacts need comes first: reading it takes most of the time. */
+/* A persistent contact: any contact except sphere on sphere and, with springs, except those of
+   spheres of clusters. (The history of two spheres is in the pruned neighbour list.) It exists as
+   long as the two touch. The contacts of a work group are in the order of body a, pairs before
+   walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
+   and finds for each contact the one of the previous step (kept_now) that it continues. respond
+   copies the history from that contact and computes the forces. Then the two lists are swapped, so
+   touch can start again with more room. What all contacts need comes first: reading it takes most
+   of the time. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
@@ -5292,7 +5292,7 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
 }
 /* Returns the number of reals of a contact history that users and digests see. */
 static int demi_memory_told(const dem_world *w) {
-    return w->memory_stride - (demi_response_is(w, DEMI_LAWS) && w->laws.at_grip < DEMI_MEMORY);
+    return w->memory_stride - (w->laws.at_grip < DEMI_MEMORY);
 }
 /* Clears a result before the law is called. Member by member, because a memset would keep the
    struct in memory and prevent vectorisation. */
@@ -13905,7 +13905,8 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->b, n) &&
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
-                   DEMI_GROW(w, near->balls, w->bodies.shaped ? n : 0) &&
+                   DEMI_GROW(w, near->balls,
+                             w->bodies.shaped && !w->effects.clustered ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
                     DEMI_GROW(w, near->hit, n))) &&
@@ -14480,7 +14481,7 @@ static void demi_near_adopt(dem_world *w, int d) {
             demi_near_coefs_copy(w, near, d, p, near, end - 1);
         }
     }
-    for (p = domain->near_shaped; p < domain->near_shaped_end; p++)
+    for (p = domain->near_shaped; p < domain->near_shaped_end && !w->effects.clustered; p++)
         near->balls[d*near->stride + p].count = DEMI_BALLS_UNKNOWN;
     for (l = 0; l < 2; l++) {
         demi_list *list = l ? &w->cross : &w->own;
@@ -20153,11 +20154,11 @@ DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
 
 /* ---------------------------------------------------------------------------------------------
    >>kept
-   Contact detection for persistent contacts: all contacts except those of sphere on sphere, which
-   >>respond handles without a list. Two such bodies may touch at several points, with normals that
-   do not pass through their centres, and a body touches a wall once per nearby surface. These
-   contacts are therefore stored one by one in a list (demi_kept) and followed from step to step, so
-   that each keeps its history.
+   Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
+   springs also of spheres of clusters), which >>respond and >>members handle without such a list.
+   Two such bodies may touch at several points, with normals that do not pass through their centres,
+   and a body touches a wall once per nearby surface. These contacts are therefore stored one by one
+   in a list (demi_kept) and followed from step to step, so that each keeps its history.
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the

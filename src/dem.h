@@ -62,7 +62,7 @@
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
        >>meets             contacts of two bodies, by their shapes
-       >>kept              contacts other than sphere on sphere: persistent contacts
+       >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
        >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers

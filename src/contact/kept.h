@@ -1,10 +1,10 @@
 /* ---------------------------------------------------------------------------------------------
    >>kept
-   Contact detection for persistent contacts: all contacts except those of sphere on sphere, which
-   >>respond handles without a list. Two such bodies may touch at several points, with normals that
-   do not pass through their centres, and a body touches a wall once per nearby surface. These
-   contacts are therefore stored one by one in a list (demi_kept) and followed from step to step, so
-   that each keeps its history.
+   Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
+   springs also of spheres of clusters), which >>respond and >>members handle without such a list.
+   Two such bodies may touch at several points, with normals that do not pass through their centres,
+   and a body touches a wall once per nearby surface. These contacts are therefore stored one by one
+   in a list (demi_kept) and followed from step to step, so that each keeps its history.
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the

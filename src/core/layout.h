@@ -7,8 +7,7 @@
    Words of the code, beside those of the glossary:
        word in names       meaning
        domain              a work group of some 2000 neighbouring bodies
-       kept                a persistent contact: any contact other than sphere on sphere, for
-                           example with a wall, stored in a list and followed from step to step
+       kept                a persistent contact, for example with a wall: see demi_kept
        ball                a sphere of a pair: a member of a cluster, or a lone sphere
        near                the pruned neighbour list: the candidates that may touch within some
                            steps (>>near). Forces are computed for these only. The contact history
@@ -48,8 +47,8 @@ typedef struct demi_list {
     unsigned char *image;          /* offset in image_shift of the shift to b's nearest image */
 } demi_list;
 
-/* Pairs of member spheres of two bodies that may touch: part a[k] of one body, b[k] of the other,
-   in the order of contacts. >>kept fills it when it first computes the pair. */
+/* With impulses: pairs of member spheres of two bodies that may touch: part a[k] of one body, b[k]
+   of the other, in the order of contacts. >>kept fills it when it first computes the pair. */
 typedef struct demi_near_balls {
     uint8_t count;                 /* pairs; DEMI_BALLS_UNKNOWN: not computed since the list was
                                       built; DEMI_BALLS_ALL: too many, test all */
@@ -66,7 +65,7 @@ typedef struct demi_near {
     unsigned char *image;          /* as in demi_list */
     unsigned char *on;             /* likewise: 1: may have a contact history */
     int32_t *hit;                  /* likewise: entries of the group that touch, ascending */
-    demi_near_balls *balls;        /* empty if all bodies are spheres */
+    demi_near_balls *balls;        /* null if all bodies are spheres, or effects.clustered */
     dem_real *memory;              /* contact history of two spheres: w->memory_stride columns, 0
                                       while the pair does not touch */
     int32_t *row;                  /* row of species_coef; unused if all bodies are alike or there
@@ -151,13 +150,14 @@ typedef struct demi_kept_more {
     dem_vec3 spread;               /* m, from the centre of pressure to this point */
     dem_real couple;               /* m: moment about the normal, over the normal force */
 } demi_kept_more;
-/* A persistent contact: any contact except sphere on sphere. (The history of two spheres is in the
-   pruned neighbour list.) It exists as long as the two touch. The contacts of a work group are in
-   the order of body a, pairs before walls; forces are added in this order. In each step, touch
-   builds the list kept_next from scratch and finds for each contact the one of the previous step
-   (kept_now) that it continues. respond copies the history from that contact and computes the
-   forces. Then the two lists are swapped, so touch can start again with more room. What all
-   contacts need comes first: reading it takes most of the time. */
+/* A persistent contact: any contact except sphere on sphere and, with springs, except those of
+   spheres of clusters. (The history of two spheres is in the pruned neighbour list.) It exists as
+   long as the two touch. The contacts of a work group are in the order of body a, pairs before
+   walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
+   and finds for each contact the one of the previous step (kept_now) that it continues. respond
+   copies the history from that contact and computes the forces. Then the two lists are swapped, so
+   touch can start again with more room. What all contacts need comes first: reading it takes most
+   of the time. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */

@@ -158,7 +158,7 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
 }
 /* Returns the number of reals of a contact history that users and digests see. */
 static int demi_memory_told(const dem_world *w) {
-    return w->memory_stride - (demi_response_is(w, DEMI_LAWS) && w->laws.at_grip < DEMI_MEMORY);
+    return w->memory_stride - (w->laws.at_grip < DEMI_MEMORY);
 }
 /* Clears a result before the law is called. Member by member, because a memset would keep the
    struct in memory and prevent vectorisation. */

@@ -377,7 +377,7 @@ static void demi_near_adopt(dem_world *w, int d) {
             demi_near_coefs_copy(w, near, d, p, near, end - 1);
         }
     }
-    for (p = domain->near_shaped; p < domain->near_shaped_end; p++)
+    for (p = domain->near_shaped; p < domain->near_shaped_end && !w->effects.clustered; p++)
         near->balls[d*near->stride + p].count = DEMI_BALLS_UNKNOWN;
     for (l = 0; l < 2; l++) {
         demi_list *list = l ? &w->cross : &w->own;
