@@ -22019,7 +22019,8 @@ static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit)
     const dem_real *DEMI_RESTRICT ball = w->bodies.ball, *DEMI_RESTRICT shift = w->image_shift;
     const unsigned char *DEMI_RESTRICT image = w->near.image + base;
     unsigned char *DEMI_RESTRICT on = w->near.on + base;
-    dem_real *memory = w->near.memory + (size_t)d*(size_t)w->memory_stride*stride;
+    dem_real *memory = !w->memory_stride ? 0
+        : w->near.memory + (size_t)d*(size_t)w->memory_stride*stride;
     const dem_real range = w->margin.reach > 0 ? w->desc.law_range : 0;
     const dem_real more = w->margin.reach > 0 ? 1 + w->desc.law_range_radii : 1;
     int e, n = 0;
