@@ -3612,7 +3612,9 @@ typedef struct demi_near {
     dem_real *coef;                /* in that second case: DEMI_PAIR_COLUMNS columns */
 } demi_near;
 enum { DEMI_M_EFF = DEMI_COEFS,
-      DEMI_CN_ROOT, DEMI_CT_ROOT,               /* of clusters: see demi_coefficients_rooted */
+      DEMI_TILE_COLUMNS,                        /* those that stages read; the others: */
+      DEMI_CN_ROOT = DEMI_TILE_COLUMNS,         /* of clusters: see demi_coefficients_rooted */
+      DEMI_CT_ROOT,
       DEMI_PAIR_COLUMNS };
 /* A species: spheres that are equal in everything that coefficients depend on. For up to
    DEMI_SPECIES species a table has a row of coefficients for every two of them. With more (radii
@@ -14258,7 +14260,7 @@ static void demi_species_lay(dem_world *w) {
 }
 /* Returns the number of columns of coefficients in use. */
 static int demi_coef_columns(const dem_world *w) {
-    return w->effects.clustered ? DEMI_PAIR_COLUMNS : DEMI_CN_ROOT;
+    return w->effects.clustered ? DEMI_PAIR_COLUMNS : DEMI_TILE_COLUMNS;
 }
 /* Sets the row or the coefficients of entry p of work group d, a pair of spheres. Only needed if
    bodies differ. */
@@ -14625,9 +14627,11 @@ static void demi_domain_near(dem_world *w, int d) {
             near->a[at] = list->a[k];
             near->b[at] = list->b[k];
             near->image[at] = list->image[k];
-            if (w->effects.clustered) near->on[at] = 1;
-            run = q > first && near->k[at - 1] == k ? run + 1 : 1;
-            domain->merging = DEMI_MAX(domain->merging, run);
+            if (w->effects.clustered) {
+                near->on[at] = 1;
+                run = q > first && near->k[at - 1] == k ? run + 1 : 1;
+                domain->merging = DEMI_MAX(domain->merging, run);
+            }
             if (w->memory_stride || !w->effects.uniform)
                 demi_near_recall(w, d, q, w->near_fresh ? -1 : demi_near_was(w, list, d, at));
         }
@@ -15984,7 +15988,7 @@ typedef struct demi_tile {
     demi_rows apart, parted;       /* rad/s, difference of spins: likewise */
     dem_real radius[2][DEMI_ROOM];
     dem_real memory[DEMI_MEMORY + 1][DEMI_ROOM];           /* last: if `sliding` is not kept */
-    dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROOM];
+    dem_real coef[DEMI_TILE_COLUMNS][DEMI_ROOM];
     /* contact detection and relative motion */
     dem_real length[DEMI_ROOM], over_d[DEMI_ROOM], overlap[DEMI_ROOM], deep[DEMI_ROOM];
     dem_real touch[DEMI_ROOM];      /* 1: in contact, or within a law's range; else 0 */
@@ -16031,11 +16035,11 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     return s;
 }
 
-/* Copies the coefficients of pair q. */
+/* Copies the coefficients of pair q that stages read. */
 static void demi_span_coefs(const dem_world *w, const demi_span *s, int q, dem_real *coef) {
     const int row = s->row ? s->row[q] : 0;
     int e;
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+    for (e = 0; e < DEMI_TILE_COLUMNS; e++)
         coef[e] = s->coef ? s->coef[(size_t)e*s->stride + (size_t)q]
             : w->species_coef[DEMI_PAIR_COLUMNS*row + e];
 }
@@ -16631,7 +16635,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
 static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     const demi_domain *domain = &w->domains[d];
     const int first = demi_near_first(domain);
-    dem_real coef[DEMI_PAIR_COLUMNS];
+    dem_real coef[DEMI_TILE_COLUMNS];
     int e, q;
     t->row = -1;
     for (q = 0; q < DEMI_TILE && !demi_laws_precise(w); q++)
@@ -16640,7 +16644,7 @@ static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
         const demi_span one = demi_span_of(w, d, first, 1);
         demi_span_coefs(w, &one, 0, coef);
         if (!demi_laws_sized(w)) coef[DEMI_R_EFF] = coef[DEMI_M_EFF] = (dem_real)NAN;
-        for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+        for (e = 0; e < DEMI_TILE_COLUMNS; e++)
             for (q = 0; q < DEMI_TILE; q++) t->coef[e][q] = coef[e];
     }
     memset(t->part, 0, sizeof t->part);
@@ -16660,7 +16664,7 @@ static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int 
     if (w->effects.uniform) return run + 1;
     for (q = 0; q < full && row; q++) differ |= row[q]^row[0];
     same = row && !differ;
-    for (e = 0; e < DEMI_PAIR_COLUMNS && !(same && t->row == row[0]); e++) {
+    for (e = 0; e < DEMI_TILE_COLUMNS && !(same && t->row == row[0]); e++) {
         const dem_real *DEMI_RESTRICT table = w->species_coef + e;
         if (!(w->species_vary >> e & 1)) continue;
         if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);
@@ -21248,7 +21252,7 @@ static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->share, t->grip, t->lift, t->couple, t->outset,
         t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
-    const int counts[] = {3, 1, 3, keep, DEMI_PAIR_COLUMNS, 1, 1, 1, 1, 1,
+    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, 1, 1, 1, 1, 1,
         2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
     demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
         t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
@@ -26493,7 +26497,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
                                           demi_at(w->image_shift + span.image[0]));
             const dem_real l = demi_length(gap), sum = x[3] + y[3];
             const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
-            dem_real coef[DEMI_PAIR_COLUMNS];
+            dem_real coef[DEMI_TILE_COLUMNS];
             demi_pressed c;
             if (!(l < sum) || !(l > 0) || demi_shape_of(w, a) || demi_shape_of(w, b)) continue;
             if (whole && !press[a].whole && !press[b].whole) continue;
@@ -27159,7 +27163,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
                              dem_vec3 *gap) {
     demi_run r = demi_run_of(w, 0, w->effects.uniform);
     const demi_span span = demi_span_of(w, d, p, 1);
-    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
+    dem_real memory[DEMI_MEMORY], coef[DEMI_TILE_COLUMNS];
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
@@ -27180,7 +27184,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     if (!out) return 1;
     for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
     demi_span_coefs(w, &span, 0, coef);
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
+    for (e = 0; e < DEMI_TILE_COLUMNS; e++) tile.coef[e][0] = coef[e];
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_who_clear(&c.who);
     demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
@@ -32758,7 +32762,7 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     for (e = 0; e < w->memory_stride; e++)
         demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
                    (size_t)e*(size_t)w->near.stride), remembering*r);
-    for (e = 0; e < DEMI_PAIR_COLUMNS && w->stage.pairs_changed && demi_many_species(w); e++)
+    for (e = 0; e < demi_coef_columns(w) && w->stage.pairs_changed && demi_many_species(w); e++)
         demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
                    remembering*r);
 }

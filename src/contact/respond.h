@@ -32,7 +32,7 @@ typedef struct demi_tile {
     demi_rows apart, parted;       /* rad/s, difference of spins: likewise */
     dem_real radius[2][DEMI_ROOM];
     dem_real memory[DEMI_MEMORY + 1][DEMI_ROOM];           /* last: if `sliding` is not kept */
-    dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROOM];
+    dem_real coef[DEMI_TILE_COLUMNS][DEMI_ROOM];
     /* contact detection and relative motion */
     dem_real length[DEMI_ROOM], over_d[DEMI_ROOM], overlap[DEMI_ROOM], deep[DEMI_ROOM];
     dem_real touch[DEMI_ROOM];      /* 1: in contact, or within a law's range; else 0 */
@@ -79,11 +79,11 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     return s;
 }
 
-/* Copies the coefficients of pair q. */
+/* Copies the coefficients of pair q that stages read. */
 static void demi_span_coefs(const dem_world *w, const demi_span *s, int q, dem_real *coef) {
     const int row = s->row ? s->row[q] : 0;
     int e;
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+    for (e = 0; e < DEMI_TILE_COLUMNS; e++)
         coef[e] = s->coef ? s->coef[(size_t)e*s->stride + (size_t)q]
             : w->species_coef[DEMI_PAIR_COLUMNS*row + e];
 }
@@ -679,7 +679,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
 static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     const demi_domain *domain = &w->domains[d];
     const int first = demi_near_first(domain);
-    dem_real coef[DEMI_PAIR_COLUMNS];
+    dem_real coef[DEMI_TILE_COLUMNS];
     int e, q;
     t->row = -1;
     for (q = 0; q < DEMI_TILE && !demi_laws_precise(w); q++)
@@ -688,7 +688,7 @@ static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
         const demi_span one = demi_span_of(w, d, first, 1);
         demi_span_coefs(w, &one, 0, coef);
         if (!demi_laws_sized(w)) coef[DEMI_R_EFF] = coef[DEMI_M_EFF] = (dem_real)NAN;
-        for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+        for (e = 0; e < DEMI_TILE_COLUMNS; e++)
             for (q = 0; q < DEMI_TILE; q++) t->coef[e][q] = coef[e];
     }
     memset(t->part, 0, sizeof t->part);
@@ -708,7 +708,7 @@ static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int 
     if (w->effects.uniform) return run + 1;
     for (q = 0; q < full && row; q++) differ |= row[q]^row[0];
     same = row && !differ;
-    for (e = 0; e < DEMI_PAIR_COLUMNS && !(same && t->row == row[0]); e++) {
+    for (e = 0; e < DEMI_TILE_COLUMNS && !(same && t->row == row[0]); e++) {
         const dem_real *DEMI_RESTRICT table = w->species_coef + e;
         if (!(w->species_vary >> e & 1)) continue;
         if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);

@@ -73,7 +73,9 @@ typedef struct demi_near {
     dem_real *coef;                /* in that second case: DEMI_PAIR_COLUMNS columns */
 } demi_near;
 enum { DEMI_M_EFF = DEMI_COEFS,
-      DEMI_CN_ROOT, DEMI_CT_ROOT,               /* of clusters: see demi_coefficients_rooted */
+      DEMI_TILE_COLUMNS,                        /* those that stages read; the others: */
+      DEMI_CN_ROOT = DEMI_TILE_COLUMNS,         /* of clusters: see demi_coefficients_rooted */
+      DEMI_CT_ROOT,
       DEMI_PAIR_COLUMNS };
 /* A species: spheres that are equal in everything that coefficients depend on. For up to
    DEMI_SPECIES species a table has a row of coefficients for every two of them. With more (radii

@@ -229,7 +229,7 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     for (e = 0; e < w->memory_stride; e++)
         demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
                    (size_t)e*(size_t)w->near.stride), remembering*r);
-    for (e = 0; e < DEMI_PAIR_COLUMNS && w->stage.pairs_changed && demi_many_species(w); e++)
+    for (e = 0; e < demi_coef_columns(w) && w->stage.pairs_changed && demi_many_species(w); e++)
         demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
                    remembering*r);
 }

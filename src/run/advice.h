@@ -474,7 +474,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
                                           demi_at(w->image_shift + span.image[0]));
             const dem_real l = demi_length(gap), sum = x[3] + y[3];
             const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
-            dem_real coef[DEMI_PAIR_COLUMNS];
+            dem_real coef[DEMI_TILE_COLUMNS];
             demi_pressed c;
             if (!(l < sum) || !(l > 0) || demi_shape_of(w, a) || demi_shape_of(w, b)) continue;
             if (whole && !press[a].whole && !press[b].whole) continue;

@@ -18,7 +18,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
                              dem_vec3 *gap) {
     demi_run r = demi_run_of(w, 0, w->effects.uniform);
     const demi_span span = demi_span_of(w, d, p, 1);
-    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
+    dem_real memory[DEMI_MEMORY], coef[DEMI_TILE_COLUMNS];
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
@@ -39,7 +39,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     if (!out) return 1;
     for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
     demi_span_coefs(w, &span, 0, coef);
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
+    for (e = 0; e < DEMI_TILE_COLUMNS; e++) tile.coef[e][0] = coef[e];
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_who_clear(&c.who);
     demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);

@@ -154,7 +154,7 @@ static void demi_species_lay(dem_world *w) {
 }
 /* Returns the number of columns of coefficients in use. */
 static int demi_coef_columns(const dem_world *w) {
-    return w->effects.clustered ? DEMI_PAIR_COLUMNS : DEMI_CN_ROOT;
+    return w->effects.clustered ? DEMI_PAIR_COLUMNS : DEMI_TILE_COLUMNS;
 }
 /* Sets the row or the coefficients of entry p of work group d, a pair of spheres. Only needed if
    bodies differ. */
@@ -521,9 +521,11 @@ static void demi_domain_near(dem_world *w, int d) {
             near->a[at] = list->a[k];
             near->b[at] = list->b[k];
             near->image[at] = list->image[k];
-            if (w->effects.clustered) near->on[at] = 1;
-            run = q > first && near->k[at - 1] == k ? run + 1 : 1;
-            domain->merging = DEMI_MAX(domain->merging, run);
+            if (w->effects.clustered) {
+                near->on[at] = 1;
+                run = q > first && near->k[at - 1] == k ? run + 1 : 1;
+                domain->merging = DEMI_MAX(domain->merging, run);
+            }
             if (w->memory_stride || !w->effects.uniform)
                 demi_near_recall(w, d, q, w->near_fresh ? -1 : demi_near_was(w, list, d, at));
         }
