@@ -15,8 +15,10 @@
      api/ - the public half: what programs include
        >>manual            guide: a complete program, the concepts in order, glossary, references
        >>api               results, vectors, ids, choices, contacts, the built-in contact laws
-       >>scene             building a scene: worlds, materials, bodies, walls, joints, feeds
-       >>run               running it: steps, measuring, files, replays, slabs, the report
+       >>scene             building a scene: worlds, materials, bodies
+       >>machine           walls, joints, feeds, outlets
+       >>run               running it: the time step, runs, trials, contacts, measuring
+       >>record            files, replays, checkpoints, outputs, slabs, effects, the report
      >>implementation - private code from here on; users need not read it
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
@@ -114,8 +116,8 @@
    >>manual
    ---------------------------------------------------------------------------------------------
    This guide explains the concepts in the order in which a new user needs them. Every function and
-   field is described where it is declared: in the parts >>api, >>scene and >>run. The pages in
-   docs/ hold derivations, comparisons and measured costs.
+   field is described where it is declared: in the parts >>api, >>scene, >>machine, >>run and
+   >>record. The pages in docs/ hold derivations, comparisons and measured costs.
 
    --- 1. A complete program ---
 
@@ -1389,7 +1391,7 @@ typedef struct dem_allocator {
 /* ---------------------------------------------------------------------------------------------
    >>scene
    The parts of a scene, in the order in which a program builds it: the world, materials, grains
-   and other bodies, walls, joints, feeds and outlets.
+   and other bodies. Walls, joints, feeds and outlets follow in >>machine.
 
    Errors. A function that fails changes nothing. It returns an error code, an id of zeros or 0,
    and dem_world_error_get says why. A function fails if a value is out of range, if an id or a
@@ -1938,6 +1940,12 @@ typedef struct dem_body_counts { uint64_t inserted, present, removed, left; } de
 /* Returns the numbers of bodies. */
 DEM_API dem_body_counts dem_body_counts_get(const dem_world *world);
 
+/* ---------------------------------------------------------------------------------------------
+   >>machine
+   What grains collide with and where they come from: walls and their motions, joints, feeds and
+   outlets. Errors and descs are as in >>scene.
+   --------------------------------------------------------------------------------------------- */
+
 /* ---- walls ---- */
 /* Walls repel grains and move as prescribed; grains do not move them. Functions that add a wall
    copy their data. */
@@ -2287,8 +2295,7 @@ DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
 
 /* ---------------------------------------------------------------------------------------------
    >>run
-   What a program does with a scene: check it, run it, measure it, compare choices, read and write
-   files, record a replay, save and restore it, divide it among processors, print a report.
+   What a program does with a scene: check it, run it, compare choices, measure it.
    --------------------------------------------------------------------------------------------- */
 
 /* Errors in this part. A function that returns a dem_result returns DEM_OK, or an error code after
@@ -2702,6 +2709,12 @@ DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_
    cascade; grains in flight belong to no surface. `box` and errors as above. */
 DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *repose);
+
+/* ---------------------------------------------------------------------------------------------
+   >>record
+   A run in files: tables and pictures, replays, checkpoints, scheduled outputs. Slabs, which share
+   one scene among processors. What a scene contains and what it costs. Errors are as in >>run.
+   --------------------------------------------------------------------------------------------- */
 
 /* ---- files ---- */
 
@@ -3783,7 +3796,7 @@ typedef struct demi_domain {
        may return less than the gap);
      functions that find contacts with each kind above and with its own kind, in that order.
 
-   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_tessellations. A
+   Walls. >>add-wall: a row here, a declaration in >>machine, functions, above demi_tessellations. A
    row:
      constant;
      corners of an element (0: elements have none);

@@ -15,8 +15,10 @@
      api/ - the public half: what programs include
        >>manual            guide: a complete program, the concepts in order, glossary, references
        >>api               results, vectors, ids, choices, contacts, the built-in contact laws
-       >>scene             building a scene: worlds, materials, bodies, walls, joints, feeds
-       >>run               running it: steps, measuring, files, replays, slabs, the report
+       >>scene             building a scene: worlds, materials, bodies
+       >>machine           walls, joints, feeds, outlets
+       >>run               running it: the time step, runs, trials, contacts, measuring
+       >>record            files, replays, checkpoints, outputs, slabs, effects, the report
      >>implementation - private code from here on; users need not read it
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
@@ -115,7 +117,9 @@
 #define DEM_H
 #include "api/api.h"
 #include "api/scene.h"
+#include "api/machine.h"
 #include "api/run.h"
+#include "api/record.h"
 #endif /* DEM_H */
 
 /* ================================================================================================

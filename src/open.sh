@@ -8,7 +8,7 @@ keep() { cmp -s "$dir/new" "$1" || cp "$dir/new" "$1"; }
 rooms=$(sed -n 's/^#include "\([a-z]*\/.*\)"/src\/\1/p' src/dem.h)
 {
     echo '#ifndef DEM_H'; echo '#define DEM_H'
-    cat src/api/api.h src/api/scene.h src/api/run.h
+    for room in $rooms; do case $room in src/api/manual.h) ;; src/api/*) cat "$room" ;; esac; done
     echo '#endif'; echo '#define DEM_IMPLEMENTATION'; echo '#define DEM_IMPLEMENTATION_DONE'
 } > "$dir/above"
 for folder in $(for room in $rooms; do basename "$(dirname "$room")"; done | uniq | grep -vx api); do

@@ -2,8 +2,8 @@
    >>manual
    ---------------------------------------------------------------------------------------------
    This guide explains the concepts in the order in which a new user needs them. Every function and
-   field is described where it is declared: in the parts >>api, >>scene and >>run. The pages in
-   docs/ hold derivations, comparisons and measured costs.
+   field is described where it is declared: in the parts >>api, >>scene, >>machine, >>run and
+   >>record. The pages in docs/ hold derivations, comparisons and measured costs.
 
    --- 1. A complete program ---
 

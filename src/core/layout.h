@@ -244,7 +244,7 @@ typedef struct demi_domain {
        may return less than the gap);
      functions that find contacts with each kind above and with its own kind, in that order.
 
-   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_tessellations. A
+   Walls. >>add-wall: a row here, a declaration in >>machine, functions, above demi_tessellations. A
    row:
      constant;
      corners of an element (0: elements have none);
