@@ -415,7 +415,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out);
    and returns null otherwise. Call dem_world_create, which passes both. */
 DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
                                             size_t real_size);
-/* Creates an empty world; see dem_world_create. */
+/* Creates an empty world; see dem_world_desc. */
 static inline dem_world *dem_world_create(const dem_world_desc *desc) {
     return dem_world_create_checked(desc, DEM_VERSION, sizeof(dem_real));
 }
