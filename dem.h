@@ -15,6 +15,7 @@
      api/ - the public half: what programs include
        >>manual            guide: a complete program, the concepts in order, glossary, references
        >>api               results, vectors, ids, choices, contacts, the built-in contact laws
+       >>law-rows          user-defined laws that take a row of contacts at once
        >>scene             building a scene: worlds, materials, bodies
        >>machine           walls, joints, feeds, outlets
        >>run               running it: the time step, runs, trials, contacts, measuring
@@ -56,7 +57,8 @@
        >>rebuild           rebuilding lists: effects in force, skin, order of bodies, domains
      contact/ - contacts and their forces, by shapes
        >>touch             narrow phase: candidates to contacts, geometry only
-       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
+       >>respond           stages from rows of contacts of spheres to forces and torques
+       >>pairs             user-defined laws; the loop over the pruned neighbour list
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
@@ -285,13 +287,14 @@
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
    law_memory is the number of reals of contact history, law_vectors how many vectors they begin
-   with. Other fields are law_stiffness (N/m, largest stiffness of the law, which limits dt; 0: that
-   of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in c->who:
-   ids, radii, masses, user-defined numbers) and law_rate, a function that returns how fast the law
-   changes such numbers, so that dem.h can limit dt. Laws see the velocity at the time of the
-   positions. The Verlet schemes and leapfrog predict it from the half-step velocity with the force
-   of the step before. The half-step velocity itself gives unphysical static friction at size ratios
-   above 3 [VYA25].
+   with. Other fields are law_rows (the same law for many contacts at once, nearly as fast as a
+   built-in one: >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
+   0: that of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
+   c->who: ids, radii, masses, user-defined numbers) and law_rate, a function that returns how
+   fast the law changes such numbers, so that dem.h can limit dt. Laws see the velocity at the
+   time of the positions. The Verlet schemes and leapfrog predict it from the half-step velocity
+   with the force of the step before. The half-step velocity itself gives unphysical static
+   friction at size ratios above 3 [VYA25].
 
    `make law` tests a law for mistakes (docs/laws.md). docs/own_law.md is a tutorial.
 
@@ -1389,6 +1392,148 @@ typedef struct dem_allocator {
 } dem_allocator;
 
 /* ---------------------------------------------------------------------------------------------
+   >>law-rows
+   User-defined laws that take a row of contacts at once. A law that dem.h calls contact by contact
+   (dem_law_fn) makes a step take about 2.5 times as long as a built-in law. DEM_LAW_ROWS turns the
+   same law into a loop over columns, which compilers vectorise:
+
+       DEM_INLINE void sticky(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
+           (void)memory;
+           force->normal = 1e4*c->overlap - 3*c->closing_speed - 0.02;
+       }
+       DEM_LAW_ROWS(sticky_rows, sticky, 0)             // 0 reals of contact history
+
+       desc.law = sticky;
+       desc.law_rows = sticky_rows;
+   --------------------------------------------------------------------------------------------- */
+
+#if defined(__clang__)
+#define DEMI_VECTOR              /* clang checks for aliases at run time and warns about ivdep */
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#define DEMI_VECTOR _Pragma("GCC ivdep")
+#else
+#define DEMI_VECTOR
+#endif
+/* Expands DO(0) to DO(7). Compilers do not unroll such a loop at -O2. */
+#define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
+
+/* Marks a kernel that is compiled twice, for the baseline processor and for AVX2. The loader
+   chooses between them. Only where this needs no action from the user. "avx2" does not enable fused
+   multiply-add, so both versions give the same bits. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && defined(__x86_64__) && \
+    !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(DEM_NO_CLONES)
+#define DEMI_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define DEMI_CLONES
+#endif
+
+enum { DEM_ROW_GROUP = 64/(int)sizeof(dem_real) };    /* contacts of a vector group */
+
+#define DEMI_ROW_FIELD(PROPERTY, COEFFICIENT, UNIT) const dem_real *COEFFICIENT;
+/* A row of contacts in columns: c->overlap[q] is the overlap of contact q, c->normal[1][q] the y of
+   its normal. The fields and their units are those of dem_contact, then those of dem_contact_force,
+   which the law must set for every q below `count`. Some contacts of a row are not in touch, and
+   the last group is padded: dem.h ignores what the law returns for these, and clears their
+   history. */
+typedef struct dem_contact_rows {
+    int count;                     /* a multiple of DEM_ROW_GROUP */
+    int memory_count;              /* desc.law_memory */
+    const dem_real *touch;         /* 1 in contact or within the range of the law, otherwise 0 */
+    const dem_real *overlap, *range, *closing_speed, *twist, *sliding;
+    const dem_real *normal[3], *slip[3], *spin[3], *slip_step[3], *spin_step[3], *normal_rate[3];
+    const dem_real *r_eff, *m_eff, *kn, *cn, *kt, *ct, *kun;
+    const dem_real *friction, *friction_static, *rolling_friction;
+    const int32_t *material_a, *material_b;
+    DEM_LAW_COEFFICIENTS(DEMI_ROW_FIELD)
+    dem_real dt;                   /* s; this and the following are the same for all contacts */
+    int tension, friction_load, slider;
+    void *user;
+    dem_real *memory[DEM_LAW_MEMORY];             /* contact history: memory[k][q] */
+    dem_real *normal_force, *tangent[3], *moment[3], *slides;     /* slides: force->sliding */
+    /* in the order of dem_contact_energy; all null if the world keeps no ledger */
+    dem_real *energy[7];
+} dem_contact_rows;
+#undef DEMI_ROW_FIELD
+
+/* A law that computes the forces of a row of contacts: see dem_world_desc.law_rows. */
+typedef void (*dem_law_rows_fn)(const dem_contact_rows *rows);
+
+#define DEMI_ROW_COEFFICIENT(PROPERTY, COEFFICIENT, UNIT) c.COEFFICIENT = rows->COEFFICIENT[q];
+#define DEMI_ROW_VECTOR(v) dem_vec3_make(rows->v[0][q], rows->v[1][q], rows->v[2][q])
+#define DEMI_ROW_RECALL(e) m[e] = (e) < count ? rows->memory[e][q] : 0
+#define DEMI_ROW_KEEP(e) if ((e) < count) rows->memory[e][q] = touch ? m[e] : 0
+/* Evaluates `law` for contact q of a row. count: its reals of history. touch: is the contact in
+   touch? */
+DEM_INLINE void demi_law_of_row(const dem_contact_rows *rows, int q, int touch, dem_law_fn law,
+                                int count, int ledger) {
+    dem_contact c = DEM_ZERO;
+    dem_contact_force f = DEM_ZERO;
+    dem_real m[DEM_LAW_MEMORY];
+    int e;
+    c.overlap = rows->overlap[q]; c.range = rows->range[q];
+    c.closing_speed = rows->closing_speed[q]; c.twist = rows->twist[q];
+    c.sliding = rows->sliding[q];
+    c.normal = DEMI_ROW_VECTOR(normal); c.normal_rate = DEMI_ROW_VECTOR(normal_rate);
+    c.slip = DEMI_ROW_VECTOR(slip); c.slip_step = DEMI_ROW_VECTOR(slip_step);
+    c.spin = DEMI_ROW_VECTOR(spin); c.spin_step = DEMI_ROW_VECTOR(spin_step);
+    c.r_eff = rows->r_eff[q]; c.m_eff = rows->m_eff[q];
+    c.kn = rows->kn[q]; c.cn = rows->cn[q]; c.kt = rows->kt[q]; c.ct = rows->ct[q];
+    c.kun = rows->kun[q];
+    c.friction = rows->friction[q]; c.friction_static = rows->friction_static[q];
+    c.rolling_friction = rows->rolling_friction[q];
+    c.material_a = rows->material_a[q]; c.material_b = rows->material_b[q];
+    DEM_LAW_COEFFICIENTS(DEMI_ROW_COEFFICIENT)
+    c.dt = rows->dt; c.tension = rows->tension; c.friction_load = rows->friction_load;
+    c.slider = rows->slider; c.user = rows->user;
+    DEMI_EIGHT(DEMI_ROW_RECALL);
+    for (e = 8; e < count; e++) m[e] = rows->memory[e][q];
+    law(&c, m, &f);
+    DEMI_EIGHT(DEMI_ROW_KEEP);
+    for (e = 8; e < count; e++) rows->memory[e][q] = touch ? m[e] : 0;
+    rows->normal_force[q] = touch ? f.normal : 0;
+    rows->tangent[0][q] = touch ? f.tangent.x : 0;
+    rows->tangent[1][q] = touch ? f.tangent.y : 0;
+    rows->tangent[2][q] = touch ? f.tangent.z : 0;
+    rows->moment[0][q] = touch ? f.moment.x : 0;
+    rows->moment[1][q] = touch ? f.moment.y : 0;
+    rows->moment[2][q] = touch ? f.moment.z : 0;
+    rows->slides[q] = touch ? f.sliding : 0;
+    if (!ledger) return;
+    rows->energy[0][q] = touch ? f.energy.dashpot : 0;
+    rows->energy[1][q] = touch ? f.energy.sag : 0;
+    rows->energy[2][q] = touch ? f.energy.elastic : 0;
+    rows->energy[3][q] = touch ? f.energy.shear_work : 0;
+    rows->energy[4][q] = touch ? f.energy.slide : 0;
+    rows->energy[5][q] = touch ? f.energy.shear_stored : 0;
+    rows->energy[6][q] = touch ? f.energy.roll : 0;
+}
+#undef DEMI_ROW_COEFFICIENT
+#undef DEMI_ROW_VECTOR
+#undef DEMI_ROW_RECALL
+#undef DEMI_ROW_KEEP
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#define DEMI_QUIET __attribute__((optimize("no-trapping-math", "no-math-errno", "fp-contract=off")))
+#else
+#define DEMI_QUIET
+#endif
+#define DEMI_LAW_ROWS(LAW, MEMORY, LEDGER) \
+    for (g = 0; g < rows->count; g += DEM_ROW_GROUP) \
+        DEMI_VECTOR \
+        for (l = g; l < g + DEM_ROW_GROUP; l++) \
+            demi_law_of_row(rows, l, rows->touch[l] > 0, LAW, MEMORY, LEDGER);
+/* Defines the function NAME, a dem_law_rows_fn, from the law LAW, a DEM_INLINE function with
+   MEMORY reals of contact history (0 to 16, a constant equal to desc.law_memory). */
+#define DEM_LAW_ROWS(NAME, LAW, MEMORY) \
+    DEMI_QUIET \
+    DEMI_CLONES static void NAME(const dem_contact_rows *all) { \
+        const dem_contact_rows c = *all, *rows = &c;     /* in registers: nothing overlaps it */ \
+        int g, l; \
+        if (rows->energy[0]) { DEMI_LAW_ROWS(LAW, MEMORY, 1) } \
+        else { DEMI_LAW_ROWS(LAW, MEMORY, 0) } \
+    }
+
+/* ---------------------------------------------------------------------------------------------
    >>scene
    The parts of a scene, in the order in which a program builds it: the world, materials, grains
    and other bodies. Walls, joints, feeds and outlets follow in >>machine.
@@ -1429,6 +1574,10 @@ typedef struct dem_world_desc {
     /* -- user-defined law -- */
     /* replaces the normal, tangential and rolling law; null means the laws above */
     dem_law_fn law;
+    /* The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It
+       must return what law returns; dem.h uses whichever suits. It needs law. Null means that law
+       is called for each contact, as it always is with law_who. */
+    dem_law_rows_fn law_rows;
     void *law_user;                /* passed to law as c->user */
     int law_memory;                /* reals of contact history per contact, 0 to 16 */
     /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means
@@ -3230,13 +3379,6 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_APART
 #define DEMI_FORMAT(f, a)
 #endif
-#if defined(__clang__)
-#define DEMI_VECTOR              /* clang checks for aliases at run time and warns about ivdep */
-#elif defined(__GNUC__) && !defined(__TINYC__)
-#define DEMI_VECTOR _Pragma("GCC ivdep")
-#else
-#define DEMI_VECTOR
-#endif
 
 /* From here to the end of the implementation, every product and every sum is rounded separately,
    whatever the compiler options are. GNU C fuses them by default where the processor can. One
@@ -3263,19 +3405,6 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_UNROLL _Pragma("GCC unroll 16")
 #else
 #define DEMI_UNROLL
-#endif
-/* Expands DO(0) to DO(7). Compilers do not unroll such a loop at -O2. */
-#define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
-
-/* Marks a kernel that is compiled twice, for the baseline processor and for AVX2. The loader
-   chooses between them. Only where this needs no action from the user. "avx2" does not enable fused
-   multiply-add, so both versions give the same bits. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && defined(__x86_64__) && \
-    !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(DEM_NO_CLONES)
-#define DEMI_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define DEMI_CLONES
 #endif
 
 #ifndef DEM_DOMAIN_BODIES
@@ -5144,7 +5273,8 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_SAID(threads, 'i', DEMI_FROM | DEMI_FREE, 64, "threads must be 0 to 64, where 0 means "
                   "as many as OpenMP offers"), DEMI_ROW_FREE(dem_world_desc, allocator),
     DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
-    DEMI_ROW_FREE(dem_world_desc, law_user), DEMI_ROW_FREE(dem_world_desc, force_user),
+    DEMI_ROW_FREE(dem_world_desc, law_rows), DEMI_ROW_FREE(dem_world_desc, law_user),
+    DEMI_ROW_FREE(dem_world_desc, force_user),
     DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_END};
 
 /* ---------------------------------------------------------------------------------------------
@@ -15969,18 +16099,12 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
 
 /* ---------------------------------------------------------------------------------------------
    >>respond
-   Contact forces between spheres, computed for a tile of candidate pairs at a time. First the data
-   of both bodies are copied into rows, pair after pair (a copy of three adjacent numbers is cheaper
-   than three gathers). Then stages run over the rows, one after the other: contact detection,
-   relative motion, normal law, friction, rolling, force and torques. They work on vector groups of
-   constant length, which compilers vectorise at -O2 too. Finally the forces are added to both
-   bodies.
-
-   A scene runs only the stages that it needs, so any combination of laws costs the sum of its
-   parts. The most common combinations have one stage for all laws, which avoids the rows in
-   between. A pair with a body of a later work group stores that force in a slot; the other work
-   group adds it once all are done, in list order. The order of every sum is thus independent of the
-   number of threads.
+   Stages that compute contact forces between spheres for a tile of candidate pairs at a time. First
+   the data of both bodies are copied into rows, pair after pair (a copy of three adjacent numbers
+   is cheaper than three gathers). Then stages run over the rows, one after the other: contact
+   detection, relative motion, normal law, friction, rolling, force and torques. They work on vector
+   groups of constant length, which compilers vectorise at -O2 too. The most common combinations of
+   laws have one stage for all laws, which avoids the rows in between. >>pairs chooses the stages.
    --------------------------------------------------------------------------------------------- */
 /* Sums and differences are of the two bodies of a pair: a + b and a - b. */
 /* Rows that are filled one by one. gcc gets x and y side by side, which one instruction moves
@@ -16414,6 +16538,13 @@ DEMI_ANSWER_STAGE(answer_mixed, 0, 1, 1, 0)
 DEMI_ANSWER_STAGE(answer_alike_rolling, 1, 1, 1, 1)
 DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
 
+/* Returns the stage of force and torques. rolls: the laws return moments. */
+static demi_stage demi_answer_choose(const demi_run *r, int rolls) {
+    return !r->turning ? demi_stage_answer_bare
+        : rolls ? r->alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
+        : r->alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
+}
+
 /* Defines a stage with all laws, force and torques, for the most common scenes. History: FRICTION
    reals of friction, then those of rolling. */
 #define DEMI_WHOLE_STAGE(NAME, NORMAL, TANGENT, FRICTION, ROLLING, MEMORY, UNIFORM, TURNING, \
@@ -16456,6 +16587,15 @@ DEMI_WHOLE_ROLLING(rolling_alike_ledger, 1, 1)
 DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 #endif
 
+/* ---------------------------------------------------------------------------------------------
+   >>pairs
+   Contacts of spheres to forces and torques: user-defined laws, the choice of stages, and the loop
+   over the pruned neighbour list. A scene runs only the stages that it needs, so any combination of
+   laws costs the sum of its parts. The forces of a tile are added to both bodies. A pair with a
+   body of a later work group stores that force in a slot; the other work group adds it once all are
+   done, in list order. The order of every sum is thus independent of the number of threads.
+   --------------------------------------------------------------------------------------------- */
+
 /* Fills in c->who for pair q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
@@ -16487,25 +16627,27 @@ DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, con
     c->user = w->desc.law_user;
     if (who) demi_tile_who(t, r, q, t->gains[q], c);
 }
-/* Evaluates the user-defined law for pair q. It is inlined into the loop if DEM_LAW names it,
-   unless it needs c->who. */
+/* Calls the user-defined law for pair q. */
 DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
-                             int q, int who, int keep, int alike, int ledger, dem_law_fn law,
-                             dem_contact *c) {
+                             int q, dem_contact *c) {
+    const dem_world *w = r->w;
+    const int keep = w->desc.law_memory;
     dem_contact_force f;
     dem_real m[DEMI_MEMORY];
-    demi_tile_own(t, r, same, q, who, c);
+    demi_tile_own(t, r, same, q, w->desc.law_who, c);
     demi_force_clear(&f);
     demi_recall(t, q, 0, keep, m);
-    law(c, m, &f);
+    w->desc.law(c, m, &f);
     demi_keep(t, q, 0, keep, m);
     t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
-    demi_answer_one(t, q, f.normal, f.tangent, f.moment, alike, 1, 1);
-    if (!ledger) return;                        /* energies that the law returned */
+    demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
+    if (!r->ledger) return;                        /* energies that the law returned */
     demi_normal_energy(t, q, &f);
     demi_tangent_energy(t, q, &f);
     t->part[5][q] = f.energy.roll*t->touch[q];
 }
+#define DEMI_COEF_COLUMN(PROPERTY, COEFFICIENT, UNIT) \
+    c.COEFFICIENT = t->coef[DEMI_COEF_##COEFFICIENT];
 /* Calls a user-defined law pair by pair, and only for pairs in contact or within its range. */
 static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     const demi_same same = r->same;
@@ -16515,8 +16657,7 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
     demi_who_clear(&c.who);
     for (q = 0; q < r->span->count; q++) {
         if (t->touch[q] > 0) {
-            demi_own_one(t, r, &same, q, r->w->desc.law_who, r->w->desc.law_memory, r->alike,
-                         r->ledger, r->w->desc.law, &c);
+            demi_own_one(t, r, &same, q, &c);
             continue;
         }
         demi_row_put(t->force, q, demi_v(0, 0, 0));
@@ -16526,25 +16667,71 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
         for (e = 0; e < 7; e++) t->part[e][q] = 0;
     }
 }
-/* The same for the law that DEM_LAW names, in loops that compilers may vectorise: one for each
-   common number of history reals, and one for all others. */
+/* The law for rows of contacts: the one of the desc, or made of the law that DEM_LAW names. Null if
+   the world calls its law contact by contact. */
 #ifdef DEM_LAW
-#define DEMI_OWN_ROWS(KEEP, ALIKE, LEDGER) \
-    DEMI_ROWS(full) \
-        dem_contact c; \
-        demi_who_clear(&c.who); \
-        demi_own_one(t, r, &same, q, 0, KEEP, ALIKE, LEDGER, DEM_LAW, &c); \
-    DEMI_ROWS_END
-DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const demi_run *r,
-                                               int full) {
-    const demi_same same = r->same;
-    const int own = r->w->desc.law_memory;
-    if (!r->ledger && r->alike && own == 0) { DEMI_OWN_ROWS(0, 1, 0) }
-    else if (!r->ledger && r->alike && own == 3) { DEMI_OWN_ROWS(3, 1, 0) }
-    else if (!r->ledger && r->alike && own == 4) { DEMI_OWN_ROWS(4, 1, 0) }
-    else { DEMI_OWN_ROWS(own, r->alike, r->ledger) }
-}
+DEM_LAW_ROWS(demi_own_0, DEM_LAW, 0)
+DEM_LAW_ROWS(demi_own_3, DEM_LAW, 3)
+DEM_LAW_ROWS(demi_own_4, DEM_LAW, 4)
+DEM_LAW_ROWS(demi_own_any, DEM_LAW, rows->memory_count)
 #endif
+static dem_law_rows_fn demi_own_rows(const dem_world *w) {
+    if (!w->desc.law || w->desc.law_who) return 0;
+#ifdef DEM_LAW
+    if (w->desc.law == DEM_LAW)
+        switch (w->desc.law_memory) {
+        case 0: return demi_own_0;
+        case 3: return demi_own_3;
+        case 4: return demi_own_4;
+        default: return demi_own_any;
+        }
+#endif
+    return w->desc.law_rows;
+}
+/* Passes the columns of a tile to the law, after those that stages store otherwise. */
+static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
+    static const int energies[7] = {0, 6, 1, 2, 3, 4, 5};       /* rows of part */
+    const dem_world *w = r->w;
+    const demi_same same = r->same;
+    dem_real spin[3][DEMI_ROOM], spin_step[3][DEMI_ROOM], range[DEMI_ROOM];
+    int32_t material[2][DEMI_ROOM];
+    dem_contact_rows c;
+    int e;
+    DEMI_ROWS(full)
+        demi_row_put(spin, q, demi_rows_at(&t->apart, q));
+        demi_row_put(spin_step, q, demi_rows_at(&t->parted, q));
+    DEMI_ROWS_END
+    for (e = 0; e < full; e++) {
+        material[0][e] = w->bodies.material[r->span->a[e]];
+        material[1][e] = w->bodies.material[r->span->b[e]];
+        range[e] = r->ranged ? demi_tile_range(t, &same, e, 0) : 0;
+    }
+    c.count = full;
+    c.memory_count = w->desc.law_memory;
+    c.touch = t->touch; c.overlap = t->overlap; c.range = range; c.closing_speed = t->closing;
+    c.twist = t->twist; c.sliding = t->memory[same.at_sliding];
+    for (e = 0; e < 3; e++) {
+        c.normal[e] = t->normal[e]; c.normal_rate[e] = t->turn[e];
+        c.slip[e] = t->slip[e]; c.slip_step[e] = t->slip_step[e];
+        c.spin[e] = spin[e]; c.spin_step[e] = spin_step[e];
+        c.tangent[e] = t->tangent[e]; c.moment[e] = t->moment[e];
+    }
+    c.r_eff = t->coef[DEMI_R_EFF]; c.m_eff = t->coef[DEMI_M_EFF];
+    c.kn = t->coef[DEMI_KN]; c.cn = t->coef[DEMI_CN];
+    c.kt = t->coef[DEMI_KT]; c.ct = t->coef[DEMI_CT]; c.kun = t->coef[DEMI_K_UN];
+    c.friction = t->coef[DEMI_MU]; c.friction_static = t->coef[DEMI_MU_STATIC];
+    c.rolling_friction = t->coef[DEMI_MU_ROLL];
+    c.material_a = material[0]; c.material_b = material[1];
+    DEM_LAW_COEFFICIENTS(DEMI_COEF_COLUMN)
+    c.dt = same.dt; c.tension = same.tension; c.friction_load = same.friction_load;
+    c.slider = same.slider; c.user = w->desc.law_user;
+    for (e = 0; e < DEM_LAW_MEMORY; e++) c.memory[e] = t->memory[e];
+    c.normal_force = t->repulsion;
+    c.slides = t->memory[same.at_sliding];
+    for (e = 0; e < 7; e++) c.energy[e] = r->ledger ? t->part[energies[e]] : 0;
+    demi_own_rows(w)(&c);
+    demi_answer_choose(r, 1)(t, r, full);
+}
 
 /* --- choice of stages --- */
 typedef struct demi_stage_row { demi_stage common, all, precise; } demi_stage_row;
@@ -16565,10 +16752,7 @@ static const demi_stage_row demi_rolling_stages[] = {{0, 0, 0}, {0, 0, 0},
 /* Returns the one stage that evaluates all laws of the scene, or null if there is none. */
 static demi_stage demi_whole_stage(const dem_world *w, int alike) {
     (void)alike;
-#ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.law_who) return demi_stage_own_inlined;
-#endif
-    if (w->desc.law) return demi_stage_own;
+    if (w->desc.law) return demi_own_rows(w) ? demi_stage_own_rows : demi_stage_own;
 #ifndef DEM_NO_SPECIALIZE
     if (w->composed || !demi_laws_usual(w) || w->normal != DEM_NORMAL_HERTZ) return 0;
     if (w->effects.tangent == DEM_TANGENT_NONE && w->effects.rolling == DEM_ROLLING_NONE &&
@@ -16618,12 +16802,6 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.dt = dt;
     return r;
 }
-/* Returns the stage of force and torques. rolls: the laws return moments. */
-static demi_stage demi_answer_stage(const demi_run *r, int rolls) {
-    return !r->turning ? demi_stage_answer_bare
-        : rolls ? r->alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
-        : r->alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
-}
 /* Returns the run for contacts of two spheres. alike: for pairs of identical bodies; it gives the
    same bits as the general one. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
@@ -16640,7 +16818,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     k = demi_run_laws(w, &r, k);
-    r.stage[k] = demi_answer_stage(&r, w->laws.rolling->law != 0);
+    r.stage[k] = demi_answer_choose(&r, w->laws.rolling->law != 0);
     return r;
 }
 /* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
@@ -21927,7 +22105,7 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
             m->laws.stage[k](rows, &m->laws, full);
     }
     demi_member_weigh(&m->t, full);
-    demi_answer_stage(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
+    demi_answer_choose(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
     for (q = 0; q < m->count; q++)              /* at the centre of the sphere: no torque */
         if (m->merged[q]) demi_row_put(rows->force, q, demi_add(demi_row(rows->force, q),
                                               demi_scale(m->aside[q], m->t.still[q])));
@@ -22131,10 +22309,7 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
 /* Sets the force loop for the laws in force. Returns its name in reports. */
 static const char *demi_kernel_choose(dem_world *w) {
     w->kernel = w->effects.clustered ? demi_pairs_members : demi_pairs;
-#ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
-#endif
-    if (w->desc.law) return "your law, called";
+    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
     return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }
 
@@ -35587,6 +35762,7 @@ static void demi_body_force_again(const dem_body_state *body, dem_body id, doubl
 }
 static void demi_again_law(dem_world *t, demi_again *own) {
     t->desc.law = demi_law_again;
+    t->desc.law_rows = 0;
     t->desc.law_user = own;
 }
 static void demi_again_field(dem_world *t, demi_again *own) {
@@ -35822,9 +35998,9 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
         "library choose";
     if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
-                    d->law_range_radii > 0 || d->law_who))
-        return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
-            "they apply only to a user-defined law: set law, or leave them 0";
+                    d->law_range_radii > 0 || d->law_who || d->law_rows))
+        return "dem_world_create: law_range, law_range_radii, law_who or law_rows is set, but law "
+            "is null; they apply only to a user-defined law: set law, or leave them 0";
     if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
         return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
             "the rate at which your law changes the numbers of bodies: set all four, or leave it "
@@ -35986,12 +36162,12 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
                     w->margin.reach);
 #ifdef DEM_LAW
         if (w->desc.law != DEM_LAW)
-            fprintf(out, "           DEM_LAW names another law than desc.law, which is called by "
-                    "pointer: slower\n");
-        else if (w->desc.law_who)
-            fprintf(out, "           named by DEM_LAW, but law_who is set: called contact by "
-                    "contact, slower\n");
+            fprintf(out, "           DEM_LAW names another law than desc.law\n");
 #endif
+        fprintf(out, "           %s\n", demi_own_rows(w)
+                ? "contacts of spheres row by row" : w->desc.law_who
+                ? "called contact by contact, because law_who is set: slower"
+                : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
         return;
     }
     fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,

@@ -158,6 +158,7 @@ static void bench_law_flows(const dem_contact *c, dem_real *memory, dem_contact_
     c->who.rate_a[0] += flow;
     c->who.rate_b[0] -= flow;
 }
+DEM_LAW_ROWS(bench_law_rows, bench_law, 3)
 static const effect_row effect_rows[] = {
     {"friction", "bed", "spring friction, which holds grains at rest", "no friction",
      {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
@@ -183,7 +184,9 @@ static const effect_row effect_rows[] = {
      {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_EPSD}},
     {"own_law.inlined", "bed", "Hertz and spring friction as a user-defined law, named by DEM_LAW", "built-in laws",
      {.law = bench_law}, {0}, {0}},
-    {"own_law.called", "bed", "the same law by pointer", "built-in laws",
+    {"own_law.rows", "bed", "the same law by pointer, row by row (DEM_LAW_ROWS)", "built-in laws",
+     {.law = bench_law_called, .rows = bench_law_rows}, {0}, {0}},
+    {"own_law.called", "bed", "the same law by pointer, contact by contact", "built-in laws",
      {.law = bench_law_called}, {0}, {0}},
     {"own_law.who", "bed", "ids, radii, masses, contact point and time for a law by pointer", "own_law.called",
      {.law = bench_law_called, .who = 1}, {.law = bench_law_called}, {0}},

@@ -77,6 +77,7 @@ typedef struct bench_choice {
     int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere */
     int cuts;                   /* parts of each side of DRUM's triangles: cuts^2 triangles each; 0 or 1: one */
     dem_law_fn law;             /* a law of one's own: 3 reals, 1 vector                        */
+    dem_law_rows_fn rows;       /* the same for rows of contacts                                */
     double range;               /* its range, in radii                                          */
     int who;                    /* 1: it asks who touches                                       */
     int reals;                  /* 1: grains carry a number                                     */
@@ -357,6 +358,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     desc.tangent_law = o->tangent;
     desc.rolling_law = o->rolling;
     desc.law = o->law;
+    desc.law_rows = o->rows;
     desc.law_memory = o->law ? 3 : 0;
     desc.law_vectors = o->law ? 1 : 0;
     desc.law_range = (dem_real)(o->range*s->radius);

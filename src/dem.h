@@ -15,6 +15,7 @@
      api/ - the public half: what programs include
        >>manual            guide: a complete program, the concepts in order, glossary, references
        >>api               results, vectors, ids, choices, contacts, the built-in contact laws
+       >>law-rows          user-defined laws that take a row of contacts at once
        >>scene             building a scene: worlds, materials, bodies
        >>machine           walls, joints, feeds, outlets
        >>run               running it: the time step, runs, trials, contacts, measuring
@@ -56,7 +57,8 @@
        >>rebuild           rebuilding lists: effects in force, skin, order of bodies, domains
      contact/ - contacts and their forces, by shapes
        >>touch             narrow phase: candidates to contacts, geometry only
-       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
+       >>respond           stages from rows of contacts of spheres to forces and torques
+       >>pairs             user-defined laws; the loop over the pruned neighbour list
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
@@ -116,6 +118,7 @@
 #ifndef DEM_H
 #define DEM_H
 #include "api/api.h"
+#include "api/law-rows.h"
 #include "api/scene.h"
 #include "api/machine.h"
 #include "api/run.h"
@@ -209,6 +212,7 @@
 #include "search/rebuild.h"
 #include "contact/touch.h"
 #include "contact/respond.h"
+#include "contact/pairs.h"
 #include "contact/polyhedra.h"
 #include "contact/gaps.h"
 #include "contact/on-walls.h"

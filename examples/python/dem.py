@@ -45,6 +45,8 @@ VERSION_MINOR = 1
 VERSION_PATCH = 0
 BODY_REALS = 8
 LAW_MEMORY = 16
+ROW_GROUP = 64
+)sizeof(dem_real) = 65
 SIEVES = 32
 POLYHEDRON_FACES = 100
 RINGS = 12
@@ -1691,6 +1693,59 @@ class Allocator(Struct):
     ]
 
 
+@_struct
+class ContactRows(Struct):
+    """A row of contacts in columns: c->overlap[q] is the overlap of contact q, c->normal[1][q] the y of its normal. The
+    fields and their units are those of dem_contact, then those of dem_contact_force, which the law must set for every
+    q below `count`. Some contacts of a row are not in touch, and the last group is padded: dem.h ignores what the law
+    returns for these, and clears their history.
+    """
+    __slots__ = ()
+    c_name = 'dem_contact_rows'
+    counts = {'count': ('touch', 1), 'memory_count': ('memory', 1)}
+    rows = [
+        ('count', ctypes.c_int, 'a multiple of DEM_ROW_GROUP'),
+        ('memory_count', ctypes.c_int, 'desc.law_memory'),
+        ('touch', ctypes.POINTER(Real), '1 in contact or within the range of the law, otherwise 0'),
+        ('overlap', ctypes.POINTER(Real), ''),
+        ('range', ctypes.POINTER(Real), ''),
+        ('closing_speed', ctypes.POINTER(Real), ''),
+        ('twist', ctypes.POINTER(Real), ''),
+        ('sliding', ctypes.POINTER(Real), ''),
+        ('normal', ctypes.POINTER(Real)*3, ''),
+        ('slip', ctypes.POINTER(Real)*3, ''),
+        ('spin', ctypes.POINTER(Real)*3, ''),
+        ('slip_step', ctypes.POINTER(Real)*3, ''),
+        ('spin_step', ctypes.POINTER(Real)*3, ''),
+        ('normal_rate', ctypes.POINTER(Real)*3, ''),
+        ('r_eff', ctypes.POINTER(Real), ''),
+        ('m_eff', ctypes.POINTER(Real), ''),
+        ('kn', ctypes.POINTER(Real), ''),
+        ('cn', ctypes.POINTER(Real), ''),
+        ('kt', ctypes.POINTER(Real), ''),
+        ('ct', ctypes.POINTER(Real), ''),
+        ('kun', ctypes.POINTER(Real), ''),
+        ('friction', ctypes.POINTER(Real), ''),
+        ('friction_static', ctypes.POINTER(Real), ''),
+        ('rolling_friction', ctypes.POINTER(Real), ''),
+        ('material_a', ctypes.POINTER(ctypes.c_int32), ''),
+        ('material_b', ctypes.POINTER(ctypes.c_int32), ''),
+        ('kad', ctypes.POINTER(Real), ''),
+        ('dt', Real, 's; this and the following are the same for all contacts'),
+        ('tension', ctypes.c_int, ''),
+        ('friction_load', ctypes.c_int, ''),
+        ('slider', ctypes.c_int, ''),
+        ('user', ctypes.c_void_p, ''),
+        ('memory', ctypes.POINTER(Real)*LAW_MEMORY, 'contact history: memory[k][q]'),
+        ('normal_force', ctypes.POINTER(Real), 'slides: force->sliding'),
+        ('tangent', ctypes.POINTER(Real)*3, ""),
+        ('moment', ctypes.POINTER(Real)*3, ""),
+        ('slides', ctypes.POINTER(Real), ""),
+        ('energy', ctypes.POINTER(Real)*7,
+         'in the order of dem_contact_energy; all null if the world keeps no ledger'),
+    ]
+
+
 def _wrap_dem_law_fn(function, context, struct):
     memory_type = ctypes.POINTER(Real*context.memory)
 
@@ -1705,6 +1760,20 @@ def _wrap_dem_law_fn(function, context, struct):
 
 LawFn = Function(_wrap_dem_law_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce))
 LawFn.__doc__ = 'A contact law: computes *force from *c. `memory` is the contact history: desc.law_memory reals. They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer than the range. A law with a range decides itself when a bond or bridge begins and ends, and stores that in its history. If c->dt is 0, dem.h only asks for the force: leave `memory` unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put tangential springs there, and scalars after them. A law must use nothing except its arguments and c->user. Several threads call it at once.'
+
+
+def _wrap_dem_law_rows_fn(function, context, struct):
+
+    def call(rows):
+        try:
+            function(rows[0])
+        except BaseException as error:
+            context.fail(error)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(ContactRows))(call), LawRowsFn.c)
+
+
+LawRowsFn = Function(_wrap_dem_law_rows_fn, None, ctypes.POINTER(ContactRows))
+LawRowsFn.__doc__ = 'A law that computes the forces of a row of contacts: see dem_world_desc.law_rows.'
 
 
 def _wrap_dem_law_rate_fn(function, context, struct):
@@ -1809,6 +1878,10 @@ class WorldDesc(Struct):
         ('slider', Slider, ''),
         ('convention', Convention, ''),
         ('law', LawFn, 'replaces the normal, tangential and rolling law; null means the laws above'),
+        ('law_rows', LawRowsFn,
+         'The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It must '
+         'return what law returns; dem.h uses whichever suits. It needs law. Null means that law is called for'
+         ' each contact, as it always is with law_who.'),
         ('law_user', ctypes.c_void_p, 'passed to law as c->user'),
         ('law_memory', ctypes.c_int, 'reals of contact history per contact, 0 to 16'),
         ('law_memory_names', str,
@@ -3166,19 +3239,19 @@ ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ct
 ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0 to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
-structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Servo, FieldDesc, FieldData, FieldCell, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
+structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Servo, FieldDesc, FieldData, FieldCell, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
 
 
 class World(WorldBase):
     """A world: everything that one simulation consists of."""
 
     def __init__(self, *, gravity=None, domain=None, boundary=(), planar=0, thickness=0, normal_law=0,
-            tangent_law=0, rolling_law=0, tension=0, friction_load=0, slider=0, convention=0, law=None, law_user=None,
-            law_memory=0, law_memory_names=None, law_vectors=0, law_stiffness=0, law_range=0, law_range_radii=0,
-            law_who=0, law_rate=None, body_reals=None, body_reals_fn=None, body_reals_user=None, force=None,
-            body_force=None, force_user=None, integrator=0, dt=0, allow_large_dt=0, impact_speed=0, response=0,
-            cone=0, solver=0, sweeps=0, tolerance=0, cold_start=0, unsolved_stops=0, search=0, skin=0, rotation=0,
-            ellipsoid_overlap=0, cluster_contacts=0, orientations=0, ledger=0, threads=0, allocator=None):
+            tangent_law=0, rolling_law=0, tension=0, friction_load=0, slider=0, convention=0, law=None, law_rows=None,
+            law_user=None, law_memory=0, law_memory_names=None, law_vectors=0, law_stiffness=0, law_range=0,
+            law_range_radii=0, law_who=0, law_rate=None, body_reals=None, body_reals_fn=None, body_reals_user=None,
+            force=None, body_force=None, force_user=None, integrator=0, dt=0, allow_large_dt=0, impact_speed=0,
+            response=0, cone=0, solver=0, sweeps=0, tolerance=0, cold_start=0, unsolved_stops=0, search=0, skin=0,
+            rotation=0, ellipsoid_overlap=0, cluster_contacts=0, orientations=0, ledger=0, threads=0, allocator=None):
         """Creates an empty world. ArgumentError says which value is out of range.
 
         gravity: m/s2
@@ -3189,6 +3262,9 @@ class World(WorldBase):
             rotate about z only. The z component of gravity is ignored.
         thickness: m, of discs and polygons along z; 0 means 1 m
         law: replaces the normal, tangential and rolling law; null means the laws above
+        law_rows: The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It must
+            return what law returns; dem.h uses whichever suits. It needs law. Null means that law is called for each
+            contact, as it always is with law_who.
         law_user: passed to law as c->user
         law_memory: reals of contact history per contact, 0 to 16
         law_memory_names: Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means
@@ -3242,7 +3318,7 @@ class World(WorldBase):
         self._create(WorldDesc(gravity=gravity, domain=domain, boundary=boundary, planar=planar,
             thickness=thickness, normal_law=normal_law, tangent_law=tangent_law, rolling_law=rolling_law,
             tension=tension, friction_load=friction_load, slider=slider, convention=convention, law=law,
-            law_user=law_user, law_memory=law_memory, law_memory_names=law_memory_names,
+            law_rows=law_rows, law_user=law_user, law_memory=law_memory, law_memory_names=law_memory_names,
             law_vectors=law_vectors, law_stiffness=law_stiffness, law_range=law_range,
             law_range_radii=law_range_radii, law_who=law_who, law_rate=law_rate, body_reals=body_reals,
             body_reals_fn=body_reals_fn, body_reals_user=body_reals_user, force=force,

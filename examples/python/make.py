@@ -103,6 +103,7 @@ class Header:
         properties = re.findall(r"X\((\w+), (\w+),", extra)
         public = public.replace("DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)", " ".join("dem_real %s;" % p for p, _ in properties))
         public = public.replace("DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)", " ".join("dem_real %s;" % c for _, c in properties))
+        public = public.replace("DEM_LAW_COEFFICIENTS(DEMI_ROW_FIELD)", " ".join("const dem_real *%s;" % c for _, c in properties))
         self.enums, self.structs, self.calls, self.functions = {}, {}, {}, []
         self.constants = [(n, v, "") for n, v in re.findall(r"#define (DEM_VERSION_\w+) (\d+)\n", public)]
         self.zero = set(re.findall(r"static const (dem_\w+) DEM_\w+_ZERO", public))

@@ -171,13 +171,14 @@
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
    law_memory is the number of reals of contact history, law_vectors how many vectors they begin
-   with. Other fields are law_stiffness (N/m, largest stiffness of the law, which limits dt; 0: that
-   of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in c->who:
-   ids, radii, masses, user-defined numbers) and law_rate, a function that returns how fast the law
-   changes such numbers, so that dem.h can limit dt. Laws see the velocity at the time of the
-   positions. The Verlet schemes and leapfrog predict it from the half-step velocity with the force
-   of the step before. The half-step velocity itself gives unphysical static friction at size ratios
-   above 3 [VYA25].
+   with. Other fields are law_rows (the same law for many contacts at once, nearly as fast as a
+   built-in one: >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
+   0: that of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
+   c->who: ids, radii, masses, user-defined numbers) and law_rate, a function that returns how
+   fast the law changes such numbers, so that dem.h can limit dt. Laws see the velocity at the
+   time of the positions. The Verlet schemes and leapfrog predict it from the half-step velocity
+   with the force of the step before. The half-step velocity itself gives unphysical static
+   friction at size ratios above 3 [VYA25].
 
    `make law` tests a law for mistakes (docs/laws.md). docs/own_law.md is a tutorial.
 

@@ -39,6 +39,10 @@ typedef struct dem_world_desc {
     /* -- user-defined law -- */
     /* replaces the normal, tangential and rolling law; null means the laws above */
     dem_law_fn law;
+    /* The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It
+       must return what law returns; dem.h uses whichever suits. It needs law. Null means that law
+       is called for each contact, as it always is with law_who. */
+    dem_law_rows_fn law_rows;
     void *law_user;                /* passed to law as c->user */
     int law_memory;                /* reals of contact history per contact, 0 to 16 */
     /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means

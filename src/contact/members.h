@@ -262,7 +262,7 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
             m->laws.stage[k](rows, &m->laws, full);
     }
     demi_member_weigh(&m->t, full);
-    demi_answer_stage(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
+    demi_answer_choose(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
     for (q = 0; q < m->count; q++)              /* at the centre of the sphere: no torque */
         if (m->merged[q]) demi_row_put(rows->force, q, demi_add(demi_row(rows->force, q),
                                               demi_scale(m->aside[q], m->t.still[q])));
@@ -466,9 +466,6 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
 /* Sets the force loop for the laws in force. Returns its name in reports. */
 static const char *demi_kernel_choose(dem_world *w) {
     w->kernel = w->effects.clustered ? demi_pairs_members : demi_pairs;
-#ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
-#endif
-    if (w->desc.law) return "your law, called";
+    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
     return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }

@@ -34,13 +34,6 @@
 #define DEMI_APART
 #define DEMI_FORMAT(f, a)
 #endif
-#if defined(__clang__)
-#define DEMI_VECTOR              /* clang checks for aliases at run time and warns about ivdep */
-#elif defined(__GNUC__) && !defined(__TINYC__)
-#define DEMI_VECTOR _Pragma("GCC ivdep")
-#else
-#define DEMI_VECTOR
-#endif
 
 /* From here to the end of the implementation, every product and every sum is rounded separately,
    whatever the compiler options are. GNU C fuses them by default where the processor can. One
@@ -67,19 +60,6 @@
 #define DEMI_UNROLL _Pragma("GCC unroll 16")
 #else
 #define DEMI_UNROLL
-#endif
-/* Expands DO(0) to DO(7). Compilers do not unroll such a loop at -O2. */
-#define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
-
-/* Marks a kernel that is compiled twice, for the baseline processor and for AVX2. The loader
-   chooses between them. Only where this needs no action from the user. "avx2" does not enable fused
-   multiply-add, so both versions give the same bits. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && defined(__x86_64__) && \
-    !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(DEM_NO_CLONES)
-#define DEMI_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define DEMI_CLONES
 #endif
 
 #ifndef DEM_DOMAIN_BODIES

@@ -274,5 +274,6 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_SAID(threads, 'i', DEMI_FROM | DEMI_FREE, 64, "threads must be 0 to 64, where 0 means "
                   "as many as OpenMP offers"), DEMI_ROW_FREE(dem_world_desc, allocator),
     DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
-    DEMI_ROW_FREE(dem_world_desc, law_user), DEMI_ROW_FREE(dem_world_desc, force_user),
+    DEMI_ROW_FREE(dem_world_desc, law_rows), DEMI_ROW_FREE(dem_world_desc, law_user),
+    DEMI_ROW_FREE(dem_world_desc, force_user),
     DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_END};

@@ -338,6 +338,7 @@ static void demi_body_force_again(const dem_body_state *body, dem_body id, doubl
 }
 static void demi_again_law(dem_world *t, demi_again *own) {
     t->desc.law = demi_law_again;
+    t->desc.law_rows = 0;
     t->desc.law_user = own;
 }
 static void demi_again_field(dem_world *t, demi_again *own) {

@@ -43,9 +43,9 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
         "library choose";
     if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
-                    d->law_range_radii > 0 || d->law_who))
-        return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
-            "they apply only to a user-defined law: set law, or leave them 0";
+                    d->law_range_radii > 0 || d->law_who || d->law_rows))
+        return "dem_world_create: law_range, law_range_radii, law_who or law_rows is set, but law "
+            "is null; they apply only to a user-defined law: set law, or leave them 0";
     if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
         return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
             "the rate at which your law changes the numbers of bodies: set all four, or leave it "
@@ -207,12 +207,12 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
                     w->margin.reach);
 #ifdef DEM_LAW
         if (w->desc.law != DEM_LAW)
-            fprintf(out, "           DEM_LAW names another law than desc.law, which is called by "
-                    "pointer: slower\n");
-        else if (w->desc.law_who)
-            fprintf(out, "           named by DEM_LAW, but law_who is set: called contact by "
-                    "contact, slower\n");
+            fprintf(out, "           DEM_LAW names another law than desc.law\n");
 #endif
+        fprintf(out, "           %s\n", demi_own_rows(w)
+                ? "contacts of spheres row by row" : w->desc.law_who
+                ? "called contact by contact, because law_who is set: slower"
+                : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
         return;
     }
     fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
