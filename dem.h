@@ -5477,6 +5477,7 @@ DEM_INLINE void demi_contact_usual(dem_contact *c) {
     c->friction_load = DEM_LOAD_REPULSIVE;
     c->slider = DEM_SLIDER_PARALLEL;
     c->friction_static = c->friction;
+    c->sliding = 0;
 }
 static int demi_laws_usual(const dem_world *w) {
     return w->desc.tension == DEM_TENSION_ALLOWED && w->desc.friction_load == DEM_LOAD_REPULSIVE &&
@@ -9339,6 +9340,10 @@ static void demi_prime(dem_world *w) {
        over the step, and spin, predicted with the last torque. All functions are of second order
        under torques. Tests: free rotation against elliptic functions, order, tops. --- */
 
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
 /* Returns the rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
 DEM_INLINE dem_quat demi_quat_exp(dem_vec3 v) {
     const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
@@ -9491,6 +9496,9 @@ DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real
             demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
     }
 }
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
 static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
                              dem_real dt, dem_real after) {
     int l;
@@ -16244,6 +16252,7 @@ struct demi_run {
     const dem_world *w;
     const demi_span *span;         /* the pairs; null: persistent contacts */
     int alike, ledger, keep;       /* are both bodies alike? keep: reals of history */
+    int usual;                     /* demi_laws_usual */
     int turning, parting;          /* are spins, differences of spins needed? */
     int following;                 /* is the motion over the last step needed? */
     int ranged;                    /* does the law have a range? */
@@ -16478,18 +16487,24 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
    sets. */
 #define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
-        const demi_same s = r->same; \
-        DEMI_ROWS(full) \
-            dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
-            demi_tile_contact(t, &s, q, &c); \
-            if ((ALL) < 2) demi_contact_usual(&c); \
-            demi_normal_get(t, q, &f); \
-            demi_recall(t, q, AT, MEMORY, m); \
-            dem_law_##LAW(&c, m, &f); \
-            demi_keep(t, q, AT, MEMORY, m); \
-            PUT(t, &s, q, &f, ALL); \
-        DEMI_ROWS_END \
+        demi_same s = r->same; \
+        if ((ALL) == 2 && !r->usual) DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, (void)0) \
+        else { \
+            s.at_sliding = DEMI_MEMORY; \
+            DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, demi_contact_usual(&c)) \
+        } \
     }
+#define DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, USUAL) \
+    DEMI_ROWS(full) \
+        dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
+        demi_tile_contact(t, &s, q, &c); \
+        USUAL; \
+        demi_normal_get(t, q, &f); \
+        demi_recall(t, q, AT, MEMORY, m); \
+        dem_law_##LAW(&c, m, &f); \
+        demi_keep(t, q, AT, MEMORY, m); \
+        PUT(t, &s, q, &f, ALL); \
+    DEMI_ROWS_END
 #define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_normal, MEMORY, 0, demi_normal_put) \
     DEMI_LAW_STAGE(demi_stage_##LAW##_precise, LAW, s.at_normal, MEMORY, 1, demi_normal_put) \
@@ -16788,6 +16803,7 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     memset(&r, 0, sizeof r);
     r.w = w;
     r.ledger = w->desc.ledger; r.keep = w->memory_stride;
+    r.usual = demi_laws_usual(w);
     r.turning = own || rolls || laws->tangent->law;
     r.parting = own || rolls;
     r.following = own || laws->tangent->vectors || laws->rolling->vectors;

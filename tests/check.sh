@@ -179,6 +179,7 @@ if [ "$1" != short ]; then
     found clang && tests "clang -O2" clang "-std=c99 -O2 -ffp-contract=off"
     # processors that can fuse a product and a sum, and compilers that would
     found clang && try "clang -O3 -march=native: test_threads" "clang -O3 -march=native -I. tests/run/test_threads.c -o \$bin -lm && \$bin"
+    found gcc && try "gcc -O2: the AVX2 version of every kernel uses vector arithmetic" "sh tests/vector.sh \$bin.o"
     found gcc && try "gcc -std=gnu99 -O3 -march=native: test_threads" "gcc -std=gnu99 -O3 -march=native -I. tests/run/test_threads.c -o \$bin -lm && \$bin"
     found g++ && tests "g++ -std=c++11" g++ "-std=c++11 -O2 -ffp-contract=off"
     try "the same bits on Windows, aarch64, WebAssembly" "sh tests/cross.sh \$bin"

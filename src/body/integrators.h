@@ -219,6 +219,10 @@ static void demi_prime(dem_world *w) {
        over the step, and spin, predicted with the last torque. All functions are of second order
        under torques. Tests: free rotation against elliptic functions, order, tops. --- */
 
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
 /* Returns the rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
 DEM_INLINE dem_quat demi_quat_exp(dem_vec3 v) {
     const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
@@ -371,6 +375,9 @@ DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real
             demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
     }
 }
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
 static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
                              dem_real dt, dem_real after) {
     int l;

@@ -199,6 +199,7 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     memset(&r, 0, sizeof r);
     r.w = w;
     r.ledger = w->desc.ledger; r.keep = w->memory_stride;
+    r.usual = demi_laws_usual(w);
     r.turning = own || rolls || laws->tangent->law;
     r.parting = own || rolls;
     r.following = own || laws->tangent->vectors || laws->rolling->vectors;

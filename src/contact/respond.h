@@ -145,6 +145,7 @@ struct demi_run {
     const dem_world *w;
     const demi_span *span;         /* the pairs; null: persistent contacts */
     int alike, ledger, keep;       /* are both bodies alike? keep: reals of history */
+    int usual;                     /* demi_laws_usual */
     int turning, parting;          /* are spins, differences of spins needed? */
     int following;                 /* is the motion over the last step needed? */
     int ranged;                    /* does the law have a range? */
@@ -379,18 +380,24 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
    sets. */
 #define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
-        const demi_same s = r->same; \
-        DEMI_ROWS(full) \
-            dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
-            demi_tile_contact(t, &s, q, &c); \
-            if ((ALL) < 2) demi_contact_usual(&c); \
-            demi_normal_get(t, q, &f); \
-            demi_recall(t, q, AT, MEMORY, m); \
-            dem_law_##LAW(&c, m, &f); \
-            demi_keep(t, q, AT, MEMORY, m); \
-            PUT(t, &s, q, &f, ALL); \
-        DEMI_ROWS_END \
+        demi_same s = r->same; \
+        if ((ALL) == 2 && !r->usual) DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, (void)0) \
+        else { \
+            s.at_sliding = DEMI_MEMORY; \
+            DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, demi_contact_usual(&c)) \
+        } \
     }
+#define DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, USUAL) \
+    DEMI_ROWS(full) \
+        dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
+        demi_tile_contact(t, &s, q, &c); \
+        USUAL; \
+        demi_normal_get(t, q, &f); \
+        demi_recall(t, q, AT, MEMORY, m); \
+        dem_law_##LAW(&c, m, &f); \
+        demi_keep(t, q, AT, MEMORY, m); \
+        PUT(t, &s, q, &f, ALL); \
+    DEMI_ROWS_END
 #define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_normal, MEMORY, 0, demi_normal_put) \
     DEMI_LAW_STAGE(demi_stage_##LAW##_precise, LAW, s.at_normal, MEMORY, 1, demi_normal_put) \

@@ -198,6 +198,7 @@ DEM_INLINE void demi_contact_usual(dem_contact *c) {
     c->friction_load = DEM_LOAD_REPULSIVE;
     c->slider = DEM_SLIDER_PARALLEL;
     c->friction_static = c->friction;
+    c->sliding = 0;
 }
 static int demi_laws_usual(const dem_world *w) {
     return w->desc.tension == DEM_TENSION_ALLOWED && w->desc.friction_load == DEM_LOAD_REPULSIVE &&
