@@ -45,6 +45,7 @@
        >>sheets            connected facets of a surface, their orientation and open edges
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+       >>belts             surfaces that move in themselves, such as belts
        >>joins             facets of walls that move together: doubles, covers, dividing
        >>coarsen           facets in one plane merged to fewer
        >>tessellate        curved walls and sieves as surfaces of facets
@@ -1378,7 +1379,8 @@ typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_b
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
    derivatives of position and rotation. It is called twice per step (for its end and its middle;
-   with impulses also for the end of the next step), from one thread. A pose that is not finite, is
+   with impulses also for the end of the next step), from one thread. dem_world_check calls it too,
+   also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is
    clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
@@ -2261,6 +2263,15 @@ DEM_API int dem_sieve_blinded_get(const dem_world *world, dem_wall sieve, dem_re
 
 /* Sets the motion of a wall, which begins at its present pose. */
 DEM_API dem_result dem_wall_motion_set(dem_world *world, dem_wall wall, const dem_motion *motion);
+/* Sets the velocity of the surface of a wall (m/s), for a belt: the wall does not move with it. The
+   velocity is in world axes and rotates with the wall from now on. At a contact the surface moves
+   with the part of it across the contact normal, so a curved or closed surface moves along itself
+   everywhere, also at rims. 0 stops it. */
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *world, dem_wall wall,
+                                                 dem_vec3 velocity);
+/* Writes the velocity of the surface, in present world axes, to velocity. */
+DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall wall,
+                                                 dem_vec3 *velocity);
 /* Writes the present pose of a wall to pose. */
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall wall, dem_pose *pose);
 /* Removes a wall. Ids of other walls stay valid. It is an error if an outlet moves with it. */
@@ -4084,6 +4095,8 @@ typedef struct demi_wall {
     dem_pose mid;                  /* in the middle of the last step */
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
+    dem_vec3 glide;                /* m/s, velocity of its surface, in its frame: >>belts */
+    int glides;                    /* 1: that is not 0 */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes
                                       a rebuild necessary */
@@ -11223,6 +11236,54 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
     const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     demi_loads_reset(&w->walls[i].loads);
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>belts
+   Surfaces that move in themselves, such as belts: the wall stays, or follows its motion, and its
+   surface has a velocity of its own. At a contact the surface moves with the part of it across the
+   contact normal n: g - n (n.g). This part is continuous where a contact goes round a rim or a
+   corner, and 0 where n is along g. A velocity along n would do work against the elastic force
+   although the place of the surface, and with it the elastic energy, does not change: that creates
+   energy. Owns `glide` and `glides` of walls.
+   --------------------------------------------------------------------------------------------- */
+
+/* Returns the velocity of the surface of a wall in this pose at a contact with normal n, m/s,
+   without that of the pose. */
+DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, dem_vec3 n) {
+    const dem_vec3 g = demi_rotate(pose->rotation, wall->glide);
+    return demi_sub(g, demi_scale(n, demi_dot(g, n)));
+}
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
+    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
+    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
+    if (!wall) return DEM_ERROR_ARGUMENT;
+    if (!demi_place(velocity))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
+                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
+                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
+                         (double)velocity.z, DEMI_FARTHEST);
+    if (w->desc.planar && fabs((double)velocity.z) > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
+                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
+                         "grain moves along z", (int)id.id, (double)velocity.z);
+    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
+    wall->glides = demi_dot(velocity, velocity) > 0;
+    demi_built(w, "dem_wall_surface_velocity_set");
+    w->stage.forces_valid = w->stage.primed = 0;
+    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
+                                                 dem_vec3 *velocity) {
+    const char *call = "dem_wall_surface_velocity_get";
+    int i;
+    if (demi_null_look(world, call, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, call, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
     return DEM_OK;
 }
 
@@ -21369,16 +21430,21 @@ DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
     const dem_vec3 uh = demi_at(w->bodies.half_vel + 4*k->a);
+    dem_vec3 rate, gone;
     t->at[q] = demi_add(x, k->arm_a);
     t->surface[q] = demi_surface_at(&wall->pose, t->at[q]);
-    demi_rows_put(&t->rows.rate, q, demi_sub(demi_at(w->bodies.vel + 4*k->a), t->surface[q]));
+    rate = demi_sub(demi_at(w->bodies.vel + 4*k->a), t->surface[q]);
+    if (wall->glides) rate = demi_sub(rate, demi_glide_at(wall, &wall->pose, k->normal));
+    demi_rows_put(&t->rows.rate, q, rate);
     demi_rows_put(&t->arm[1], q, demi_v(0, 0, 0));
     demi_rows_put(&t->spin[1], q, wall->pose.spin);
     if (!r->following) return;
     /* velocity relative to the wall at mid-step */
-    demi_rows_put(&t->rows.gone, q,
-                  demi_sub(uh, demi_surface_at(&wall->mid,
-                      demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2))))));
+    gone = demi_sub(uh, demi_surface_at(&wall->mid,
+                        demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2)))));
+    if (wall->glides)                           /* its normal part is removed later */
+        gone = demi_sub(gone, demi_rotate(wall->mid.rotation, wall->glide));
+    demi_rows_put(&t->rows.gone, q, gone);
     demi_rows_put(&t->mid[1], q, demi_v(0, 0, 0));
     demi_rows_put(&t->spun[1], q, wall->mid.spin);
 }
@@ -21710,9 +21776,15 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
         demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
         demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
-    } else
-        demi_wall_sum_add(w, &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall],
-                          c->wall, t->at[q], force, demi_row(t->rows.moment, q), t->surface[q]);
+    } else {
+        const demi_wall *wall = &w->walls[c->wall];
+        demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall];
+        demi_wall_sum_add(w, sum, c->wall, t->at[q], force, demi_row(t->rows.moment, q),
+                          t->surface[q]);
+        if (wall->glides)                       /* only friction does work on a gliding surface */
+            sum->power += (double)(t->grip[q]*demi_dot(demi_row(t->rows.tangent, q),
+                demi_glide_at(wall, &wall->pose, c->normal)));
+    }
 }
 /* Evaluates the contacts of a tile. Fewer than four are evaluated one by one, since a vector group
    costs as much for one contact as for all that fit. Results are the same to the bit. */
@@ -22683,8 +22755,10 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
 static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover *m) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+    dem_vec3 v = demi_surface_at(&wall->ahead, demi_add(x, k->arm_a));
     memset(m, 0, sizeof *m);
-    demi_put(m->v, demi_surface_at(&wall->ahead, demi_add(x, k->arm_a)));
+    if (wall->glides) v = demi_add(v, demi_glide_at(wall, &wall->ahead, k->normal));
+    demi_put(m->v, v);
     demi_put(m->w, wall->ahead.spin);
 }
 /* Returns the correction of bias for the rotation of the normal between two detections, m/s, <= 0.
@@ -26234,9 +26308,9 @@ static void demi_crew_end(dem_world *w) {
    press_whole, pressed). Reads everything else. A head (h) considers all members of its team.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the largest speed of a wall's surface during its motion, m/s, also before the motion has
-   begun. For a user-defined motion: its present speed. A table is sampled eight times per row. */
-static double demi_motion_speed(const demi_wall *wall) {
+/* Returns the largest speed of a wall during its motion, m/s, also before the motion has begun. For
+   a user-defined motion: its present speed. A table is sampled eight times per row. */
+static double demi_pose_speed(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     const double far = (double)DEMI_MAX(wall->extent, wall->radius);
     dem_vec3 spin;
@@ -26266,6 +26340,10 @@ static double demi_motion_speed(const demi_wall *wall) {
     default: break;
     }
     return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
+}
+/* Returns the largest speed of a wall's surface during its motion, m/s. */
+static double demi_motion_speed(const demi_wall *wall) {
+    return demi_pose_speed(wall) + (double)demi_length(wall->glide);
 }
 /* Returns the unit vector of gravity, or 0 without gravity. */
 static dem_vec3 demi_down(const dem_world *w) {
@@ -26985,7 +27063,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
         double speed;
         if (kind == DEMI_WALL_NONE || kind == DEMI_WALL_PLANE || kind == DEMI_WALL_CYLINDER ||
             wall->motion.kind == DEM_MOTION_FIXED || !(radius > 0)) continue;
-        speed = wall->motion.kind == DEM_MOTION_SERVO ? demi_motion_speed(wall)
+        speed = wall->motion.kind == DEM_MOTION_SERVO ? demi_pose_speed(wall)
                                                       : demi_wall_speed(wall);
         if (!(speed*dt > radius)) continue;
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
@@ -32755,7 +32833,7 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 20 };
+enum { DEMI_CHECKPOINT_VERSION = 21 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -33038,6 +33116,8 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
         demi_visit(s, &wall->servo, sizeof wall->servo);
+        demi_visit(s, &wall->glide, sizeof wall->glide);
+        demi_visit(s, &wall->glides, sizeof wall->glides);
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }
@@ -33716,6 +33796,8 @@ static int demi_walls_check(const demi_reader *r) {
         if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
             demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k))
             return demi_lie(r, "motion of wall", i);
+        if (!demi_place(wall->glide) || wall->glides != (demi_dot(wall->glide, wall->glide) > 0))
+            return demi_lie(r, "surface velocity of wall", i);
     }
     return 1;
 }
@@ -34480,6 +34562,65 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
                   "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
 }
 
+/* Compares the velocity and spin that a user-defined motion gives at a time with the differences of
+   its poses over d s. Returns 1 and fills the two vectors if they differ by more than 1 % and
+   round-off. Of an infinite plane only the velocity along its normal counts. */
+static int demi_motion_differs(const demi_wall *wall, double time, double d, dem_vec3 *given,
+                               dem_vec3 *found) {
+    const dem_real digit = DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(2e-15), per = (dem_real)(1/d);
+    dem_pose p[3];
+    dem_vec3 v[2][2];
+    dem_real W[9];
+    int i, j, k;
+    for (k = 0; k < 3; k++) {
+        demi_wall_pose_at(wall, time + k*d/2, &p[k]);
+        if (!demi_pose_sane(&p[k])) return 0;
+    }
+    for (i = 0; i < 3; i++)                     /* dR/dt R^T */
+        for (j = 0; j < 3; j++)
+            for (W[3*i + j] = 0, k = 0; k < 3; k++)
+                W[3*i + j] += (p[2].rotation[3*i + k] - p[0].rotation[3*i + k])*per*
+                    p[1].rotation[3*j + k];
+    v[0][0] = p[1].velocity;
+    v[0][1] = demi_scale(demi_sub(p[2].position, p[0].position), per);
+    v[1][0] = p[1].spin;
+    v[1][1] = demi_scale(demi_v(W[7] - W[5], W[2] - W[6], W[3] - W[1]), DEM_R(0.5));
+    for (k = 0; k < 2; k++) {
+        const dem_vec3 n = demi_rotate(p[1].rotation, demi_v(0, 0, 1)), off = demi_sub(v[k][0],
+                                                                                       v[k][1]);
+        const int flat = demi_wall_is(wall, DEMI_FLAT) && !k;
+        const dem_real size = DEMI_MAX(demi_length(v[k][0]), demi_length(v[k][1]));
+        *given = v[k][0];
+        *found = v[k][1];
+        if ((flat ? DEMI_ABS(demi_dot(off, n)) : demi_length(off)) > DEM_R(0.01)*size +
+            digit*per*(k ? 1 : demi_length(p[1].position))) return 1 + k;
+    }
+    return 0;
+}
+/* Checks user-defined motions now and at later times, up to a million steps from now. */
+static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const demi_calling was = demi_calls(w, "dem_world_check", 1);
+    const double d = w->clock.dt > 0 ? (double)w->clock.dt : w->desc.dt > 0 ? (double)w->desc.dt
+        : a->dt_max > 0 ? (double)a->dt_max/2 : 1e-6;
+    int i, k, differs;
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        double after = 0;
+        dem_vec3 v, u;
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_USER) continue;
+        for (k = differs = 0; k < 8 && !differs; k++, after = after > 0 ? 10*after : d)
+            differs = demi_motion_differs(wall, w->clock.time + after, d, &v, &u);
+        if (!differs) continue;
+        demi_find(f, DEM_SEVERITY_WARNING, "the motion of wall %d gives a %s of (%g, %g, %g) where "
+                  "its %s changes by (%g, %g, %g) per second: contacts would create energy; give "
+                  "the derivative or, for a belt, use dem_wall_surface_velocity_set",
+                  (int)wall->id, differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y,
+                  (double)v.z, differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y,
+                  (double)u.z);
+    }
+    demi_called(w, was);
+}
+
 /* True if the whole of a finite wall is behind some plane or beyond an outflow face of the domain,
    so that no grain can reach it. */
 static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
@@ -34974,6 +35115,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     f.room = findings && capacity > 0 ? capacity : 0;
     demi_advise(w, &advice);
     demi_check_motion(w, &f);
+    demi_check_motions(w, &advice, &f);
     demi_check_radii(w, &f);
     demi_check_digits(w, &f);
     demi_check_materials(w, &f);
@@ -35608,8 +35750,8 @@ static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
 static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     int i, count = 0, touched = 0;
     for (i = 0; i < w->wall_count; i++) {
-        if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].motion.kind == DEM_MOTION_FIXED)
-            continue;
+        if (w->walls[i].kind == DEMI_WALL_NONE ||
+            (w->walls[i].motion.kind == DEM_MOTION_FIXED && !w->walls[i].glides)) continue;
         count++;
         touched += w->walls[i].loads.touched;
     }
@@ -35726,6 +35868,7 @@ static void demi_leave_motions(dem_world *t, demi_again *own) {
         if (demi_wall_own(t, &t->walls[i]) && t->walls[i].kind != DEMI_WALL_NONE) {
             id.id = t->walls[i].id;
             dem_wall_motion_set(t, id, &DEM_MOTION);
+            dem_wall_surface_velocity_set(t, id, demi_v(0, 0, 0));
         }
 }
 static void demi_leave_walls(dem_world *t, demi_again *own) {

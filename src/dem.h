@@ -45,6 +45,7 @@
        >>sheets            connected facets of a surface, their orientation and open edges
        >>motions           poses of moving walls: rotation, oscillation, tables of poses
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
+       >>belts             surfaces that move in themselves, such as belts
        >>joins             facets of walls that move together: doubles, covers, dividing
        >>coarsen           facets in one plane merged to fewer
        >>tessellate        curved walls and sieves as surfaces of facets
@@ -201,6 +202,7 @@
 #include "surface/sheets.h"
 #include "surface/motions.h"
 #include "surface/walls.h"
+#include "surface/belts.h"
 #include "surface/joins.h"
 #include "surface/coarsen.h"
 #include "surface/tessellate.h"

@@ -170,6 +170,15 @@ DEM_API int dem_sieve_blinded_get(const dem_world *world, dem_wall sieve, dem_re
 
 /* Sets the motion of a wall, which begins at its present pose. */
 DEM_API dem_result dem_wall_motion_set(dem_world *world, dem_wall wall, const dem_motion *motion);
+/* Sets the velocity of the surface of a wall (m/s), for a belt: the wall does not move with it. The
+   velocity is in world axes and rotates with the wall from now on. At a contact the surface moves
+   with the part of it across the contact normal, so a curved or closed surface moves along itself
+   everywhere, also at rims. 0 stops it. */
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *world, dem_wall wall,
+                                                 dem_vec3 velocity);
+/* Writes the velocity of the surface, in present world axes, to velocity. */
+DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall wall,
+                                                 dem_vec3 *velocity);
 /* Writes the present pose of a wall to pose. */
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall wall, dem_pose *pose);
 /* Removes a wall. Ids of other walls stay valid. It is an error if an outlet moves with it. */

@@ -133,16 +133,21 @@ DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
     const dem_vec3 uh = demi_at(w->bodies.half_vel + 4*k->a);
+    dem_vec3 rate, gone;
     t->at[q] = demi_add(x, k->arm_a);
     t->surface[q] = demi_surface_at(&wall->pose, t->at[q]);
-    demi_rows_put(&t->rows.rate, q, demi_sub(demi_at(w->bodies.vel + 4*k->a), t->surface[q]));
+    rate = demi_sub(demi_at(w->bodies.vel + 4*k->a), t->surface[q]);
+    if (wall->glides) rate = demi_sub(rate, demi_glide_at(wall, &wall->pose, k->normal));
+    demi_rows_put(&t->rows.rate, q, rate);
     demi_rows_put(&t->arm[1], q, demi_v(0, 0, 0));
     demi_rows_put(&t->spin[1], q, wall->pose.spin);
     if (!r->following) return;
     /* velocity relative to the wall at mid-step */
-    demi_rows_put(&t->rows.gone, q,
-                  demi_sub(uh, demi_surface_at(&wall->mid,
-                      demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2))))));
+    gone = demi_sub(uh, demi_surface_at(&wall->mid,
+                        demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2)))));
+    if (wall->glides)                           /* its normal part is removed later */
+        gone = demi_sub(gone, demi_rotate(wall->mid.rotation, wall->glide));
+    demi_rows_put(&t->rows.gone, q, gone);
     demi_rows_put(&t->mid[1], q, demi_v(0, 0, 0));
     demi_rows_put(&t->spun[1], q, wall->mid.spin);
 }
@@ -474,9 +479,15 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
         demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
         demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
-    } else
-        demi_wall_sum_add(w, &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall],
-                          c->wall, t->at[q], force, demi_row(t->rows.moment, q), t->surface[q]);
+    } else {
+        const demi_wall *wall = &w->walls[c->wall];
+        demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall];
+        demi_wall_sum_add(w, sum, c->wall, t->at[q], force, demi_row(t->rows.moment, q),
+                          t->surface[q]);
+        if (wall->glides)                       /* only friction does work on a gliding surface */
+            sum->power += (double)(t->grip[q]*demi_dot(demi_row(t->rows.tangent, q),
+                demi_glide_at(wall, &wall->pose, c->normal)));
+    }
 }
 /* Evaluates the contacts of a tile. Fewer than four are evaluated one by one, since a vector group
    costs as much for one contact as for all that fit. Results are the same to the bit. */

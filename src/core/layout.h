@@ -403,6 +403,8 @@ typedef struct demi_wall {
     dem_pose mid;                  /* in the middle of the last step */
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
+    dem_vec3 glide;                /* m/s, velocity of its surface, in its frame: >>belts */
+    int glides;                    /* 1: that is not 0 */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes
                                       a rebuild necessary */

@@ -383,6 +383,8 @@ static int demi_walls_check(const demi_reader *r) {
         if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
             demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k))
             return demi_lie(r, "motion of wall", i);
+        if (!demi_place(wall->glide) || wall->glides != (demi_dot(wall->glide, wall->glide) > 0))
+            return demi_lie(r, "surface velocity of wall", i);
     }
     return 1;
 }

@@ -352,8 +352,10 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
 static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover *m) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+    dem_vec3 v = demi_surface_at(&wall->ahead, demi_add(x, k->arm_a));
     memset(m, 0, sizeof *m);
-    demi_put(m->v, demi_surface_at(&wall->ahead, demi_add(x, k->arm_a)));
+    if (wall->glides) v = demi_add(v, demi_glide_at(wall, &wall->ahead, k->normal));
+    demi_put(m->v, v);
     demi_put(m->w, wall->ahead.spin);
 }
 /* Returns the correction of bias for the rotation of the normal between two detections, m/s, <= 0.

@@ -178,6 +178,65 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
                   "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
 }
 
+/* Compares the velocity and spin that a user-defined motion gives at a time with the differences of
+   its poses over d s. Returns 1 and fills the two vectors if they differ by more than 1 % and
+   round-off. Of an infinite plane only the velocity along its normal counts. */
+static int demi_motion_differs(const demi_wall *wall, double time, double d, dem_vec3 *given,
+                               dem_vec3 *found) {
+    const dem_real digit = DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(2e-15), per = (dem_real)(1/d);
+    dem_pose p[3];
+    dem_vec3 v[2][2];
+    dem_real W[9];
+    int i, j, k;
+    for (k = 0; k < 3; k++) {
+        demi_wall_pose_at(wall, time + k*d/2, &p[k]);
+        if (!demi_pose_sane(&p[k])) return 0;
+    }
+    for (i = 0; i < 3; i++)                     /* dR/dt R^T */
+        for (j = 0; j < 3; j++)
+            for (W[3*i + j] = 0, k = 0; k < 3; k++)
+                W[3*i + j] += (p[2].rotation[3*i + k] - p[0].rotation[3*i + k])*per*
+                    p[1].rotation[3*j + k];
+    v[0][0] = p[1].velocity;
+    v[0][1] = demi_scale(demi_sub(p[2].position, p[0].position), per);
+    v[1][0] = p[1].spin;
+    v[1][1] = demi_scale(demi_v(W[7] - W[5], W[2] - W[6], W[3] - W[1]), DEM_R(0.5));
+    for (k = 0; k < 2; k++) {
+        const dem_vec3 n = demi_rotate(p[1].rotation, demi_v(0, 0, 1)), off = demi_sub(v[k][0],
+                                                                                       v[k][1]);
+        const int flat = demi_wall_is(wall, DEMI_FLAT) && !k;
+        const dem_real size = DEMI_MAX(demi_length(v[k][0]), demi_length(v[k][1]));
+        *given = v[k][0];
+        *found = v[k][1];
+        if ((flat ? DEMI_ABS(demi_dot(off, n)) : demi_length(off)) > DEM_R(0.01)*size +
+            digit*per*(k ? 1 : demi_length(p[1].position))) return 1 + k;
+    }
+    return 0;
+}
+/* Checks user-defined motions now and at later times, up to a million steps from now. */
+static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const demi_calling was = demi_calls(w, "dem_world_check", 1);
+    const double d = w->clock.dt > 0 ? (double)w->clock.dt : w->desc.dt > 0 ? (double)w->desc.dt
+        : a->dt_max > 0 ? (double)a->dt_max/2 : 1e-6;
+    int i, k, differs;
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        double after = 0;
+        dem_vec3 v, u;
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_USER) continue;
+        for (k = differs = 0; k < 8 && !differs; k++, after = after > 0 ? 10*after : d)
+            differs = demi_motion_differs(wall, w->clock.time + after, d, &v, &u);
+        if (!differs) continue;
+        demi_find(f, DEM_SEVERITY_WARNING, "the motion of wall %d gives a %s of (%g, %g, %g) where "
+                  "its %s changes by (%g, %g, %g) per second: contacts would create energy; give "
+                  "the derivative or, for a belt, use dem_wall_surface_velocity_set",
+                  (int)wall->id, differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y,
+                  (double)v.z, differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y,
+                  (double)u.z);
+    }
+    demi_called(w, was);
+}
+
 /* True if the whole of a finite wall is behind some plane or beyond an outflow face of the domain,
    so that no grain can reach it. */
 static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
@@ -672,6 +731,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     f.room = findings && capacity > 0 ? capacity : 0;
     demi_advise(w, &advice);
     demi_check_motion(w, &f);
+    demi_check_motions(w, &advice, &f);
     demi_check_radii(w, &f);
     demi_check_digits(w, &f);
     demi_check_materials(w, &f);

@@ -168,8 +168,8 @@ static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
 static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     int i, count = 0, touched = 0;
     for (i = 0; i < w->wall_count; i++) {
-        if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].motion.kind == DEM_MOTION_FIXED)
-            continue;
+        if (w->walls[i].kind == DEMI_WALL_NONE ||
+            (w->walls[i].motion.kind == DEM_MOTION_FIXED && !w->walls[i].glides)) continue;
         count++;
         touched += w->walls[i].loads.touched;
     }
@@ -286,6 +286,7 @@ static void demi_leave_motions(dem_world *t, demi_again *own) {
         if (demi_wall_own(t, &t->walls[i]) && t->walls[i].kind != DEMI_WALL_NONE) {
             id.id = t->walls[i].id;
             dem_wall_motion_set(t, id, &DEM_MOTION);
+            dem_wall_surface_velocity_set(t, id, demi_v(0, 0, 0));
         }
 }
 static void demi_leave_walls(dem_world *t, demi_again *own) {

@@ -7,9 +7,9 @@
    press_whole, pressed). Reads everything else. A head (h) considers all members of its team.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the largest speed of a wall's surface during its motion, m/s, also before the motion has
-   begun. For a user-defined motion: its present speed. A table is sampled eight times per row. */
-static double demi_motion_speed(const demi_wall *wall) {
+/* Returns the largest speed of a wall during its motion, m/s, also before the motion has begun. For
+   a user-defined motion: its present speed. A table is sampled eight times per row. */
+static double demi_pose_speed(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     const double far = (double)DEMI_MAX(wall->extent, wall->radius);
     dem_vec3 spin;
@@ -39,6 +39,10 @@ static double demi_motion_speed(const demi_wall *wall) {
     default: break;
     }
     return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
+}
+/* Returns the largest speed of a wall's surface during its motion, m/s. */
+static double demi_motion_speed(const demi_wall *wall) {
+    return demi_pose_speed(wall) + (double)demi_length(wall->glide);
 }
 /* Returns the unit vector of gravity, or 0 without gravity. */
 static dem_vec3 demi_down(const dem_world *w) {
@@ -758,7 +762,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
         double speed;
         if (kind == DEMI_WALL_NONE || kind == DEMI_WALL_PLANE || kind == DEMI_WALL_CYLINDER ||
             wall->motion.kind == DEM_MOTION_FIXED || !(radius > 0)) continue;
-        speed = wall->motion.kind == DEM_MOTION_SERVO ? demi_motion_speed(wall)
+        speed = wall->motion.kind == DEM_MOTION_SERVO ? demi_pose_speed(wall)
                                                       : demi_wall_speed(wall);
         if (!(speed*dt > radius)) continue;
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
