@@ -84,6 +84,7 @@
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
        >>servo             walls led to a target load
+       >>rails             bodies with locked axes and prescribed velocities
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
@@ -1380,8 +1381,9 @@ typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_b
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
    derivatives of position and rotation. It is called twice per step (for its end and its middle;
    with impulses also for the end of the next step), from one thread. dem_world_check calls it too,
-   also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is
-   clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE. */
+   also for later times, and reports a velocity or spin that is not the derivative. A pose that is
+   not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with
+   DEM_ERROR_UNSTABLE. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
 /* Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if
@@ -2362,6 +2364,41 @@ DEM_API dem_result dem_joint_motor_set(dem_world *world, dem_joint joint, dem_mo
 DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
 /* Removes a joint. */
 DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
+
+/* ---- rails ---- */
+/* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
+   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs refuse worlds with rails. */
+
+/* The axes of the world that a rail locks, as a sum: of translation, then of rotation. */
+enum { DEM_RAIL_X = 1, DEM_RAIL_Y = 2, DEM_RAIL_Z = 4, DEM_RAIL_SPIN_X = 8, DEM_RAIL_SPIN_Y = 16,
+       DEM_RAIL_SPIN_Z = 32, DEM_RAIL_ALL = 63 };
+/* A rail. Components of velocity and spin along axes that are not locked are ignored. */
+typedef struct dem_rail_desc {
+    int axes;                      /* 0 to 63: sum of DEM_RAIL_ constants; 0 means no rail */
+    dem_vec3 velocity;             /* m/s, along locked axes */
+    dem_vec3 spin;                 /* rad/s, about locked axes */
+    /* The body also has the velocity and spin of this wall along and about locked axes, as if it
+       were part of it, so any motion of a wall is a path for a body. Null, or a wall that is
+       removed, means none. */
+    dem_wall wall;
+} dem_rail_desc;
+static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;
+#define DEM_RAIL_DESC DEM_RAIL_DESC_ZERO
+/* The reaction of a rail: what it exerts on the body. */
+typedef struct dem_rail_state {
+    dem_rail_desc desc;            /* as set */
+    dem_vec3 force;                /* N, at the present time */
+    dem_vec3 torque;               /* N m, about the body's centre */
+    double power;                  /* W, of the rail on the body */
+    double work;                   /* J, since the rail was set */
+} dem_rail_state;
+/* Puts a body on a rail, changes its rail, or takes it off (axes 0). Its velocity and spin along
+   locked axes become the prescribed ones at once. The forces and torques of dem_body_get include
+   those of the rail. */
+DEM_API dem_result dem_body_rail_set(dem_world *world, dem_body body, const dem_rail_desc *desc);
+/* Writes the state of a body's rail to state. It is an error if the body has none. */
+DEM_API dem_result dem_body_reaction_get(const dem_world *world, dem_body body,
+                                         dem_rail_state *state);
 
 /* ---- feed and outlets ---- */
 enum { DEM_CLASSES = 16 };         /* largest number of size classes */
@@ -4532,6 +4569,8 @@ struct dem_world {
     demi_outlet *outlets;
     int joint_count, joint_last;   /* >>joints: number of joints, last id */
     demi_joint *joints;
+    int rail_count;                /* >>rails */
+    struct demi_rail *rails;
     int written_count;             /* >>output: outputs in the checkpoint that was read last */
     demi_written *written;
     struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */
@@ -14890,7 +14929,8 @@ static int demi_quiet_reserve(dem_world *w, int bodies) {
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
-           (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count;
+           (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count &&
+           !w->rail_count;
 }
 /* Marks the blocks of a work group whose bodies have pairs in the pruned list or wall candidates.
    For the other blocks a step neither collects nor clears forces. */
@@ -27323,6 +27363,260 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_s
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>rails
+   Bodies whose axes are locked (dem_body_rail_set). When all forces of a step are known, the
+   reaction of each rail is added to the force and torque of its body. It is such that the next kick
+   gives the prescribed velocity in the middle of the next step along locked axes, whatever the
+   integrator. Owns the rails; adds to forces and torques of bodies, and rotates bodies that are not
+   spheres about free axes.
+   Translation and spheres: r = m (v - u)/h - f - m g, where u is the velocity of the last half
+   step, v that of the next one and h their distance in time. Other shapes: the spin w of the next
+   step obeys w = prescribed along locked axes and (J w) = L + T h along free ones, with the inertia
+   J of the middle of that step. The body then rotates with w for the whole step, so the axis does
+   not wander: its own free rotation would also turn about locked axes.
+   The velocity of a wall in the middle of the next step is extrapolated, 2 v(t) - v(t - dt/2). The
+   error of the path is of the order dt^2 and does not grow.
+   --------------------------------------------------------------------------------------------- */
+/* A rail. Checkpoints store the whole struct. */
+typedef struct demi_rail {
+    dem_body body;
+    dem_rail_state state;
+    dem_quat start;                /* other shapes: orientation and spin of the step, above */
+    dem_vec3 turn;
+} demi_rail;
+
+#define DEMI_OF dem_rail_desc
+static const demi_field_row demi_rail_fields[] = {
+    DEMI_LIMITED(DEMI_OF, axes, 'i', DEMI_FROM, DEM_RAIL_ALL, ""),
+    DEMI_LIMITED(DEMI_OF, velocity, 'v', DEMI_ANY, DEMI_FARTHEST, "m/s"),
+    DEMI_LIMITED(DEMI_OF, spin, 'v', DEMI_ANY, DEMI_FARTHEST, "rad/s"),
+    DEMI_ROW(DEMI_OF, wall, 'i'), DEMI_ROW_END};
+#undef DEMI_OF
+/* Returns the index of the body of a rail; -1 if it was removed or is fixed. */
+static int demi_rail_body(const dem_world *w, const demi_rail *r) {
+    const uint32_t slot = r->body.slot - 1;
+    const int i = w->bodies.slot_generation[slot] == r->body.generation
+        ? w->bodies.slot_index[slot] : -1;
+    return i >= 0 && w->bodies.inv_mass[i] > 0 ? i : -1;
+}
+/* Returns the rail of a body, or null. */
+static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
+    int k;
+    for (k = 0; k < w->rail_count; k++)
+        if (w->rails[k].body.slot == body.slot && w->rails[k].body.generation == body.generation)
+            return &w->rails[k];
+    return 0;
+}
+/* Gives the velocity and spin that a rail prescribes for body i, in the middle of the next step
+   (ahead) or now; of axes that are not locked, any numbers. */
+static void demi_rail_wants(const dem_world *w, const demi_rail *r, int i, int ahead, dem_real *v,
+                            dem_real *s) {
+    const dem_rail_desc *d = &r->state.desc;
+    dem_vec3 velocity = d->velocity, spin = d->spin;
+    if (d->wall.id && demi_wall_there(w, d->wall)) {
+        const demi_wall *wall = &w->walls[demi_wall_place(d->wall)];
+        const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
+        const dem_vec3 now = demi_surface_at(&wall->pose, x);
+        velocity = demi_add(velocity, now);
+        spin = demi_add(spin, wall->pose.spin);
+        if (ahead) {                            /* x in the middle of the last step */
+            const dem_vec3 mid = demi_sub(x, demi_scale(demi_at(w->bodies.half_vel + 4*i),
+                                                        w->clock.dt/2));
+            velocity = demi_add(velocity, demi_sub(now, demi_surface_at(&wall->mid, mid)));
+            spin = demi_add(spin, demi_sub(wall->pose.spin, wall->mid.spin));
+        }
+    }
+    demi_put(v, velocity);
+    demi_put(s, spin);
+}
+/* Returns J x for a body with orientation q and principal moments I. */
+static dem_vec3 demi_inertia_times(dem_quat q, dem_vec3 I, dem_vec3 x) {
+    const dem_vec3 m = dem_quat_unrotate(q, x);
+    return dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
+}
+/* Solves for the spin w of the next step of a body that is not a sphere, see above. L: its angular
+   momentum without reaction; locked: bit k: w_k is want[k]. Returns J w. */
+static dem_vec3 demi_rail_turn(const dem_world *w, int i, int locked, const dem_real *want,
+                               dem_vec3 L, dem_vec3 *spin) {
+    const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
+    const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+    const dem_real h = w->clock.dt/2;
+    dem_quat mid = q;
+    int pass, k;
+    for (pass = 0; pass < 3; pass++) {
+        dem_vec3 row[3], c[3];
+        dem_real b[3], det;
+        demi_put(b, L);
+        for (k = 0; k < 3; k++) {
+            const dem_vec3 e = demi_v(k == 0, k == 1, k == 2);
+            row[k] = locked >> k & 1 ? e : demi_inertia_times(mid, I, e);     /* J = J^T */
+            if (locked >> k & 1) b[k] = want[k];
+            else {                              /* rows of like size */
+                row[k] = demi_scale(row[k], 1/I.x);
+                b[k] /= I.x;
+            }
+        }
+        for (k = 0; k < 3; k++) c[k] = demi_cross(row[(k + 1)%3], row[(k + 2)%3]);
+        det = demi_dot(row[0], c[0]);
+        *spin = demi_scale(demi_add(demi_scale(c[0], b[0]), demi_add(demi_scale(c[1], b[1]),
+                                    demi_scale(c[2], b[2]))), 1/det);
+        mid = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(*spin, h)), q));
+    }
+    return demi_inertia_times(mid, I, *spin);
+}
+/* Adds the reaction along three locked axes to f, and to the force r of the rail. inertia: mass, or
+   moment of inertia; g: acceleration besides forces. Returns the power at the mean of u and v,
+   W. */
+static double demi_rail_push(int locked, dem_real inertia, const dem_real *u, const dem_real *v,
+                             dem_real h, const dem_real *g, dem_real *f, dem_real *r) {
+    double power = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        r[k] = 0;
+        if (!(locked >> k & 1)) continue;
+        r[k] = inertia*((v[k] - u[k])/h - g[k]) - f[k];
+        f[k] += r[k];
+        power += (double)r[k]*(double)(u[k] + v[k])/2;
+    }
+    return power;
+}
+/* Adds the reaction of one rail to its body i. */
+static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
+    const int stepping = w->stage.forces_valid, locked = r->state.desc.axes;
+    const int halves = stepping && demi_integrator_of(w)->predicts;
+    const dem_real h = stepping ? w->clock.dt : w->clock.dt/2;
+    const demi_lane b = demi_lane_move(w, i);
+    dem_real *torque = w->bodies.torque + 4*i, v[3], s[3], force[3], moment[3];
+    const dem_real none[3] = {0, 0, 0};
+    const dem_real *spun = stepping && (halves || demi_shape_of(w, i)) ? w->bodies.half_spin + 4*i
+        : w->bodies.spin + 4*i;
+    demi_rail_wants(w, r, i, 1, v, s);
+    r->state.power = demi_rail_push(locked, w->bodies.mass[i], halves ? b.half : b.v, v, h, b.g,
+                                    b.f, force);
+    if (demi_shape_of(w, i) && locked >> 3) {
+        const dem_vec3 L = stepping ? demi_at(w->bodies.angular + 4*i) : demi_angular_of(w, i);
+        const dem_vec3 T = demi_at(torque);
+        const dem_vec3 next = demi_rail_turn(w, i, locked >> 3, s, demi_add(L, demi_scale(T, h)),
+                                             &r->turn);
+        dem_real by[3];
+        int k;
+        demi_put(by, demi_sub(demi_scale(demi_sub(next, L), 1/h), T));
+        demi_put(s, r->turn);
+        for (k = 0; k < 3; k++) {
+            moment[k] = locked >> (3 + k) & 1 ? by[k] : 0;
+            torque[k] += moment[k];
+            r->state.power += (double)moment[k]*(double)(spun[k] + s[k])/2;
+        }
+        r->start = demi_quat_at(w->bodies.orient + 4*i);
+    } else
+        r->state.power += demi_rail_push(locked >> 3, w->bodies.inv_inertia[i] > 0
+                                         ? 1/w->bodies.inv_inertia[i] : 0, spun, s, h, none,
+                                         torque, moment);
+    r->state.force = demi_at(force);
+    r->state.torque = demi_at(moment);
+    if (!stepping) return;
+    r->state.work += r->state.power*(double)w->clock.dt;
+    if (!w->desc.ledger) return;
+    w->booked.energy[DEMI_E_WALLS] += r->state.power*(double)w->clock.dt;
+    w->booked.throughput += fabs(r->state.power)*(double)w->clock.dt;
+}
+/* Adds the reactions of all rails, once all forces are known. */
+static void demi_rails_act(dem_world *w) {
+    int k;
+    for (k = 0; k < w->rail_count && w->clock.dt > 0; k++) {
+        const int i = demi_rail_body(w, &w->rails[k]);
+        if (i >= 0) demi_rail_act(w, &w->rails[k], i);
+    }
+}
+/* After the move of a step: rotates bodies that are not spheres about free axes alone. */
+static void demi_rails_move(dem_world *w) {
+    const dem_real dt = w->clock.dt;
+    int k, e;
+    for (k = 0; k < w->rail_count; k++) {
+        const demi_rail *r = &w->rails[k];
+        const int i = demi_rail_body(w, r), locked = r->state.desc.axes >> 3;
+        const demi_shape *shape = i < 0 ? 0 : demi_shape_of(w, i);
+        dem_quat q;
+        dem_vec3 I;
+        dem_real spin[3], turn[3];
+        if (!shape || !locked) continue;
+        q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(r->turn, dt)), r->start));
+        I = demi_at(w->bodies.moment + 4*i);
+        demi_quat_put(w->bodies.orient + 4*i, q);
+        demi_put(spin, demi_spin_of(q, demi_add(demi_at(w->bodies.angular + 4*i),
+            demi_scale(demi_at(w->bodies.torque + 4*i), dt/2)), demi_v(1/I.x, 1/I.y, 1/I.z)));
+        demi_put(turn, r->turn);
+        for (e = 0; e < 3; e++) {
+            w->bodies.half_spin[4*i + e] = turn[e];
+            w->bodies.spin[4*i + e] = locked >> e & 1 ? turn[e] : spin[e];
+        }
+        if (w->bodies.centres_valid && shape->count) demi_centres_rotate(w, i);
+    }
+}
+/* Removes the rails of bodies that were removed, and that of `body`. */
+static void demi_rails_drop(dem_world *w, dem_body body) {
+    int k, left = 0;
+    for (k = 0; k < w->rail_count; k++) {
+        const dem_body b = w->rails[k].body;
+        if (w->bodies.slot_generation[b.slot - 1] == b.generation &&
+            (b.slot != body.slot || b.generation != body.generation))
+            w->rails[left++] = w->rails[k];
+    }
+    w->rail_count = left;
+}
+DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
+    const char *call = "dem_body_rail_set";
+    dem_real v[3], s[3], own[6];
+    dem_body_state state;
+    demi_rail *r;
+    int i, k;
+    if (demi_null(w, call, d, "desc")) return DEM_ERROR_ARGUMENT;
+    i = demi_body_index(w, call, body);
+    if (i < 0 || demi_rows_check(w, call, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
+        return DEM_ERROR_ARGUMENT;
+    if (!demi_response_is(w, DEMI_LASTING))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, whose "
+                         "solver has one mass per body for all axes; use DEM_RESPONSE_SPRINGS, or "
+                         "joints (dem_joint_add)", call);
+    if (w->bodies.inv_mass[i] <= 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is fixed, so all its axes are locked; "
+                         "set `fixed` to 0 with dem_body_set", call, (unsigned)body.slot);
+    if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axes is %d, but a planar world locks Z, "
+                         "SPIN_X and SPIN_Y of all bodies; leave them out", call, d->axes);
+    if (d->wall.id && demi_wall_find(w, call, d->wall) < 0) return DEM_ERROR_ARGUMENT;
+    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, call);
+    demi_rails_drop(w, body);
+    if (!d->axes) { demi_scene_changed(w); return DEM_OK; }
+    r = &w->rails[w->rail_count];
+    memset(r, 0, sizeof *r);
+    r->body = body;
+    r->state.desc = *d;
+    demi_rail_wants(w, r, i, 0, v, s);
+    dem_body_get(w, body, &state);
+    demi_put(own, state.velocity);
+    demi_put(own + 3, state.spin);
+    for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
+    state.velocity = demi_at(own);
+    state.spin = demi_at(own + 3);
+    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, call);
+    w->rail_count++;
+    return DEM_OK;
+}
+DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_rail_state *state) {
+    const char *call = "dem_body_reaction_get";
+    const demi_rail *r;
+    if (demi_null_look(w, call, state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_body_index((dem_world *)w, call, body) < 0) return DEM_ERROR_ARGUMENT;
+    r = demi_rail_of(w, body);
+    if (!r)
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: body %u has no rail; set one "
+                         "with dem_body_rail_set", call, (unsigned)body.slot);
+    *state = r->state;
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>ledger
    The account of energy (desc.ledger), and totals of mass, momentum and kinetic energy. Contact
    laws report what they dissipate and store; the step computes the work of gravity, of force fields
@@ -28291,6 +28585,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
+    demi_rails_move(w);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -28432,6 +28727,7 @@ static dem_result demi_member_forces(dem_world *w) {
    user-defined functions returned impossible numbers, or an overlap has reached the radius. */
 static dem_result demi_member_end(dem_world *w) {
     int d;
+    demi_rails_act(w);
     demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
@@ -28453,6 +28749,7 @@ static dem_result demi_member_look(dem_world *w) {
 }
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
+    demi_rails_act(w);
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
@@ -32996,6 +33293,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
     if (!s->from) w->written_count = w->look.output_count;
     DEMI_VISIT(s, w->joint_count);    DEMI_VISIT(s, w->joint_last);
+    DEMI_VISIT(s, w->rail_count);
     DEMI_VISIT(s, w->written_count);
     DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
     DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
@@ -33146,6 +33444,10 @@ static void demi_visit_joints(dem_world *w, demi_stream *s) {
     if (w->joint_count)
         demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
 }
+/* Visits rails, which are state for the same reason. */
+static void demi_visit_rails(dem_world *w, demi_stream *s) {
+    if (w->rail_count) demi_visit(s, w->rails, (size_t)w->rail_count*sizeof(demi_rail));
+}
 /* Visits the records of what outputs have written. */
 static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     int i;
@@ -33158,6 +33460,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);
+    demi_visit_rails(w, s);
     demi_visit_lists(w, s);
     demi_visit_contacts(w, s);
     demi_visit_walls(w, s);
@@ -33182,6 +33485,7 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
+                            sizeof(demi_rail),
                             sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;
@@ -33550,6 +33854,9 @@ static int demi_numbers_check(const demi_reader *r) {
     if (!demi_left(r, t->joint_count, sizeof(demi_joint)) ||
         (t->joint_count && !demi_response_is(w, DEMI_JOINTED)))
         return demi_lie(r, "number of joints", -1);
+    if (!demi_left(r, t->rail_count, sizeof(demi_rail)) ||
+        (t->rail_count && !demi_response_is(w, DEMI_LASTING)))
+        return demi_lie(r, "number of rails", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
@@ -33818,6 +34125,19 @@ static int demi_measured_check(const demi_reader *r) {
     return 1;
 }
 
+/* Checks rails: bodies must be slots, walls must exist, and numbers must be finite. */
+static int demi_rails_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->rail_count; i++) {
+        const demi_rail *a = &r->t->rails[i];
+        if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
+            a->body.slot > (uint32_t)r->t->bodies.slot_count ||
+            a->state.desc.wall.id < 0 || a->state.desc.wall.id > r->t->wall_count ||
+            !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
+            !demi_place(a->turn)) return demi_lie(r, "rail", i);
+    }
+    return 1;
+}
 /* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
    id of a body that no longer exists names nothing. */
 static int demi_joints_check(const demi_reader *r) {
@@ -33961,9 +34281,11 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
         !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
+        !DEMI_GROW(t, t->rails, (size_t)t->rail_count) ||
         !DEMI_GROW(t, t->written, (size_t)t->written_count)) return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
     demi_visit_joints(t, s);
+    demi_visit_rails(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
@@ -33972,7 +34294,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_outputs(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+        !demi_joints_check(r) || !demi_rails_check(r) ||
+        !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
         return DEM_ERROR_MEMORY;
@@ -37739,6 +38062,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
                          "cannot be split into slabs; use threads", call);
+    if (w->rail_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d bodies are on rails (dem_body_rail_set), "
+                         "whose state slabs do not pass on; use threads, or walls instead of "
+                         "these bodies", call, w->rail_count);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
                          "one along which the scene is longest", call, d->axis,

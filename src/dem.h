@@ -84,6 +84,7 @@
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
        >>servo             walls led to a target load
+       >>rails             bodies with locked axes and prescribed velocities
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
@@ -236,6 +237,7 @@
 #include "run/team.h"
 #include "run/advice.h"
 #include "run/servo.h"
+#include "run/rails.h"
 #include "run/ledger.h"
 #include "run/responses.h"
 #include "run/fields.h"

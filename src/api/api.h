@@ -800,8 +800,9 @@ typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_b
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
    derivatives of position and rotation. It is called twice per step (for its end and its middle;
    with impulses also for the end of the next step), from one thread. dem_world_check calls it too,
-   also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is
-   clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE. */
+   also for later times, and reports a velocity or spin that is not the derivative. A pose that is
+   not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with
+   DEM_ERROR_UNSTABLE. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
 /* Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if

@@ -270,6 +270,41 @@ DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_jo
 /* Removes a joint. */
 DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
+/* ---- rails ---- */
+/* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
+   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs refuse worlds with rails. */
+
+/* The axes of the world that a rail locks, as a sum: of translation, then of rotation. */
+enum { DEM_RAIL_X = 1, DEM_RAIL_Y = 2, DEM_RAIL_Z = 4, DEM_RAIL_SPIN_X = 8, DEM_RAIL_SPIN_Y = 16,
+       DEM_RAIL_SPIN_Z = 32, DEM_RAIL_ALL = 63 };
+/* A rail. Components of velocity and spin along axes that are not locked are ignored. */
+typedef struct dem_rail_desc {
+    int axes;                      /* 0 to 63: sum of DEM_RAIL_ constants; 0 means no rail */
+    dem_vec3 velocity;             /* m/s, along locked axes */
+    dem_vec3 spin;                 /* rad/s, about locked axes */
+    /* The body also has the velocity and spin of this wall along and about locked axes, as if it
+       were part of it, so any motion of a wall is a path for a body. Null, or a wall that is
+       removed, means none. */
+    dem_wall wall;
+} dem_rail_desc;
+static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;
+#define DEM_RAIL_DESC DEM_RAIL_DESC_ZERO
+/* The reaction of a rail: what it exerts on the body. */
+typedef struct dem_rail_state {
+    dem_rail_desc desc;            /* as set */
+    dem_vec3 force;                /* N, at the present time */
+    dem_vec3 torque;               /* N m, about the body's centre */
+    double power;                  /* W, of the rail on the body */
+    double work;                   /* J, since the rail was set */
+} dem_rail_state;
+/* Puts a body on a rail, changes its rail, or takes it off (axes 0). Its velocity and spin along
+   locked axes become the prescribed ones at once. The forces and torques of dem_body_get include
+   those of the rail. */
+DEM_API dem_result dem_body_rail_set(dem_world *world, dem_body body, const dem_rail_desc *desc);
+/* Writes the state of a body's rail to state. It is an error if the body has none. */
+DEM_API dem_result dem_body_reaction_get(const dem_world *world, dem_body body,
+                                         dem_rail_state *state);
+
 /* ---- feed and outlets ---- */
 enum { DEM_CLASSES = 16 };         /* largest number of size classes */
 typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */

@@ -181,6 +181,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
     if (!s->from) w->written_count = w->look.output_count;
     DEMI_VISIT(s, w->joint_count);    DEMI_VISIT(s, w->joint_last);
+    DEMI_VISIT(s, w->rail_count);
     DEMI_VISIT(s, w->written_count);
     DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
     DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
@@ -331,6 +332,10 @@ static void demi_visit_joints(dem_world *w, demi_stream *s) {
     if (w->joint_count)
         demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
 }
+/* Visits rails, which are state for the same reason. */
+static void demi_visit_rails(dem_world *w, demi_stream *s) {
+    if (w->rail_count) demi_visit(s, w->rails, (size_t)w->rail_count*sizeof(demi_rail));
+}
 /* Visits the records of what outputs have written. */
 static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     int i;
@@ -343,6 +348,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);
+    demi_visit_rails(w, s);
     demi_visit_lists(w, s);
     demi_visit_contacts(w, s);
     demi_visit_walls(w, s);
@@ -367,6 +373,7 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
+                            sizeof(demi_rail),
                             sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;

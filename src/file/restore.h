@@ -137,6 +137,9 @@ static int demi_numbers_check(const demi_reader *r) {
     if (!demi_left(r, t->joint_count, sizeof(demi_joint)) ||
         (t->joint_count && !demi_response_is(w, DEMI_JOINTED)))
         return demi_lie(r, "number of joints", -1);
+    if (!demi_left(r, t->rail_count, sizeof(demi_rail)) ||
+        (t->rail_count && !demi_response_is(w, DEMI_LASTING)))
+        return demi_lie(r, "number of rails", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
@@ -405,6 +408,19 @@ static int demi_measured_check(const demi_reader *r) {
     return 1;
 }
 
+/* Checks rails: bodies must be slots, walls must exist, and numbers must be finite. */
+static int demi_rails_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->rail_count; i++) {
+        const demi_rail *a = &r->t->rails[i];
+        if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
+            a->body.slot > (uint32_t)r->t->bodies.slot_count ||
+            a->state.desc.wall.id < 0 || a->state.desc.wall.id > r->t->wall_count ||
+            !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
+            !demi_place(a->turn)) return demi_lie(r, "rail", i);
+    }
+    return 1;
+}
 /* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
    id of a body that no longer exists names nothing. */
 static int demi_joints_check(const demi_reader *r) {
@@ -548,9 +564,11 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
         !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
+        !DEMI_GROW(t, t->rails, (size_t)t->rail_count) ||
         !DEMI_GROW(t, t->written, (size_t)t->written_count)) return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
     demi_visit_joints(t, s);
+    demi_visit_rails(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
@@ -559,7 +577,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_outputs(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+        !demi_joints_check(r) || !demi_rails_check(r) ||
+        !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
         return DEM_ERROR_MEMORY;

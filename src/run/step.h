@@ -418,6 +418,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
+    demi_rails_move(w);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -559,6 +560,7 @@ static dem_result demi_member_forces(dem_world *w) {
    user-defined functions returned impossible numbers, or an overlap has reached the radius. */
 static dem_result demi_member_end(dem_world *w) {
     int d;
+    demi_rails_act(w);
     demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
@@ -580,6 +582,7 @@ static dem_result demi_member_look(dem_world *w) {
 }
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
+    demi_rails_act(w);
     w->stage.forces_valid = 1;
     return DEM_OK;
 }

@@ -572,7 +572,8 @@ static int demi_quiet_reserve(dem_world *w, int bodies) {
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
-           (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count;
+           (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count &&
+           !w->rail_count;
 }
 /* Marks the blocks of a work group whose bodies have pairs in the pruned list or wall candidates.
    For the other blocks a step neither collects nor clears forces. */

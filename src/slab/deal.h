@@ -187,6 +187,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
                          "cannot be split into slabs; use threads", call);
+    if (w->rail_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d bodies are on rails (dem_body_rail_set), "
+                         "whose state slabs do not pass on; use threads, or walls instead of "
+                         "these bodies", call, w->rail_count);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
                          "one along which the scene is longest", call, d->axis,

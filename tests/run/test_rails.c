@@ -1,0 +1,262 @@
+/* Bodies on rails: locked axes move as prescribed, free axes as forces tell, and reactions are those of closed forms. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+static const int fine = sizeof(dem_real) == 8;       /* double precision */
+enum { BALL, EGG, BRICK, CLUSTER, SHAPES };
+static dem_world *stage(int integrator, double dt, dem_material *m) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    desc.gravity = at(0.5, 0, -9.81);
+    desc.ledger = 1;
+    desc.dt = (dem_real)dt;
+    desc.integrator = (dem_integrator)integrator;
+    world = dem_world_create(&desc);
+    *m = scene_material(world, 1e7, 0.5, 0.5, 0);
+    return world;
+}
+/* A body of any shape with three different moments, askew. */
+static dem_body body_of(dem_world *world, dem_material m, int shape, dem_vec3 x) {
+    const dem_real three[9] = {0, 0, 0, DEM_R(0.008), 0, 0, 0, DEM_R(0.005), 0};
+    dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+    dem_shape s;
+    cluster.count = 3; cluster.positions = three; cluster.radius = DEM_R(0.005);
+    if (shape == BALL) return dem_sphere_add(world, m, DEM_R(0.01), x);
+    s = shape == EGG ? dem_shape_ellipsoid_add(world, at(0.02, 0.01, 0.007)) : shape == BRICK
+        ? scene_box(world, 0.03, 0.02, 0.01) : dem_shape_cluster_add(world, &cluster);
+    return dem_body_add(world, m, s, x, dem_quat_about(at(1, 2, 3), DEM_R(0.7)));
+}
+static dem_rail_desc rail_of(int axes, dem_vec3 velocity, dem_vec3 spin) {
+    dem_rail_desc d = DEM_RAIL_DESC;
+    d.axes = axes; d.velocity = velocity; d.spin = spin;
+    return d;
+}
+static dem_rail_state rail_now(const dem_world *world, dem_body body) {
+    dem_rail_state s;
+    memset(&s, 0, sizeof s);
+    CHECK_EQ(dem_body_reaction_get(world, body, &s), DEM_OK);
+    return s;
+}
+/* A box with a paddle on a rail among grains. */
+static dem_world *mixer(int threads, dem_body *paddle) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_rail_desc rail = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(0, 0, 12));
+    dem_world *world;
+    dem_material m;
+    uint64_t seed = 3;
+    int i;
+    desc.gravity.z = DEM_R(-9.81);
+    desc.dt = DEM_R(1.5e-5);
+    desc.threads = threads;
+    desc.ledger = 1;
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e6, 0.5, 0.5, 0);
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.03), 1);
+    *paddle = dem_body_add(world, m, scene_box(world, 0.05, 0.004, 0.012), at(0, 0, 0.008), dem_quat_make(1, 0, 0, 0));
+    CHECK_EQ(dem_body_rail_set(world, *paddle, &rail), DEM_OK);
+    for (i = 0; i < 80; i++)
+        dem_sphere_add(world, m, DEM_R(0.002), scene_at(&seed, 4e-4, 0.0045*(i%8 - 3.5), 4e-4, 0.0045*(i/8%5 - 2), 1e-4,
+                                                        0.018 + 0.0045*(i/40)));
+    return world;
+}
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+    TEST("a rail holds locked axes with every integrator and shape, and free axes fall as they would") {
+        int scheme, shape;
+        for (scheme = 0; scheme < 5; scheme++) for (shape = 0; shape < SHAPES; shape++) {
+            dem_material m;
+            dem_world *world = stage(scheme, 2e-5, &m);
+            const dem_body b = body_of(world, m, shape, at(0, 0, 1));
+            const dem_rail_desc d = rail_of(DEM_RAIL_Z | DEM_RAIL_Y | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y, at(9, 0.3, 0), at(0, 0, 9));
+            dem_body_state s = scene_state(world, b);
+            const dem_quat start = s.orientation;
+            dem_quat turned;
+            const double t = 0.2;
+            dem_ledger l;
+            s.spin = at(7, 7, 5);                       /* x and y end at once, z stays */
+            dem_body_set(world, b, &s);
+            CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_OK);
+            CHECK_EQ(dem_world_run(world, t, 0, 0), DEM_OK);
+            s = scene_state(world, b);
+            CHECK_NEAR(s.position.x, 0.25*t*t, fine ? (scheme == 1 || scheme == 2 ? 2e-6 : 1e-12) : 1e-4);
+            CHECK_NEAR(s.position.y, 0.3*t, fine ? 1e-12 : 1e-4);
+            CHECK_NEAR(s.position.z, 1, fine ? 1e-13 : 1e-5);
+            CHECK_NEAR(s.spin.z, 5, fine ? 1e-9 : 1e-3);
+            CHECK_NEAR(s.spin.x, 0, fine ? 1e-7 : 1e-3);
+            CHECK_NEAR(s.spin.y, 0, fine ? 1e-7 : 1e-3);
+            if (shape) {                                /* about z alone */
+                turned = dem_quat_multiply(dem_quat_about(at(0, 0, 1), (dem_real)(5*t)), start);
+                CHECK_NEAR(dem_quat_rotate(s.orientation, at(1, 2, 3)).x, dem_quat_rotate(turned, at(1, 2, 3)).x, fine ? 1e-9 : 1e-3);
+                CHECK_NEAR(dem_quat_rotate(s.orientation, at(1, 2, 3)).z, dem_quat_rotate(turned, at(1, 2, 3)).z, fine ? 1e-9 : 1e-3);
+            }
+            CHECK_REL(rail_now(world, b).force.z, 9.81*(double)s.mass, 1e-5);
+            l = dem_ledger_get(world);
+            if (scheme != 1 && scheme != 2) CHECK(fabs(l.residual) < (fine ? 1e-8 : 1e-4)*l.throughput);
+            dem_body_rail_set(world, b, &DEM_RAIL_DESC);
+            CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
+            CHECK_NEAR(scene_state(world, b).position.z, 1 - 9.81*0.01/2, fine ? 2e-4 : 1e-3);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("a pendulum led by a wall feels m (w^2 r + g cos a) along its arm and m g sin a across it") {
+        int shape;
+        for (shape = 0; shape < SHAPES; shape++) {
+            dem_material m;
+            dem_world *world = stage(0, 1e-5, &m);
+            const dem_body b = body_of(world, m, shape, at(0.1, 0, 0));
+            const dem_wall arm = scene_floor(world, m, 0.3, 0.3, 0.35, 0.35, 1, 1);
+            dem_rail_desc d = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(0, 0, 0));
+            dem_motion turn = DEM_MOTION;
+            dem_rail_state r;
+            double a, c, s, mass;
+            turn.kind = DEM_MOTION_ROTATING;
+            turn.axis = at(0, 1, 0);                    /* from x towards -z */
+            turn.speed = 4;
+            dem_wall_motion_set(world, arm, &turn);
+            d.wall = arm;
+            CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_OK);
+            CHECK_EQ(dem_world_run(world, 0.3, 0, 0), DEM_OK);
+            r = rail_now(world, b);
+            mass = (double)scene_state(world, b).mass;
+            a = 4*dem_world_time_get(world);
+            c = cos(a); s = sin(a);
+            CHECK_NEAR(scene_state(world, b).position.x, 0.1*c, fine ? 1e-9 : 1e-4);
+            CHECK_NEAR(scene_state(world, b).position.z, -0.1*s, fine ? 1e-9 : 1e-4);
+            CHECK_REL((double)r.force.x, mass*(-1.6*c - 0.5), fine ? 1e-6 : 2e-2);
+            CHECK_REL((double)r.force.z, mass*(1.6*s + 9.81), fine ? 1e-6 : 2e-2);
+            if (fine) CHECK_REL(r.power, (double)r.force.x*-0.4*s + (double)r.force.z*-0.4*c, 1e-6);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("a body that spins askew at constant speed needs the torque w x J w") {
+        dem_material m;
+        dem_world *world = stage(0, 2e-5, &m);
+        const dem_body b = body_of(world, m, BRICK, at(0, 0, 0));
+        const dem_rail_desc d = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(3, -4, 12));
+        dem_rail_state r;
+        dem_body_state s;
+        dem_vec3 w, L;
+        double most;
+        CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_OK);
+        CHECK_EQ(dem_world_run(world, 0.31, 0, 0), DEM_OK);
+        r = rail_now(world, b);
+        s = scene_state(world, b);
+        w = dem_quat_unrotate(dem_quat_multiply(s.orientation, demi_shape_of(world, 0)->frame), d.spin);
+        L = dem_quat_rotate(dem_quat_multiply(s.orientation, demi_shape_of(world, 0)->frame),
+                            dem_vec3_make(w.x*s.moments.x, w.y*s.moments.y, w.z*s.moments.z));
+        most = fabs((double)r.torque.x) + fabs((double)r.torque.y) + fabs((double)r.torque.z);
+        CHECK_NEAR(((double)r.torque.x - (-4*(double)L.z - 12*(double)L.y))/most, 0, fine ? 1e-6 : 5e-2);
+        CHECK_NEAR(((double)r.torque.y - (12*(double)L.x - 3*(double)L.z))/most, 0, fine ? 1e-6 : 5e-2);
+        CHECK_NEAR(((double)r.torque.z - (3*(double)L.y + 4*(double)L.x))/most, 0, fine ? 1e-6 : 5e-2);
+        dem_world_destroy(world);
+    }
+    TEST("a roller with a prescribed speed drives a free one until both rims move alike; its work is heat and energy") {
+        dem_material m;
+        dem_world *world = stage(0, 5e-6, &m);
+        const dem_body drive = dem_sphere_add(world, m, DEM_R(0.02), at(0, 0, 0));
+        const dem_body idle = dem_sphere_add(world, m, DEM_R(0.01), at(0.02995, 0, 0));
+        const dem_rail_desc first = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(0, 0, 10));
+        const dem_rail_desc second = rail_of(DEM_RAIL_ALL - DEM_RAIL_SPIN_Z, at(0, 0, 0), at(0, 0, 0));
+        dem_rail_state d, i;
+        dem_ledger l;
+        double start;
+        dem_body_rail_set(world, idle, &second);
+        dem_body_rail_set(world, drive, &first);
+        CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+        start = dem_ledger_get(world).residual;         /* the spring that presses them was not booked */
+        CHECK_EQ(dem_world_run(world, 0.2, 0, 0), DEM_OK);
+        CHECK_REL(-0.00998333*(double)scene_state(world, idle).spin.z, 0.0199667*10, 2e-3);
+        d = rail_now(world, drive);
+        i = rail_now(world, idle);
+        CHECK_REL((double)d.force.x, -(double)i.force.x - 0.5*((double)scene_state(world, idle).mass +
+                  (double)scene_state(world, drive).mass), fine ? 1e-9 : 1e-2);
+        l = dem_ledger_get(world);
+        CHECK_REL(l.walls, d.work + i.work, fine ? 1e-9 : 1e-3);
+        /* half of the work on the idle roller is heat while its rim slides */
+        CHECK_REL(-i.work + d.work, (double)scene_state(world, idle).inertia*pow((double)scene_state(world, idle).spin.z, 2), 0.02);
+        CHECK(fabs(l.residual - start) < (fine ? 1e-4 : 2e-2)*l.walls);
+        dem_world_destroy(world);
+    }
+    TEST("a mixer's paddle on a rail continues from a checkpoint, and has the same bits on threads") {
+        char path[] = "build/tmp/test_rails.checkpoint";
+        dem_body paddle;
+        dem_world *world = mixer(1, &paddle), *again, *many = mixer(3, &paddle);
+        dem_rail_state r, other;
+        CHECK_EQ(scene_step(world, 2000), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        CHECK_EQ(scene_step(world, 1500), DEM_OK);
+        CHECK_EQ(scene_step(many, 2000), DEM_OK);
+        CHECK_EQ(scene_step(many, 1500), DEM_OK);
+        CHECK(dem_world_hash_get(many) == dem_world_hash_get(world));
+        again = mixer(1, &paddle);
+        dem_body_rail_set(again, paddle, &DEM_RAIL_DESC);
+        CHECK_EQ(dem_checkpoint_read(again, path), DEM_OK);
+        CHECK_EQ(scene_step(again, 1500), DEM_OK);
+        CHECK(dem_world_hash_get(again) == dem_world_hash_get(world));
+        r = rail_now(world, paddle);
+        other = rail_now(again, paddle);
+        CHECK_NEAR(other.work, r.work, 0);
+        CHECK(r.work > 1e-6);
+        CHECK_NEAR(scene_state(world, paddle).position.z, 0.008, fine ? 1e-15 : 1e-9);
+        CHECK(fabs(dem_ledger_get(world).residual) < (fine ? 1e-2 : 5e-2)*dem_ledger_get(world).throughput);
+        dem_body_remove(world, paddle);                 /* its rail goes with it */
+        CHECK_EQ(scene_step(world, 50), DEM_OK);
+        CHECK(dem_body_reaction_get(world, paddle, &r) != DEM_OK);
+        dem_world_destroy(world);
+        dem_world_destroy(again);
+        dem_world_destroy(many);
+        remove(path);
+    }
+    TEST("dem.h refuses rails of fixed bodies, with impulses, in slabs, and of axes that a planar world locks") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_slabs_desc slabs = DEM_SLABS_DESC;
+        dem_rail_desc d = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(0, 0, 0));
+        dem_rail_state r;
+        dem_material m;
+        dem_world *world = stage(0, 1e-5, &m);
+        const dem_body b = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+        dem_body_state s = scene_state(world, b);
+        CHECK_EQ(dem_body_reaction_get(world, b, &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "has no rail");
+        d.axes = 64;
+        CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "axes is 64");
+        d.axes = 1;
+        d.wall.id = 3;
+        CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "wall 3 does not exist");
+        d.wall.id = 0;
+        d.velocity.x = (dem_real)HUGE_VAL;
+        CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "velocity is");
+        d.velocity.x = 0;
+        CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_OK);
+        slabs.count = 2;
+        CHECK(dem_slabs_create(world, &slabs) == 0);
+        CHECK_STR(dem_world_error_get(world), "1 bodies are on rails");
+        s.fixed = 1;
+        dem_body_set(world, b, &s);
+        CHECK_EQ(dem_body_rail_set(world, b, &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "is fixed");
+        dem_world_destroy(world);
+        desc.planar = 1;
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e7, 0.5, 0.5, 0);
+        d.axes = DEM_RAIL_ALL;
+        CHECK_EQ(dem_body_rail_set(world, dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0)), &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "a planar world locks Z");
+        dem_world_destroy(world);
+        desc.planar = 0;
+        desc.response = DEM_RESPONSE_IMPULSES;
+        desc.dt = DEM_R(1e-3);
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e7, 0.5, 0.5, 0);
+        CHECK_EQ(dem_body_rail_set(world, dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0)), &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "contacts of this world are impulses");
+        dem_world_destroy(world);
+    }
+    return test_end();
+}
