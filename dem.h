@@ -999,7 +999,8 @@ typedef struct dem_contact {
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kun;            /* N/m, unloading of the hysteretic law; otherwise 0 */
-    dem_real friction, friction_static, rolling_friction;   /* of the pair of materials */
+    /* of the pair of materials */
+    dem_real friction, friction_static, rolling_friction, spinning_friction;
     dem_real sliding;        /* force->sliding of the last step; 0 when the contact begins */
     int32_t material_a, material_b; /* ids of materials */
     int32_t wall;            /* id of the wall; 0: b is a body */
@@ -1352,6 +1353,25 @@ DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_co
     f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
 }
 
+/* Twisting (spinning) friction: a moment about the normal of at most mu_spin R* F against the
+   relative spin about the normal, and at rest any moment up to that, as with impulses. A spring
+   acts in parallel with a dashpot behind the limit. As in dem_law_roll_constant it is as stiff as a
+   step can resolve, k = (0.3/dt)^2 I with I = 2/5 m* R*^2, and critically damped. So it holds a
+   grain at rest and does not limit the time step. It adds to the moment of a rolling law. Contact
+   history: 1 real, the moment of the spring [N m]; it does not change its sign if a and b are
+   exchanged. Tests: tests/law/test_twisting.c. */
+DEM_INLINE void dem_law_twist(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const dem_vec3 n = c->normal;
+    const dem_real per = c->dt > 0 ? 1/(c->dt + DEMI_TINY) : 0, w = demi_dot(c->spin, n);
+    const dem_real hard = 2*(c->m_eff*c->r_eff*c->r_eff)/5*per, kr = DEM_R(0.09)*hard*per;
+    const dem_real m = *memory - kr*demi_law_share(c)*c->dt*demi_dot(c->spin_step, n);
+    const dem_real t = m - DEM_R(0.6)*hard*w;
+    const dem_real left = demi_law_left(DEMI_ABS(t), c->spinning_friction*c->r_eff*f->load);
+    f->moment = demi_add(f->moment, demi_scale(n, t*left));
+    *memory = m - t*(c->dt > 0 ? (1 - left)*DEM_R(0.09/0.69) : 0);
+    f->energy.roll -= t*left*w*c->dt;
+}
+
 /* ---- other functions that you may hand over ---- */
 
 /* A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m)
@@ -1447,7 +1467,7 @@ typedef struct dem_contact_rows {
     const dem_real *overlap, *range, *closing_speed, *twist, *sliding;
     const dem_real *normal[3], *slip[3], *spin[3], *slip_step[3], *spin_step[3], *normal_rate[3];
     const dem_real *r_eff, *m_eff, *kn, *cn, *kt, *ct, *kun;
-    const dem_real *friction, *friction_static, *rolling_friction;
+    const dem_real *friction, *friction_static, *rolling_friction, *spinning_friction;
     const int32_t *material_a, *material_b;
     DEM_LAW_COEFFICIENTS(DEMI_ROW_FIELD)
     dem_real dt;                   /* s; this and the following are the same for all contacts */
@@ -1486,6 +1506,7 @@ DEM_INLINE void demi_law_of_row(const dem_contact_rows *rows, int q, int touch, 
     c.kun = rows->kun[q];
     c.friction = rows->friction[q]; c.friction_static = rows->friction_static[q];
     c.rolling_friction = rows->rolling_friction[q];
+    c.spinning_friction = rows->spinning_friction[q];
     c.material_a = rows->material_a[q]; c.material_b = rows->material_b[q];
     DEM_LAW_COEFFICIENTS(DEMI_ROW_COEFFICIENT)
     c.dt = rows->dt; c.tension = rows->tension; c.friction_load = rows->friction_load;
@@ -1759,8 +1780,10 @@ typedef struct dem_pair {
     /* N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
        restitution (linear) or none (hysteretic) */
     dem_real normal_damping;
-    /* The next three are for impulses only: 0 when mixed, and must be 0 with springs. */
-    dem_real spinning_friction;    /* mu_spin, >= 0: moment about the normal up to mu_spin R* Fn */
+    /* mu_spin, >= 0: twisting friction, a moment about the normal up to mu_spin R* Fn; 0 when
+       mixed. With springs: dem_law_twist. */
+    dem_real spinning_friction;
+    /* The next two are for impulses only: 0 when mixed, and must be 0 with springs. */
     /* N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of
        the smaller radius. */
     dem_real cohesion;
@@ -3757,7 +3780,8 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
 
 /* Coefficients of one contact, as the built-in laws need them. */
 #define DEMI_COEF_CONSTANT(PROPERTY, COEFFICIENT, UNIT) DEMI_COEF_##COEFFICIENT,
-enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
+enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_MU_SPIN,
+      DEMI_R_EFF,
       DEMI_K_UN,                                /* hysteretic law: unloading */
       DEM_LAW_COEFFICIENTS(DEMI_COEF_CONSTANT) DEMI_COEFS };
 
@@ -4226,6 +4250,8 @@ typedef struct demi_laws {
                                       that are vector components */
     int at_sliding;                /* index of the real that is 1 while friction slides, behind
                                       those of the laws; DEMI_MEMORY: no pair has static friction */
+    int at_twisting;               /* index of the moment of the twisting spring, likewise behind
+                                      them; DEMI_MEMORY: no pair has spinning friction */
     int at_grip;                   /* of the last weight of friction, if contacts of clusters are
                                       merged; else DEMI_MEMORY */
 } demi_laws;
@@ -4291,6 +4317,7 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are vali
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int tangent, rolling;          /* laws in force */
+    int twisting;                  /* springs, and a pair has spinning friction */
     int uniform;                   /* one radius, one mass, one material, no fixed body */
     int fixed_count;
     int tight;                     /* some body is so long that candidates are tested by more than
@@ -5454,8 +5481,9 @@ static int demi_laws_keep(const dem_world *w) {
 }
 /* True if a law in force reads r_eff or m_eff; a user-defined law may. */
 static int demi_laws_sized(const dem_world *w) {
-    return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
-                            w->laws.rolling->traits) & DEMI_SIZED);
+    return w->desc.law || w->effects.twisting ||
+        ((w->laws.normal->traits | w->laws.tangent->traits |
+          w->laws.rolling->traits) & DEMI_SIZED);
 }
 /* True if a law in force reads slopes of the normal force or the stiffness of mid-step. */
 static int demi_laws_precise(const dem_world *w) {
@@ -5473,9 +5501,14 @@ static int demi_law_known(const demi_law_row *rows, int kind) {
 static int demi_laws_append(int *memory, int needed) {
     return needed ? (*memory)++ : (int)DEMI_MEMORY;
 }
-/* Sets the laws in force and lays out the contact history. sticks: 1 if a pair has static friction.
-   */
-static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling, int sticks) {
+/* True if laws in force return moments. */
+static int demi_laws_roll(const dem_world *w) {
+    return w->desc.law || w->laws.rolling->law || w->effects.twisting;
+}
+/* Sets the laws in force and lays out the contact history. sticks, twisting: 1 if a pair has static
+   or spinning friction. */
+static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling, int sticks,
+                          int twisting) {
     laws->normal = &demi_normal_laws[normal];
     laws->tangent = &demi_tangent_laws[tangent];
     laws->rolling = &demi_rolling_laws[rolling];
@@ -5486,6 +5519,7 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
                     ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
     laws->at_sliding = demi_laws_append(&laws->memory, sticks && laws->tangent->law);
+    laws->at_twisting = demi_laws_append(&laws->memory, twisting);
 }
 /* Returns the number of reals of a contact history that users and digests see. */
 static int demi_memory_told(const dem_world *w) {
@@ -5547,6 +5581,7 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
         laws->normal->law(c, memory + laws->at_normal, f);
         if (laws->tangent->law) laws->tangent->law(c, memory, f);
         if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
+        if (w->effects.twisting) dem_law_twist(c, memory + laws->at_twisting, f);
     }
     if (slides) memory[laws->at_sliding] = f->sliding;
 }
@@ -5600,7 +5635,7 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
     DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
-    DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
+    DEMI_SI(spinning_friction, DEMI_FROM, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
     DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
 #undef DEMI_OF
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
@@ -5837,6 +5872,7 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     out[DEMI_MU] = p->friction;
     out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
     out[DEMI_MU_ROLL] = p->rolling_friction;
+    out[DEMI_MU_SPIN] = p->spinning_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
     root[0] = (dem_real)(half*k.cn_root);
     root[1] = (dem_real)(half*k.ct_root);
@@ -14463,7 +14499,8 @@ static void demi_species_coefs(const dem_world *w, const demi_species *a, const 
    there are several materials, on materials. */
 static void demi_species_vary(dem_world *w) {
     const int rows = w->effects.species_count*w->effects.species_count;
-    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL;
+    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL |
+        1 << DEMI_MU_SPIN;
     const int own = (1 << DEMI_COEFS) - (1 << DEMI_K_UN);
     int e, k, materials = 0;
     w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
@@ -15061,8 +15098,10 @@ static int demi_near_make(dem_world *w, int fresh) {
    laws one after the other (demi_laws_set), or as the row of the response says. */
 static void demi_effects_memory(dem_world *w) {
     const demi_response_kind *response = &demi_response_kinds[w->desc.response];
-    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
+    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks,
+                  w->effects.twisting);
     if (w->desc.law) {
+        w->laws.at_twisting = DEMI_MEMORY;
         w->laws.memory = w->desc.law_memory;
         w->laws.at_sliding = demi_laws_append(&w->laws.memory, w->effects.sticks);
         w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
@@ -15084,6 +15123,13 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int 
             *rolling |= p->rolling_friction > 0;
             *sticks |= p->friction_static > p->friction;
         }
+}
+/* True with the built-in laws for springs if any pair of materials has spinning friction. */
+static int demi_pairs_twist(const dem_world *w) {
+    int i, twist = 0;
+    for (i = 0; i < w->material_count*DEMI_MATERIALS; i++)
+        twist |= i%DEMI_MATERIALS < w->material_count && w->pairs[i].given.spinning_friction > 0;
+    return twist && !w->desc.law && demi_response_is(w, DEMI_LAWS);
 }
 /* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
    impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
@@ -15114,6 +15160,7 @@ static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
     demi_pairs_rub(w, &friction, &rolling, &sticks);
     w->effects.sticks = sticks;
+    w->effects.twisting = demi_pairs_twist(w);
     w->normal = (int)w->desc.normal_law;
     w->effects.clustered = demi_clustered(w);
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
@@ -15184,7 +15231,7 @@ static int demi_own(const dem_world *w) {
 /* True if forces depend on spins. demi_turns: also if bodies have orientations. */
 static int demi_spins(const dem_world *w) {
     return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
-           w->effects.rolling != DEM_ROLLING_NONE;
+           w->effects.rolling != DEM_ROLLING_NONE || w->effects.twisting;
 }
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
@@ -15337,6 +15384,8 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
     for (k = 0; k < now->memory; k++) m[k] = k < own ? old[k] : 0;
     if (was->at_sliding < DEMI_MEMORY && now->at_sliding < DEMI_MEMORY)
         m[now->at_sliding] = old[was->at_sliding];
+    if (was->at_twisting < DEMI_MEMORY && now->at_twisting < DEMI_MEMORY)
+        m[now->at_twisting] = old[was->at_twisting];
     if (was->at_grip < DEMI_MEMORY && now->at_grip < DEMI_MEMORY)
         m[now->at_grip] = old[was->at_grip];
     if (own >= 0) return;
@@ -15376,11 +15425,11 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
 static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws, *now = &w->laws;
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
-    const int sticks = w->effects.sticks;
+    const int sticks = w->effects.sticks, twisting = w->effects.twisting;
     demi_effects(w);
     if (demi_species_room(w) && (!demi_response_is(w, DEMI_LAWS) || !was.normal ||
-        (was.memory == now->memory && (w->desc.law || (was.tangent == now->tangent &&
-                                                       was.rolling == now->rolling))) ||
+        (was.memory == now->memory && was.at_twisting == now->at_twisting &&
+         (w->desc.law || (was.tangent == now->tangent && was.rolling == now->rolling))) ||
         demi_memory_move(w, &was))) {
         demi_species_lay(w);
         demi_species_vary(w);
@@ -15389,6 +15438,7 @@ static int demi_effects_take(dem_world *w) {
     w->effects.tangent = tangent;
     w->effects.rolling = rolling;
     w->effects.sticks = sticks;
+    w->effects.twisting = twisting;
     demi_effects_memory(w);
     return 0;
 }
@@ -16342,13 +16392,13 @@ typedef struct demi_same {
     dem_real dt, radius, inv_radius;
     dem_real range, range_radii;   /* m; factor: the range of a law, or 0 */
     int tension, friction_load, slider;
-    int at_rolling, at_normal;     /* where their history begins */
-    int at_sliding;                /* row of memory that holds `sliding` */
+    int rolls, at_rolling, at_normal;          /* is there a rolling law? where history begins */
+    int at_sliding, at_twisting;   /* rows of memory that hold `sliding`, the twisting moment */
 } demi_same;
 /* What a scene needs: a run is a list of stages with their settings. */
 typedef struct demi_run demi_run;
 typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full);
-enum { DEMI_STAGES = 6 };
+enum { DEMI_STAGES = 7 };
 struct demi_run {
     const dem_world *w;
     const demi_span *span;         /* the pairs; null: persistent contacts */
@@ -16510,6 +16560,7 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
     DEM_LAW_COEFFICIENTS(DEMI_COEF_FETCH)
     c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
     c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
+    c->spinning_friction = t->coef[DEMI_MU_SPIN][q];
     c->sliding = t->memory[s->at_sliding][q];
     c->r_eff = t->coef[DEMI_R_EFF][q];
     c->m_eff = t->coef[DEMI_M_EFF][q];
@@ -16578,9 +16629,9 @@ DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
 }
 DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                  const dem_contact_force *f, int all) {
-    (void)all; (void)s;
-    demi_row_put(t->moment, q, f->moment);
-    t->part[5][q] = f->energy.roll*t->touch[q];
+    const int more = all > 2 && s->rolls;       /* twisting: adds to a rolling law */
+    demi_row_put(t->moment, q, more ? demi_add(demi_row(t->moment, q), f->moment) : f->moment);
+    t->part[5][q] = (more ? t->part[5][q] : 0) + f->energy.roll*t->touch[q];
 }
 /* Defines the stage of one law, whose history begins at AT. A normal or friction law has one stage
    for the usual choices (ALL 0) and one for all choices (2); a normal law has one more, for the
@@ -16589,7 +16640,7 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
 #define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
         demi_same s = r->same; \
-        if ((ALL) == 2 && !r->usual) DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, (void)0) \
+        if ((ALL) >= 2 && !r->usual) DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, (void)0) \
         else { \
             s.at_sliding = DEMI_MEMORY; \
             DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, demi_contact_usual(&c)) \
@@ -16615,6 +16666,7 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
     DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 2, demi_tangent_put)
 #define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 2, demi_rolling_put)
+DEMI_LAW_STAGE(demi_stage_twist, twist, s.at_twisting, 1, 3, demi_rolling_put)
 DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
 DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
 DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGES)
@@ -16836,7 +16888,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     c.kn = t->coef[DEMI_KN]; c.cn = t->coef[DEMI_CN];
     c.kt = t->coef[DEMI_KT]; c.ct = t->coef[DEMI_CT]; c.kun = t->coef[DEMI_K_UN];
     c.friction = t->coef[DEMI_MU]; c.friction_static = t->coef[DEMI_MU_STATIC];
-    c.rolling_friction = t->coef[DEMI_MU_ROLL];
+    c.rolling_friction = t->coef[DEMI_MU_ROLL]; c.spinning_friction = t->coef[DEMI_MU_SPIN];
     c.material_a = material[0]; c.material_b = material[1];
     DEM_LAW_COEFFICIENTS(DEMI_COEF_COLUMN)
     c.dt = same.dt; c.tension = same.tension; c.friction_load = same.friction_load;
@@ -16870,7 +16922,8 @@ static demi_stage demi_whole_stage(const dem_world *w, int alike) {
     (void)alike;
     if (w->desc.law) return demi_own_rows(w) ? demi_stage_own_rows : demi_stage_own;
 #ifndef DEM_NO_SPECIALIZE
-    if (w->composed || !demi_laws_usual(w) || w->normal != DEM_NORMAL_HERTZ) return 0;
+    if (w->composed || w->effects.twisting || !demi_laws_usual(w) ||
+        w->normal != DEM_NORMAL_HERTZ) return 0;
     if (w->effects.tangent == DEM_TANGENT_NONE && w->effects.rolling == DEM_ROLLING_NONE &&
         !w->desc.ledger)
         return demi_stage_hertz_alone;
@@ -16893,13 +16946,14 @@ static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
     r->stage[k++] = all ? normal->all : demi_laws_precise(w) ? normal->precise : normal->common;
     if (w->laws.tangent->law) r->stage[k++] = all ? tangent->all : tangent->common;
     if (w->laws.rolling->law) r->stage[k++] = demi_rolling_stages[w->effects.rolling].common;
+    if (w->effects.twisting) r->stage[k++] = demi_stage_twist;
     return k;
 }
 /* Returns a run for the laws in force, without stages. dt 0: forces only, history does not
    advance. */
 static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     const demi_laws *laws = &w->laws;
-    const int own = w->desc.law != 0, rolls = laws->rolling->law != 0;
+    const int own = w->desc.law != 0, rolls = demi_laws_roll(w);
     demi_run r;
     memset(&r, 0, sizeof r);
     r.w = w;
@@ -16907,12 +16961,14 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.usual = demi_laws_usual(w);
     r.turning = own || rolls || laws->tangent->law;
     r.parting = own || rolls;
-    r.following = own || laws->tangent->vectors || laws->rolling->vectors;
+    r.following = own || laws->tangent->vectors || laws->rolling->vectors ||
+        w->effects.twisting;
     r.ranged = w->margin.reach > 0;
     r.same.range = w->desc.law_range;
     r.same.range_radii = w->desc.law_range_radii;
     r.same.at_rolling = laws->at_rolling; r.same.at_normal = laws->at_normal;
     r.same.at_sliding = laws->at_sliding;
+    r.same.at_twisting = laws->at_twisting; r.same.rolls = laws->rolling->law != 0;
     r.same.tension = (int)w->desc.tension;
     r.same.friction_load = (int)w->desc.friction_load;
     r.same.slider = (int)w->desc.slider;
@@ -16935,7 +16991,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     k = demi_run_laws(w, &r, k);
-    r.stage[k] = demi_answer_choose(&r, w->laws.rolling->law != 0);
+    r.stage[k] = demi_answer_choose(&r, demi_laws_roll(w));
     return r;
 }
 /* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
@@ -21404,7 +21460,7 @@ static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *
     int k;
     if (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)) return;
     for (k = 0; k < w->laws.memory; k++) {
-        if (!(w->laws.vectors >> k & 1)) continue;
+        if (!(w->laws.vectors >> k & 1) && k != w->laws.at_twisting) continue;
         if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
         c->memory[k] *= left;
     }
@@ -21830,7 +21886,7 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
    costs as much for one contact as for all that fit. Results are the same to the bit. */
 static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
     const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    const int few = t->count < 4, rolls = w->desc.law || w->laws.rolling->law;
+    const int few = t->count < 4, rolls = demi_laws_roll(w);
     int q, k;
     for (q = 0; q < t->count; q++)
         demi_kept_fetch(r, t->contact[q], t->old[q], t, q);
@@ -22233,7 +22289,7 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
             m->laws.stage[k](rows, &m->laws, full);
     }
     demi_member_weigh(&m->t, full);
-    demi_answer_choose(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
+    demi_answer_choose(r, demi_laws_roll(w))(rows, r, full);
     for (q = 0; q < m->count; q++)              /* at the centre of the sphere: no torque */
         if (m->merged[q]) demi_row_put(rows->force, q, demi_add(demi_row(rows->force, q),
                                               demi_scale(m->aside[q], m->t.still[q])));
@@ -29372,6 +29428,9 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
         if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
             if (!sticks) continue;
             number = 24;
+        } else if (demi_laws_keep(w) && i == laws->at_twisting) {
+            if (!demi_pairs_twist(w)) continue;
+            number = 25;
         } else if (demi_laws_keep(w)) {
             if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
             if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
@@ -33875,6 +33934,7 @@ static int demi_numbers_check(const demi_reader *r) {
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
+             (t->effects.twisting & ~1) || (t->effects.twisting && t->desc.law) ||
              t->effects.clustered < 0 || t->effects.clustered > 1 ||
              (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
              t->effects.species_count < 0 ||

@@ -418,7 +418,8 @@ typedef struct dem_contact {
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kun;            /* N/m, unloading of the hysteretic law; otherwise 0 */
-    dem_real friction, friction_static, rolling_friction;   /* of the pair of materials */
+    /* of the pair of materials */
+    dem_real friction, friction_static, rolling_friction, spinning_friction;
     dem_real sliding;        /* force->sliding of the last step; 0 when the contact begins */
     int32_t material_a, material_b; /* ids of materials */
     int32_t wall;            /* id of the wall; 0: b is a body */
@@ -769,6 +770,25 @@ DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_co
     f->moment = demi_sub(m, demi_scale(w, size > most ? 0 : cr));
     demi_put(memory, m);
     f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
+}
+
+/* Twisting (spinning) friction: a moment about the normal of at most mu_spin R* F against the
+   relative spin about the normal, and at rest any moment up to that, as with impulses. A spring
+   acts in parallel with a dashpot behind the limit. As in dem_law_roll_constant it is as stiff as a
+   step can resolve, k = (0.3/dt)^2 I with I = 2/5 m* R*^2, and critically damped. So it holds a
+   grain at rest and does not limit the time step. It adds to the moment of a rolling law. Contact
+   history: 1 real, the moment of the spring [N m]; it does not change its sign if a and b are
+   exchanged. Tests: tests/law/test_twisting.c. */
+DEM_INLINE void dem_law_twist(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const dem_vec3 n = c->normal;
+    const dem_real per = c->dt > 0 ? 1/(c->dt + DEMI_TINY) : 0, w = demi_dot(c->spin, n);
+    const dem_real hard = 2*(c->m_eff*c->r_eff*c->r_eff)/5*per, kr = DEM_R(0.09)*hard*per;
+    const dem_real m = *memory - kr*demi_law_share(c)*c->dt*demi_dot(c->spin_step, n);
+    const dem_real t = m - DEM_R(0.6)*hard*w;
+    const dem_real left = demi_law_left(DEMI_ABS(t), c->spinning_friction*c->r_eff*f->load);
+    f->moment = demi_add(f->moment, demi_scale(n, t*left));
+    *memory = m - t*(c->dt > 0 ? (1 - left)*DEM_R(0.09/0.69) : 0);
+    f->energy.roll -= t*left*w*c->dt;
 }
 
 /* ---- other functions that you may hand over ---- */

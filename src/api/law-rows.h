@@ -50,7 +50,7 @@ typedef struct dem_contact_rows {
     const dem_real *overlap, *range, *closing_speed, *twist, *sliding;
     const dem_real *normal[3], *slip[3], *spin[3], *slip_step[3], *spin_step[3], *normal_rate[3];
     const dem_real *r_eff, *m_eff, *kn, *cn, *kt, *ct, *kun;
-    const dem_real *friction, *friction_static, *rolling_friction;
+    const dem_real *friction, *friction_static, *rolling_friction, *spinning_friction;
     const int32_t *material_a, *material_b;
     DEM_LAW_COEFFICIENTS(DEMI_ROW_FIELD)
     dem_real dt;                   /* s; this and the following are the same for all contacts */
@@ -89,6 +89,7 @@ DEM_INLINE void demi_law_of_row(const dem_contact_rows *rows, int q, int touch, 
     c.kun = rows->kun[q];
     c.friction = rows->friction[q]; c.friction_static = rows->friction_static[q];
     c.rolling_friction = rows->rolling_friction[q];
+    c.spinning_friction = rows->spinning_friction[q];
     c.material_a = rows->material_a[q]; c.material_b = rows->material_b[q];
     DEM_LAW_COEFFICIENTS(DEMI_ROW_COEFFICIENT)
     c.dt = rows->dt; c.tension = rows->tension; c.friction_load = rows->friction_load;

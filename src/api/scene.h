@@ -220,8 +220,10 @@ typedef struct dem_pair {
     /* N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
        restitution (linear) or none (hysteretic) */
     dem_real normal_damping;
-    /* The next three are for impulses only: 0 when mixed, and must be 0 with springs. */
-    dem_real spinning_friction;    /* mu_spin, >= 0: moment about the normal up to mu_spin R* Fn */
+    /* mu_spin, >= 0: twisting friction, a moment about the normal up to mu_spin R* Fn; 0 when
+       mixed. With springs: dem_law_twist. */
+    dem_real spinning_friction;
+    /* The next two are for impulses only: 0 when mixed, and must be 0 with springs. */
     /* N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of
        the smaller radius. */
     dem_real cohesion;

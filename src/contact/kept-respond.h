@@ -67,7 +67,7 @@ static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *
     int k;
     if (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)) return;
     for (k = 0; k < w->laws.memory; k++) {
-        if (!(w->laws.vectors >> k & 1)) continue;
+        if (!(w->laws.vectors >> k & 1) && k != w->laws.at_twisting) continue;
         if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
         c->memory[k] *= left;
     }
@@ -493,7 +493,7 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
    costs as much for one contact as for all that fit. Results are the same to the bit. */
 static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
     const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    const int few = t->count < 4, rolls = w->desc.law || w->laws.rolling->law;
+    const int few = t->count < 4, rolls = demi_laws_roll(w);
     int q, k;
     for (q = 0; q < t->count; q++)
         demi_kept_fetch(r, t->contact[q], t->old[q], t, q);

@@ -262,7 +262,7 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
             m->laws.stage[k](rows, &m->laws, full);
     }
     demi_member_weigh(&m->t, full);
-    demi_answer_choose(r, w->desc.law || w->laws.rolling->law)(rows, r, full);
+    demi_answer_choose(r, demi_laws_roll(w))(rows, r, full);
     for (q = 0; q < m->count; q++)              /* at the centre of the sphere: no torque */
         if (m->merged[q]) demi_row_put(rows->force, q, demi_add(demi_row(rows->force, q),
                                               demi_scale(m->aside[q], m->t.still[q])));

@@ -131,7 +131,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     c.kn = t->coef[DEMI_KN]; c.cn = t->coef[DEMI_CN];
     c.kt = t->coef[DEMI_KT]; c.ct = t->coef[DEMI_CT]; c.kun = t->coef[DEMI_K_UN];
     c.friction = t->coef[DEMI_MU]; c.friction_static = t->coef[DEMI_MU_STATIC];
-    c.rolling_friction = t->coef[DEMI_MU_ROLL];
+    c.rolling_friction = t->coef[DEMI_MU_ROLL]; c.spinning_friction = t->coef[DEMI_MU_SPIN];
     c.material_a = material[0]; c.material_b = material[1];
     DEM_LAW_COEFFICIENTS(DEMI_COEF_COLUMN)
     c.dt = same.dt; c.tension = same.tension; c.friction_load = same.friction_load;
@@ -165,7 +165,8 @@ static demi_stage demi_whole_stage(const dem_world *w, int alike) {
     (void)alike;
     if (w->desc.law) return demi_own_rows(w) ? demi_stage_own_rows : demi_stage_own;
 #ifndef DEM_NO_SPECIALIZE
-    if (w->composed || !demi_laws_usual(w) || w->normal != DEM_NORMAL_HERTZ) return 0;
+    if (w->composed || w->effects.twisting || !demi_laws_usual(w) ||
+        w->normal != DEM_NORMAL_HERTZ) return 0;
     if (w->effects.tangent == DEM_TANGENT_NONE && w->effects.rolling == DEM_ROLLING_NONE &&
         !w->desc.ledger)
         return demi_stage_hertz_alone;
@@ -188,13 +189,14 @@ static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
     r->stage[k++] = all ? normal->all : demi_laws_precise(w) ? normal->precise : normal->common;
     if (w->laws.tangent->law) r->stage[k++] = all ? tangent->all : tangent->common;
     if (w->laws.rolling->law) r->stage[k++] = demi_rolling_stages[w->effects.rolling].common;
+    if (w->effects.twisting) r->stage[k++] = demi_stage_twist;
     return k;
 }
 /* Returns a run for the laws in force, without stages. dt 0: forces only, history does not
    advance. */
 static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     const demi_laws *laws = &w->laws;
-    const int own = w->desc.law != 0, rolls = laws->rolling->law != 0;
+    const int own = w->desc.law != 0, rolls = demi_laws_roll(w);
     demi_run r;
     memset(&r, 0, sizeof r);
     r.w = w;
@@ -202,12 +204,14 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.usual = demi_laws_usual(w);
     r.turning = own || rolls || laws->tangent->law;
     r.parting = own || rolls;
-    r.following = own || laws->tangent->vectors || laws->rolling->vectors;
+    r.following = own || laws->tangent->vectors || laws->rolling->vectors ||
+        w->effects.twisting;
     r.ranged = w->margin.reach > 0;
     r.same.range = w->desc.law_range;
     r.same.range_radii = w->desc.law_range_radii;
     r.same.at_rolling = laws->at_rolling; r.same.at_normal = laws->at_normal;
     r.same.at_sliding = laws->at_sliding;
+    r.same.at_twisting = laws->at_twisting; r.same.rolls = laws->rolling->law != 0;
     r.same.tension = (int)w->desc.tension;
     r.same.friction_load = (int)w->desc.friction_load;
     r.same.slider = (int)w->desc.slider;
@@ -230,7 +234,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     k = demi_run_laws(w, &r, k);
-    r.stage[k] = demi_answer_choose(&r, w->laws.rolling->law != 0);
+    r.stage[k] = demi_answer_choose(&r, demi_laws_roll(w));
     return r;
 }
 /* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero

@@ -134,13 +134,13 @@ typedef struct demi_same {
     dem_real dt, radius, inv_radius;
     dem_real range, range_radii;   /* m; factor: the range of a law, or 0 */
     int tension, friction_load, slider;
-    int at_rolling, at_normal;     /* where their history begins */
-    int at_sliding;                /* row of memory that holds `sliding` */
+    int rolls, at_rolling, at_normal;          /* is there a rolling law? where history begins */
+    int at_sliding, at_twisting;   /* rows of memory that hold `sliding`, the twisting moment */
 } demi_same;
 /* What a scene needs: a run is a list of stages with their settings. */
 typedef struct demi_run demi_run;
 typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full);
-enum { DEMI_STAGES = 6 };
+enum { DEMI_STAGES = 7 };
 struct demi_run {
     const dem_world *w;
     const demi_span *span;         /* the pairs; null: persistent contacts */
@@ -302,6 +302,7 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
     DEM_LAW_COEFFICIENTS(DEMI_COEF_FETCH)
     c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
     c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
+    c->spinning_friction = t->coef[DEMI_MU_SPIN][q];
     c->sliding = t->memory[s->at_sliding][q];
     c->r_eff = t->coef[DEMI_R_EFF][q];
     c->m_eff = t->coef[DEMI_M_EFF][q];
@@ -370,9 +371,9 @@ DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
 }
 DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                  const dem_contact_force *f, int all) {
-    (void)all; (void)s;
-    demi_row_put(t->moment, q, f->moment);
-    t->part[5][q] = f->energy.roll*t->touch[q];
+    const int more = all > 2 && s->rolls;       /* twisting: adds to a rolling law */
+    demi_row_put(t->moment, q, more ? demi_add(demi_row(t->moment, q), f->moment) : f->moment);
+    t->part[5][q] = (more ? t->part[5][q] : 0) + f->energy.roll*t->touch[q];
 }
 /* Defines the stage of one law, whose history begins at AT. A normal or friction law has one stage
    for the usual choices (ALL 0) and one for all choices (2); a normal law has one more, for the
@@ -381,7 +382,7 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
 #define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
         demi_same s = r->same; \
-        if ((ALL) == 2 && !r->usual) DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, (void)0) \
+        if ((ALL) >= 2 && !r->usual) DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, (void)0) \
         else { \
             s.at_sliding = DEMI_MEMORY; \
             DEMI_LAW_LOOP(LAW, AT, MEMORY, ALL, PUT, demi_contact_usual(&c)) \
@@ -407,6 +408,7 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s,
     DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 2, demi_tangent_put)
 #define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 2, demi_rolling_put)
+DEMI_LAW_STAGE(demi_stage_twist, twist, s.at_twisting, 1, 3, demi_rolling_put)
 DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
 DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
 DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGES)

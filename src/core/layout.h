@@ -28,7 +28,8 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
 
 /* Coefficients of one contact, as the built-in laws need them. */
 #define DEMI_COEF_CONSTANT(PROPERTY, COEFFICIENT, UNIT) DEMI_COEF_##COEFFICIENT,
-enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
+enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_MU_SPIN,
+      DEMI_R_EFF,
       DEMI_K_UN,                                /* hysteretic law: unloading */
       DEM_LAW_COEFFICIENTS(DEMI_COEF_CONSTANT) DEMI_COEFS };
 
@@ -497,6 +498,8 @@ typedef struct demi_laws {
                                       that are vector components */
     int at_sliding;                /* index of the real that is 1 while friction slides, behind
                                       those of the laws; DEMI_MEMORY: no pair has static friction */
+    int at_twisting;               /* index of the moment of the twisting spring, likewise behind
+                                      them; DEMI_MEMORY: no pair has spinning friction */
     int at_grip;                   /* of the last weight of friction, if contacts of clusters are
                                       merged; else DEMI_MEMORY */
 } demi_laws;

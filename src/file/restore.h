@@ -158,6 +158,7 @@ static int demi_numbers_check(const demi_reader *r) {
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
+             (t->effects.twisting & ~1) || (t->effects.twisting && t->desc.law) ||
              t->effects.clustered < 0 || t->effects.clustered > 1 ||
              (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
              t->effects.species_count < 0 ||

@@ -123,8 +123,9 @@ static int demi_laws_keep(const dem_world *w) {
 }
 /* True if a law in force reads r_eff or m_eff; a user-defined law may. */
 static int demi_laws_sized(const dem_world *w) {
-    return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
-                            w->laws.rolling->traits) & DEMI_SIZED);
+    return w->desc.law || w->effects.twisting ||
+        ((w->laws.normal->traits | w->laws.tangent->traits |
+          w->laws.rolling->traits) & DEMI_SIZED);
 }
 /* True if a law in force reads slopes of the normal force or the stiffness of mid-step. */
 static int demi_laws_precise(const dem_world *w) {
@@ -142,9 +143,14 @@ static int demi_law_known(const demi_law_row *rows, int kind) {
 static int demi_laws_append(int *memory, int needed) {
     return needed ? (*memory)++ : (int)DEMI_MEMORY;
 }
-/* Sets the laws in force and lays out the contact history. sticks: 1 if a pair has static friction.
-   */
-static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling, int sticks) {
+/* True if laws in force return moments. */
+static int demi_laws_roll(const dem_world *w) {
+    return w->desc.law || w->laws.rolling->law || w->effects.twisting;
+}
+/* Sets the laws in force and lays out the contact history. sticks, twisting: 1 if a pair has static
+   or spinning friction. */
+static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling, int sticks,
+                          int twisting) {
     laws->normal = &demi_normal_laws[normal];
     laws->tangent = &demi_tangent_laws[tangent];
     laws->rolling = &demi_rolling_laws[rolling];
@@ -155,6 +161,7 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling,
                     ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
     laws->at_sliding = demi_laws_append(&laws->memory, sticks && laws->tangent->law);
+    laws->at_twisting = demi_laws_append(&laws->memory, twisting);
 }
 /* Returns the number of reals of a contact history that users and digests see. */
 static int demi_memory_told(const dem_world *w) {
@@ -216,6 +223,7 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
         laws->normal->law(c, memory + laws->at_normal, f);
         if (laws->tangent->law) laws->tangent->law(c, memory, f);
         if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
+        if (w->effects.twisting) dem_law_twist(c, memory + laws->at_twisting, f);
     }
     if (slides) memory[laws->at_sliding] = f->sliding;
 }

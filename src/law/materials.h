@@ -47,7 +47,7 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_RATIO(friction), DEMI_STATIC, DEMI_RATIO(rolling_friction),
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
     DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
-    DEMI_IMPULSES_ALONE(spinning_friction, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
+    DEMI_SI(spinning_friction, DEMI_FROM, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
     DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
 #undef DEMI_OF
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
@@ -284,6 +284,7 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     out[DEMI_MU] = p->friction;
     out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
     out[DEMI_MU_ROLL] = p->rolling_friction;
+    out[DEMI_MU_SPIN] = p->spinning_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
     root[0] = (dem_real)(half*k.cn_root);
     root[1] = (dem_real)(half*k.ct_root);

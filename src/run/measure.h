@@ -160,6 +160,9 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
         if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
             if (!sticks) continue;
             number = 24;
+        } else if (demi_laws_keep(w) && i == laws->at_twisting) {
+            if (!demi_pairs_twist(w)) continue;
+            number = 25;
         } else if (demi_laws_keep(w)) {
             if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
             if (i >= laws->at_normal) number = 16 + i - laws->at_normal;

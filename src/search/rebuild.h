@@ -13,8 +13,10 @@
    laws one after the other (demi_laws_set), or as the row of the response says. */
 static void demi_effects_memory(dem_world *w) {
     const demi_response_kind *response = &demi_response_kinds[w->desc.response];
-    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
+    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks,
+                  w->effects.twisting);
     if (w->desc.law) {
+        w->laws.at_twisting = DEMI_MEMORY;
         w->laws.memory = w->desc.law_memory;
         w->laws.at_sliding = demi_laws_append(&w->laws.memory, w->effects.sticks);
         w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
@@ -36,6 +38,13 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int 
             *rolling |= p->rolling_friction > 0;
             *sticks |= p->friction_static > p->friction;
         }
+}
+/* True with the built-in laws for springs if any pair of materials has spinning friction. */
+static int demi_pairs_twist(const dem_world *w) {
+    int i, twist = 0;
+    for (i = 0; i < w->material_count*DEMI_MATERIALS; i++)
+        twist |= i%DEMI_MATERIALS < w->material_count && w->pairs[i].given.spinning_friction > 0;
+    return twist && !w->desc.law && demi_response_is(w, DEMI_LAWS);
 }
 /* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
    impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
@@ -66,6 +75,7 @@ static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
     demi_pairs_rub(w, &friction, &rolling, &sticks);
     w->effects.sticks = sticks;
+    w->effects.twisting = demi_pairs_twist(w);
     w->normal = (int)w->desc.normal_law;
     w->effects.clustered = demi_clustered(w);
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
@@ -136,7 +146,7 @@ static int demi_own(const dem_world *w) {
 /* True if forces depend on spins. demi_turns: also if bodies have orientations. */
 static int demi_spins(const dem_world *w) {
     return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
-           w->effects.rolling != DEM_ROLLING_NONE;
+           w->effects.rolling != DEM_ROLLING_NONE || w->effects.twisting;
 }
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
@@ -289,6 +299,8 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
     for (k = 0; k < now->memory; k++) m[k] = k < own ? old[k] : 0;
     if (was->at_sliding < DEMI_MEMORY && now->at_sliding < DEMI_MEMORY)
         m[now->at_sliding] = old[was->at_sliding];
+    if (was->at_twisting < DEMI_MEMORY && now->at_twisting < DEMI_MEMORY)
+        m[now->at_twisting] = old[was->at_twisting];
     if (was->at_grip < DEMI_MEMORY && now->at_grip < DEMI_MEMORY)
         m[now->at_grip] = old[was->at_grip];
     if (own >= 0) return;
@@ -328,11 +340,11 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
 static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws, *now = &w->laws;
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
-    const int sticks = w->effects.sticks;
+    const int sticks = w->effects.sticks, twisting = w->effects.twisting;
     demi_effects(w);
     if (demi_species_room(w) && (!demi_response_is(w, DEMI_LAWS) || !was.normal ||
-        (was.memory == now->memory && (w->desc.law || (was.tangent == now->tangent &&
-                                                       was.rolling == now->rolling))) ||
+        (was.memory == now->memory && was.at_twisting == now->at_twisting &&
+         (w->desc.law || (was.tangent == now->tangent && was.rolling == now->rolling))) ||
         demi_memory_move(w, &was))) {
         demi_species_lay(w);
         demi_species_vary(w);
@@ -341,6 +353,7 @@ static int demi_effects_take(dem_world *w) {
     w->effects.tangent = tangent;
     w->effects.rolling = rolling;
     w->effects.sticks = sticks;
+    w->effects.twisting = twisting;
     demi_effects_memory(w);
     return 0;
 }
