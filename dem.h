@@ -1792,6 +1792,9 @@ typedef struct dem_pair {
     dem_real compliance;
     /* stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
     DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
+    /* 1: bodies and walls of these materials pass through each other. They make no contacts, and
+       laws that act at a distance are not called for them. Mixed: 0. */
+    int32_t ignored;
 } dem_pair;
 /* Writes the contact properties of two materials to pair. */
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
@@ -1860,10 +1863,10 @@ DEM_INLINE dem_region dem_region_inside_make(dem_box box, dem_inside_fn inside, 
 /* Adds up to count spheres of one radius (m) at random positions in a region, one after the other.
    The same seed gives the same positions. A position is free if the sphere there overlaps no body
    (a body that is not a sphere counts with its bounding sphere), also across periodic faces, and
-   touches no wall. No position is free behind a plane, on the wrong side of a cylinder or in a
-   sieve; the inside of a closed mesh counts like its outside. Returns how many were added. If these
-   are fewer than count, 2000 tries for one sphere failed; dem_world_error_get says so, but the
-   world can run. */
+   touches no wall. What the material ignores (dem_pair) does not count. No position is free behind
+   a plane, on the wrong side of a cylinder or in a sieve; the inside of a closed mesh counts like
+   its outside. Returns how many were added. If these are fewer than count, 2000 tries for one
+   sphere failed; dem_world_error_get says so, but the world can run. */
 DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
                              dem_region region, int count, uint64_t seed);
 /* The kind of a size distribution. F(r) is the fraction finer than radius r. All are truncated to
@@ -4144,7 +4147,9 @@ typedef struct demi_wall {
                                       >>surfaces; else 0 */
     dem_vec3 step[2];              /* m, tessellation: it repeats in its frame by these; 0: not */
     int covered;                   /* 1: other walls are in the same place */
-    int group;                     /* walls of one group do not move relative to each other */
+    int group;                     /* walls of one group do not move relative to each other, and
+                                      the same materials ignore them */
+    uint64_t ignorers;             /* materials that ignore it, when surfaces were made */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
     int open;                      /* 1: it may be a sheet: it has open edges or repeats */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
@@ -4322,6 +4327,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int fixed_count;
     int tight;                     /* some body is so long that candidates are tested by more than
                                       bounding spheres */
+    int ignoring;                  /* 1: some pair of materials is ignored (dem_pair) */
     int sticks;                    /* a pair has static friction above its sliding friction */
     int clustered;                 /* springs, and the scene has a cluster of spheres: pairs of the
                                       pruned list are pairs of their member spheres (>>members) */
@@ -5636,7 +5642,8 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
     DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
     DEMI_SI(spinning_friction, DEMI_FROM, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
-    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
+    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW)
+    DEMI_LIMITED(DEMI_OF, ignored, 'i', DEMI_FROM, 1, ""), DEMI_ROW_END};
 #undef DEMI_OF
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
@@ -5729,6 +5736,17 @@ static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
         ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
+/* True if bodies and walls of materials a and b (indices) pass through each other. */
+DEM_INLINE int demi_ignores(const dem_world *w, int a, int b) {
+    return w->pairs[a*DEMI_MATERIALS + b].given.ignored;
+}
+/* The materials that ignore material b, bit i for that of index i. */
+static uint64_t demi_ignorers(const dem_world *w, int b) {
+    uint64_t all = 0;
+    int i;
+    for (i = 0; i < w->material_count; i++) all |= (uint64_t)demi_ignores(w, i, b) << i;
+    return all;
+}
 /* Static friction of a pair: the sliding friction if it is unset or lower. */
 static dem_real demi_static_friction(const dem_world *w, int a, int b) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
@@ -5795,8 +5813,9 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
     for (i = 0; i < w->material_count; i++) {
         const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
         const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
-        /* values that dem_pair_set has set stay */
-        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
+        /* values that dem_pair_set has set stay; the last field, an int, has padding behind it */
+        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, offsetof(dem_pair, ignored)) &&
+            !w->pairs[i*DEMI_MATERIALS + m].given.ignored)
             demi_pair_put(w, i, m, &now);
     }
     demi_pairs_changed(w);
@@ -5813,23 +5832,6 @@ DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_mate
         demi_material_index(w, "dem_pair_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     *pair = w->pairs[i*DEMI_MATERIALS + j].given;
-    return DEM_OK;
-}
-
-DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
-    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
-    int i = 0, j = 0;
-    char of[48];
-    if (demi_material_index(w, "dem_pair_set", a, &i) ||
-        demi_material_index(w, "dem_pair_set", b, &j))
-        return DEM_ERROR_ARGUMENT;
-    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
-    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
-                        "start from dem_pair_get and change only what differs"))
-        return DEM_ERROR_ARGUMENT;
-    demi_pair_put(w, i, j, p);
-    demi_pairs_changed(w);
-    demi_built(w, "dem_pair_set");
     return DEM_OK;
 }
 
@@ -6019,7 +6021,7 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
             DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_PRINT)
-            fprintf(out, "\n");
+            fprintf(out, "%s\n", p->ignored ? "  ignored" : "");
         }
 }
 
@@ -12471,8 +12473,8 @@ static void demi_form_begin(demi_form *f, dem_world *w, const demi_wall *wall, d
    >>surfaces
    One surface per rigid motion. Meshes that do not move relative to each other are joined into one
    surface (>>joins), and so are profiles: grains then do not feel how a scene was divided into
-   walls or facets. Facets of a surface share whole sides, and each face, edge and corner has an
-   integer weight (>>facets).
+   walls or facets. Walls that different materials ignore are not joined. Facets of a surface share
+   whole sides, and each face, edge and corner has an integer weight (>>facets).
 
    A wall that shares nothing is its own surface. Any other is part of a joined surface
    (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
@@ -12895,9 +12897,10 @@ static int demi_surfaces_make(dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         wall->joined = wall->covered = 0;
+        wall->ignorers = demi_ignorers(w, wall->material);
         for (k = 0; k < i; k++)
-            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall))
-                break;
+            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall) &&
+                w->walls[k].ignorers == wall->ignorers) break;
         wall->group = k;
         wall->covered = demi_plane_again(w, i);
     }
@@ -12913,6 +12916,29 @@ static int demi_surfaces_make(dem_world *w) {
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;
+}
+
+/* Here, because it changes which walls form a surface if the materials ignored each other before
+   and do not now, or the other way round. Contacts of an ignored pair end with the next list. */
+DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
+    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
+    int i = 0, j = 0;
+    char of[48];
+    if (demi_material_index(w, "dem_pair_set", a, &i) ||
+        demi_material_index(w, "dem_pair_set", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
+    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
+                        "start from dem_pair_get and change only what differs"))
+        return DEM_ERROR_ARGUMENT;
+    if (p->ignored != demi_ignores(w, i, j)) {
+        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_pair_set");
+        demi_surfaces_outdated(w);
+    }
+    demi_pair_put(w, i, j, p);
+    demi_pairs_changed(w);
+    demi_built(w, "dem_pair_set");
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -13302,7 +13328,8 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 }
 
 /* Tests one pair (a < b) and appends it to the list of a's work group d if its gap is below `skin`.
-   Pairs of two fixed bodies and of two ghosts are left out. */
+   Pairs of two fixed bodies, of two ghosts and of materials that ignore each other are left
+   out. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
@@ -13316,6 +13343,8 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
     if (w->effects.fixed_count && w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0) return;
     if (demi_is_ghost(w, a) && demi_is_ghost(w, b)) return;
+    if (w->effects.ignoring &&
+        demi_ignores(w, w->bodies.material[a] - 1, w->bodies.material[b] - 1)) return;
     if (w->effects.tight && !demi_pair_reaches(w, a, b, demi_v(dx, dy, dz), skin)) return;
     list = b < domain->end ? &w->own : &w->cross;
     k = list == &w->own ? domain->own : domain->cross;
@@ -14133,7 +14162,8 @@ static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, 
         }
     }
 }
-/* Lists the elements of all surfaces near body i, unless it is fixed or a ghost. */
+/* Lists the elements of all surfaces near body i that it does not ignore, unless it is fixed or a
+   ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, n;
@@ -14142,7 +14172,9 @@ static void demi_body_walls(dem_world *w, int d, int i) {
         const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
         if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered ||
-            demi_surface_scale(w, j, i) != wall->scale) continue;
+            demi_surface_scale(w, j, i) != wall->scale ||
+            (w->effects.ignoring && demi_ignores(w, w->bodies.material[i] - 1, wall->material)))
+            continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
             demi_wall_look_all(w, domain, d, i, j, shift);
@@ -15111,14 +15143,15 @@ static void demi_effects_memory(dem_world *w) {
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
-/* Sets the three to 1 if any pair of materials has friction, rolling friction, or static friction
-   above its sliding friction. */
+/* Sets the three to 1 if any pair of materials that is not ignored has friction, rolling friction,
+   or static friction above its sliding friction. */
 static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
     int i, j;
     *friction = *rolling = *sticks = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
+            if (p->ignored) continue;
             *friction |= p->friction > 0 || p->friction_static > 0;
             *rolling |= p->rolling_friction > 0;
             *sticks |= p->friction_static > p->friction;
@@ -15161,6 +15194,8 @@ static void demi_effects(dem_world *w) {
     demi_pairs_rub(w, &friction, &rolling, &sticks);
     w->effects.sticks = sticks;
     w->effects.twisting = demi_pairs_twist(w);
+    for (i = w->effects.ignoring = 0; i < w->material_count; i++)
+        w->effects.ignoring |= demi_ignorers(w, i) != 0;
     w->normal = (int)w->desc.normal_law;
     w->effects.clustered = demi_clustered(w);
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
@@ -22573,7 +22608,7 @@ static int demi_impulses_twist(const dem_world *w) {
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            twist |= p->rolling_friction > 0 || p->spinning_friction > 0;
+            twist |= !p->ignored && (p->rolling_friction > 0 || p->spinning_friction > 0);
         }
     return twist;
 }
@@ -25129,6 +25164,8 @@ typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; }
 /* An occupancy tree. Its spheres and nodes are w->crowd and w->crowd_nodes. */
 typedef struct demi_crowd {
     demi_periods p;
+    int material;                  /* index of that of the new grains: bodies and walls that it
+                                      ignores do not occupy a position */
     double lo[3], size[3];         /* m, of the root's box; on a periodic axis the whole period */
     int count, nodes;
 } demi_crowd;
@@ -25238,9 +25275,9 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
     }
     return d2;
 }
-/* Returns the number of spheres in the tree that overlap this one and stores their bodies in
-   `found`, which holds `room`. Stops at the first that does not fit and returns room + 1. The
-   centre must be in the root's box. */
+/* Returns the number of spheres in the tree that overlap this one and are not ignored by the
+   material of the new grains, and stores their bodies in `found`, which holds `room`. Stops at the
+   first that does not fit and returns room + 1. The centre must be in the root's box. */
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = demi_crowd_spheres(w);
@@ -25267,6 +25304,8 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
             const dem_vec3 d = demi_nearest(&c->p, demi_sub(all[i].at, at));
             const dem_real s = all[i].radius + radius;
             if (!(demi_dot(d, d) < s*s)) continue;
+            if (demi_ignores(w, c->material, all[i].body < 0 ? c->material
+                             : w->bodies.material[all[i].body] - 1)) continue;
             if (count++ == room) return count;
             found[count - 1] = all[i].body;
         }
@@ -25345,14 +25384,16 @@ static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
 }
 
 /* Starts a tree with all bodies that spheres of this radius in the region could overlap. p: the
-   periods of the scene; those of a slab differ. Returns 0 if memory runs out. */
+   periods of the scene; those of a slab differ. material: index of that of the new grains. Returns
+   0 if memory runs out. */
 static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
-                            demi_periods p) {
+                            int material, demi_periods p) {
     dem_vec3 mid;
     double half[3];
     demi_node *root;
     int i, k;
     c->p = p;
+    c->material = material;
     demi_walls_repeat(w);
     c->count = 0;
     c->nodes = 1;
@@ -25416,15 +25457,16 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
             }
     return 1;
 }
-/* True if a sphere touches no wall at the walls' present poses. Positions behind a plane or on the
-   wrong side of a cylinder count as touching, and so does the whole sheet of a sieve with its
-   holes. The inside of a closed mesh counts as free. */
-static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
+/* True if a sphere of a material (index) touches no wall at the walls' present poses. It may
+   overlap walls that it ignores. Positions behind a plane or on the wrong side of a cylinder count
+   as touching, and so does the whole sheet of a sieve with its holes. The inside of a closed mesh
+   counts as free. */
+static int demi_walls_clear(const dem_world *w, int material, dem_vec3 x, dem_real radius) {
     int j, n;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
         dem_vec3 shift;
-        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (wall->kind == DEMI_WALL_NONE || demi_ignores(w, material, wall->material)) continue;
         for (n = 0; demi_wall_image(w, wall, x, radius, n, &shift); n++)
             if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
                                      demi_sub(demi_add(x, shift), wall->pose.position)), radius))
@@ -25436,7 +25478,7 @@ static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
 static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
     /* moved into the domain first: a region may be too many periods away to count them */
     return demi_crowd_free(w, c, x, radius) &&
-        demi_walls_clear(w, demi_place_of(&c->p, x), radius);
+        demi_walls_clear(w, c->material, demi_place_of(&c->p, x), radius);
 }
 
 /* --- fills --- */
@@ -25540,7 +25582,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (!demi_region_check(w, call, region, radius, &g)) return 0;
     /* the region of the smallest contains the centres of all */
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
-    done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
+    done = demi_crowd_begin(w, &c, &g, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
@@ -25701,7 +25743,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                   "count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
-    done = demi_crowd_begin(w, &c, &room, radius, demi_periods_of(w)) ? 0 : -1;
+    done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
@@ -25980,7 +26022,7 @@ static void demi_feed_count(demi_feed *f) {
 typedef struct demi_world_feeder { dem_world *w; demi_crowd crowd; } demi_world_feeder;
 static dem_result demi_world_look(void *who, const demi_region *g, dem_real radius) {
     demi_world_feeder *to = (demi_world_feeder *)who;
-    return demi_crowd_begin(to->w, &to->crowd, g, radius, demi_periods_of(to->w)) ? DEM_OK
+    return demi_crowd_begin(to->w, &to->crowd, g, radius, 0, demi_periods_of(to->w)) ? DEM_OK
         : demi_no_memory(to->w, "dem_world_step");
 }
 /* Inserts the drawn grain at the first of up to DEMI_FEED_TRIES positions that is free. If
@@ -25994,12 +26036,13 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     dem_vec3 x, v;
     int32_t found[DEMI_FEED_NEAR];
     int tries, i, count = 0, free_place = 0, joins;
+    c->material = demi_feed_material(&f->desc, (int)f->next);
     for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++)
         free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
     joins = !f->desc.shapes[f->next].id &&
-        demi_join_possible(w, demi_feed_material(&f->desc, (int)f->next), r);
+        demi_join_possible(w, c->material, r);
     /* if it is appended, velocities may stay at the half step */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
@@ -26649,8 +26692,8 @@ static const char *demi_dt_limit(const dem_advice *a) {
         ? "the stability limit of dashpots and rolling" : "t_c/20";
 }
 /* Computes the advice from the shortest contact among all pairs of materials, and with all walls,
-   of their smallest grains. A lone grain is paired with one of its kind: for the contact time, but
-   not for the stability limit. */
+   of their smallest grains. Pairs that ignore each other do not count. A lone grain is paired with
+   one of its kind: for the contact time, but not for the stability limit. */
 static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice *out) {
     const double speed = demi_speed_estimate(w, g);
     double rayleigh = 1e300;
@@ -26660,10 +26703,12 @@ static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice 
         if (!(g->smallest[i] > 0)) continue;
         rayleigh = DEMI_MIN(rayleigh, demi_rayleigh(&w->materials[i], g->smallest[i]));
         for (j = 0; j < w->material_count; j++)
-            if (j != i || g->many[i] > 1) demi_advise_pair(w, g, i, j, 0, -1, speed, &s);
-        for (j = 0; j < w->material_count; j++) demi_advise_pair(w, g, i, j, 1, -1, speed, &s);
+            if ((j != i || g->many[i] > 1) && !demi_ignores(w, i, j))
+                demi_advise_pair(w, g, i, j, 0, -1, speed, &s);
+        for (j = 0; j < w->material_count; j++)
+            if (!demi_ignores(w, i, j)) demi_advise_pair(w, g, i, j, 1, -1, speed, &s);
         for (j = 0; j < w->wall_count; j++)
-            if (w->walls[j].kind != DEMI_WALL_NONE)
+            if (w->walls[j].kind != DEMI_WALL_NONE && !demi_ignores(w, i, w->walls[j].material))
                 demi_advise_pair(w, g, i, w->walls[j].material, 0, j, speed, &s);
     }
     for (i = 0; i < w->material_count && s.material < 0; i++)     /* a lone grain */
@@ -35199,15 +35244,16 @@ static void demi_probes_free(dem_world *w, demi_probes *p) {
     demi_free(w, p->at);
     demi_free(w, p->seen);
 }
-/* Collects the grains that can move and the points of active feeds that are in the box of a
-   surface, sorted by y. Returns 0 if memory runs out. */
+/* Collects the grains that can move and do not ignore the wall, and the points of active feeds that
+   are in the box of a surface, sorted by y. Returns 0 if memory runs out. */
 static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
                             const double *box) {
     size_t room = 0;
     int i, n, ok = 1;
     memset(p, 0, sizeof *p);
     for (i = 0; i < w->bodies.count && ok; i++) {
-        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        if (!(w->bodies.inv_mass[i] > 0) ||
+            demi_ignores(w, w->bodies.material[i] - 1, wall->material)) continue;
         p->grains++;
         ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
     }
@@ -35466,7 +35512,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         const double r = grades.smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r)/2 : 0;
         double deep[2] = {0, 0}, force, kn;
         dem_real coef[DEMI_COEFS];
-        if (!(r > 0)) continue;
+        if (!(r > 0) || demi_ignores(w, i, i)) continue;
         demi_coefficients(w, i, i, r/2, m, m, 0, coef);
         kn = (double)coef[DEMI_KN];
         force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
@@ -36013,7 +36059,7 @@ static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const int a = (int)(grains >> i & 1), b = (int)(grains >> j & 1);
-            if (!(of(&w->pairs[i*DEMI_MATERIALS + j].given) > 0)) continue;
+            if (!(of(&w->pairs[i*DEMI_MATERIALS + j].given) > 0) || demi_ignores(w, i, j)) continue;
             have++;
             if (!(a && (b || walls >> j & 1)) && !(b && walls >> i & 1)) continue;
             possible++;
@@ -37829,7 +37875,8 @@ static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radi
     if (!s->head.stage.primed) demi_slabs_all(&s->head, demi_member_finish);
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
-        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, demi_periods_of(&s->head)))
+        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, 0,
+                              demi_periods_of(&s->head)))
             b->result = demi_no_memory(b->world, "dem_slabs_step");
     }
     return demi_slabs_agree(&s->head, 0, 0);
@@ -37863,11 +37910,13 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     dem_vec3 x[DEMI_FEED_TRIES], v[DEMI_FEED_TRIES];
     demi_slab *owner = 0;
     dem_result result;
+    const int m = demi_feed_material(&f->desc, (int)f->next);
     int n, k;
     for (n = 0; n < DEMI_FEED_TRIES; n++) {
         taken[n] = !demi_feed_try(h, f, g, &x[n], &v[n]) ||
-                   !demi_walls_clear(s->slabs[0].world, demi_place_of(&p, x[n]), r);
+                   !demi_walls_clear(s->slabs[0].world, m, demi_place_of(&p, x[n]), r);
         after[n] = f->random;
+        for (k = 0; k < s->local; k++) s->slabs[k].crowd.material = m;
         for (k = 0; k < s->local && !(taken[n] > 0); k++)
             taken[n] = !demi_crowd_free(s->slabs[k].world, &s->slabs[k].crowd, x[n], r);
     }

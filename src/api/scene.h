@@ -232,6 +232,9 @@ typedef struct dem_pair {
     dem_real compliance;
     /* stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
     DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
+    /* 1: bodies and walls of these materials pass through each other. They make no contacts, and
+       laws that act at a distance are not called for them. Mixed: 0. */
+    int32_t ignored;
 } dem_pair;
 /* Writes the contact properties of two materials to pair. */
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
@@ -300,10 +303,10 @@ DEM_INLINE dem_region dem_region_inside_make(dem_box box, dem_inside_fn inside, 
 /* Adds up to count spheres of one radius (m) at random positions in a region, one after the other.
    The same seed gives the same positions. A position is free if the sphere there overlaps no body
    (a body that is not a sphere counts with its bounding sphere), also across periodic faces, and
-   touches no wall. No position is free behind a plane, on the wrong side of a cylinder or in a
-   sieve; the inside of a closed mesh counts like its outside. Returns how many were added. If these
-   are fewer than count, 2000 tries for one sphere failed; dem_world_error_get says so, but the
-   world can run. */
+   touches no wall. What the material ignores (dem_pair) does not count. No position is free behind
+   a plane, on the wrong side of a cylinder or in a sieve; the inside of a closed mesh counts like
+   its outside. Returns how many were added. If these are fewer than count, 2000 tries for one
+   sphere failed; dem_world_error_get says so, but the world can run. */
 DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
                              dem_region region, int count, uint64_t seed);
 /* The kind of a size distribution. F(r) is the fraction finer than radius r. All are truncated to

@@ -64,6 +64,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int fixed_count;
     int tight;                     /* some body is so long that candidates are tested by more than
                                       bounding spheres */
+    int ignoring;                  /* 1: some pair of materials is ignored (dem_pair) */
     int sticks;                    /* a pair has static friction above its sliding friction */
     int clustered;                 /* springs, and the scene has a cluster of spheres: pairs of the
                                       pruned list are pairs of their member spheres (>>members) */

@@ -74,7 +74,7 @@ static int demi_impulses_twist(const dem_world *w) {
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            twist |= p->rolling_friction > 0 || p->spinning_friction > 0;
+            twist |= !p->ignored && (p->rolling_friction > 0 || p->spinning_friction > 0);
         }
     return twist;
 }

@@ -48,7 +48,8 @@ static const demi_field_row demi_pair_rows[] = {
     DEMI_SI(stiffness, DEMI_FROM, "N/m"), DEMI_RATIO(stiffness_ratio), DEMI_RATIO(tangent_damping),
     DEMI_SI(normal_damping, DEMI_FROM, "N s/m"),
     DEMI_SI(spinning_friction, DEMI_FROM, ""), DEMI_IMPULSES_ALONE(cohesion, "N"),
-    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW) DEMI_ROW_END};
+    DEMI_IMPULSES_ALONE(compliance, "m/N"), DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_ROW)
+    DEMI_LIMITED(DEMI_OF, ignored, 'i', DEMI_FROM, 1, ""), DEMI_ROW_END};
 #undef DEMI_OF
 /* Checks a desc. A hysteretic law may not have a restitution that contradicts its stiffnesses. */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
@@ -141,6 +142,17 @@ static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
         ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
+/* True if bodies and walls of materials a and b (indices) pass through each other. */
+DEM_INLINE int demi_ignores(const dem_world *w, int a, int b) {
+    return w->pairs[a*DEMI_MATERIALS + b].given.ignored;
+}
+/* The materials that ignore material b, bit i for that of index i. */
+static uint64_t demi_ignorers(const dem_world *w, int b) {
+    uint64_t all = 0;
+    int i;
+    for (i = 0; i < w->material_count; i++) all |= (uint64_t)demi_ignores(w, i, b) << i;
+    return all;
+}
 /* Static friction of a pair: the sliding friction if it is unset or lower. */
 static dem_real demi_static_friction(const dem_world *w, int a, int b) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
@@ -207,8 +219,9 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
     for (i = 0; i < w->material_count; i++) {
         const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
         const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
-        /* values that dem_pair_set has set stay */
-        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
+        /* values that dem_pair_set has set stay; the last field, an int, has padding behind it */
+        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, offsetof(dem_pair, ignored)) &&
+            !w->pairs[i*DEMI_MATERIALS + m].given.ignored)
             demi_pair_put(w, i, m, &now);
     }
     demi_pairs_changed(w);
@@ -225,23 +238,6 @@ DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_mate
         demi_material_index(w, "dem_pair_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     *pair = w->pairs[i*DEMI_MATERIALS + j].given;
-    return DEM_OK;
-}
-
-DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
-    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
-    int i = 0, j = 0;
-    char of[48];
-    if (demi_material_index(w, "dem_pair_set", a, &i) ||
-        demi_material_index(w, "dem_pair_set", b, &j))
-        return DEM_ERROR_ARGUMENT;
-    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
-    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
-                        "start from dem_pair_get and change only what differs"))
-        return DEM_ERROR_ARGUMENT;
-    demi_pair_put(w, i, j, p);
-    demi_pairs_changed(w);
-    demi_built(w, "dem_pair_set");
     return DEM_OK;
 }
 
@@ -431,6 +427,6 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
             DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_PRINT)
-            fprintf(out, "\n");
+            fprintf(out, "%s\n", p->ignored ? "  ignored" : "");
         }
 }

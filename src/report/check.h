@@ -432,15 +432,16 @@ static void demi_probes_free(dem_world *w, demi_probes *p) {
     demi_free(w, p->at);
     demi_free(w, p->seen);
 }
-/* Collects the grains that can move and the points of active feeds that are in the box of a
-   surface, sorted by y. Returns 0 if memory runs out. */
+/* Collects the grains that can move and do not ignore the wall, and the points of active feeds that
+   are in the box of a surface, sorted by y. Returns 0 if memory runs out. */
 static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
                             const double *box) {
     size_t room = 0;
     int i, n, ok = 1;
     memset(p, 0, sizeof *p);
     for (i = 0; i < w->bodies.count && ok; i++) {
-        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        if (!(w->bodies.inv_mass[i] > 0) ||
+            demi_ignores(w, w->bodies.material[i] - 1, wall->material)) continue;
         p->grains++;
         ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
     }
@@ -699,7 +700,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         const double r = grades.smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r)/2 : 0;
         double deep[2] = {0, 0}, force, kn;
         dem_real coef[DEMI_COEFS];
-        if (!(r > 0)) continue;
+        if (!(r > 0) || demi_ignores(w, i, i)) continue;
         demi_coefficients(w, i, i, r/2, m, m, 0, coef);
         kn = (double)coef[DEMI_KN];
         force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;

@@ -48,7 +48,7 @@ static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const int a = (int)(grains >> i & 1), b = (int)(grains >> j & 1);
-            if (!(of(&w->pairs[i*DEMI_MATERIALS + j].given) > 0)) continue;
+            if (!(of(&w->pairs[i*DEMI_MATERIALS + j].given) > 0) || demi_ignores(w, i, j)) continue;
             have++;
             if (!(a && (b || walls >> j & 1)) && !(b && walls >> i & 1)) continue;
             possible++;

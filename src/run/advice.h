@@ -252,8 +252,8 @@ static const char *demi_dt_limit(const dem_advice *a) {
         ? "the stability limit of dashpots and rolling" : "t_c/20";
 }
 /* Computes the advice from the shortest contact among all pairs of materials, and with all walls,
-   of their smallest grains. A lone grain is paired with one of its kind: for the contact time, but
-   not for the stability limit. */
+   of their smallest grains. Pairs that ignore each other do not count. A lone grain is paired with
+   one of its kind: for the contact time, but not for the stability limit. */
 static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice *out) {
     const double speed = demi_speed_estimate(w, g);
     double rayleigh = 1e300;
@@ -263,10 +263,12 @@ static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice 
         if (!(g->smallest[i] > 0)) continue;
         rayleigh = DEMI_MIN(rayleigh, demi_rayleigh(&w->materials[i], g->smallest[i]));
         for (j = 0; j < w->material_count; j++)
-            if (j != i || g->many[i] > 1) demi_advise_pair(w, g, i, j, 0, -1, speed, &s);
-        for (j = 0; j < w->material_count; j++) demi_advise_pair(w, g, i, j, 1, -1, speed, &s);
+            if ((j != i || g->many[i] > 1) && !demi_ignores(w, i, j))
+                demi_advise_pair(w, g, i, j, 0, -1, speed, &s);
+        for (j = 0; j < w->material_count; j++)
+            if (!demi_ignores(w, i, j)) demi_advise_pair(w, g, i, j, 1, -1, speed, &s);
         for (j = 0; j < w->wall_count; j++)
-            if (w->walls[j].kind != DEMI_WALL_NONE)
+            if (w->walls[j].kind != DEMI_WALL_NONE && !demi_ignores(w, i, w->walls[j].material))
                 demi_advise_pair(w, g, i, w->walls[j].material, 0, j, speed, &s);
     }
     for (i = 0; i < w->material_count && s.material < 0; i++)     /* a lone grain */

@@ -256,7 +256,7 @@ static void demi_feed_count(demi_feed *f) {
 typedef struct demi_world_feeder { dem_world *w; demi_crowd crowd; } demi_world_feeder;
 static dem_result demi_world_look(void *who, const demi_region *g, dem_real radius) {
     demi_world_feeder *to = (demi_world_feeder *)who;
-    return demi_crowd_begin(to->w, &to->crowd, g, radius, demi_periods_of(to->w)) ? DEM_OK
+    return demi_crowd_begin(to->w, &to->crowd, g, radius, 0, demi_periods_of(to->w)) ? DEM_OK
         : demi_no_memory(to->w, "dem_world_step");
 }
 /* Inserts the drawn grain at the first of up to DEMI_FEED_TRIES positions that is free. If
@@ -270,12 +270,13 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     dem_vec3 x, v;
     int32_t found[DEMI_FEED_NEAR];
     int tries, i, count = 0, free_place = 0, joins;
+    c->material = demi_feed_material(&f->desc, (int)f->next);
     for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++)
         free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
     joins = !f->desc.shapes[f->next].id &&
-        demi_join_possible(w, demi_feed_material(&f->desc, (int)f->next), r);
+        demi_join_possible(w, c->material, r);
     /* if it is appended, velocities may stay at the half step */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)

@@ -27,6 +27,8 @@ typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; }
 /* An occupancy tree. Its spheres and nodes are w->crowd and w->crowd_nodes. */
 typedef struct demi_crowd {
     demi_periods p;
+    int material;                  /* index of that of the new grains: bodies and walls that it
+                                      ignores do not occupy a position */
     double lo[3], size[3];         /* m, of the root's box; on a periodic axis the whole period */
     int count, nodes;
 } demi_crowd;
@@ -136,9 +138,9 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
     }
     return d2;
 }
-/* Returns the number of spheres in the tree that overlap this one and stores their bodies in
-   `found`, which holds `room`. Stops at the first that does not fit and returns room + 1. The
-   centre must be in the root's box. */
+/* Returns the number of spheres in the tree that overlap this one and are not ignored by the
+   material of the new grains, and stores their bodies in `found`, which holds `room`. Stops at the
+   first that does not fit and returns room + 1. The centre must be in the root's box. */
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = demi_crowd_spheres(w);
@@ -165,6 +167,8 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
             const dem_vec3 d = demi_nearest(&c->p, demi_sub(all[i].at, at));
             const dem_real s = all[i].radius + radius;
             if (!(demi_dot(d, d) < s*s)) continue;
+            if (demi_ignores(w, c->material, all[i].body < 0 ? c->material
+                             : w->bodies.material[all[i].body] - 1)) continue;
             if (count++ == room) return count;
             found[count - 1] = all[i].body;
         }
@@ -243,14 +247,16 @@ static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
 }
 
 /* Starts a tree with all bodies that spheres of this radius in the region could overlap. p: the
-   periods of the scene; those of a slab differ. Returns 0 if memory runs out. */
+   periods of the scene; those of a slab differ. material: index of that of the new grains. Returns
+   0 if memory runs out. */
 static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
-                            demi_periods p) {
+                            int material, demi_periods p) {
     dem_vec3 mid;
     double half[3];
     demi_node *root;
     int i, k;
     c->p = p;
+    c->material = material;
     demi_walls_repeat(w);
     c->count = 0;
     c->nodes = 1;
@@ -314,15 +320,16 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
             }
     return 1;
 }
-/* True if a sphere touches no wall at the walls' present poses. Positions behind a plane or on the
-   wrong side of a cylinder count as touching, and so does the whole sheet of a sieve with its
-   holes. The inside of a closed mesh counts as free. */
-static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
+/* True if a sphere of a material (index) touches no wall at the walls' present poses. It may
+   overlap walls that it ignores. Positions behind a plane or on the wrong side of a cylinder count
+   as touching, and so does the whole sheet of a sieve with its holes. The inside of a closed mesh
+   counts as free. */
+static int demi_walls_clear(const dem_world *w, int material, dem_vec3 x, dem_real radius) {
     int j, n;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
         dem_vec3 shift;
-        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (wall->kind == DEMI_WALL_NONE || demi_ignores(w, material, wall->material)) continue;
         for (n = 0; demi_wall_image(w, wall, x, radius, n, &shift); n++)
             if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
                                      demi_sub(demi_add(x, shift), wall->pose.position)), radius))
@@ -334,7 +341,7 @@ static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
 static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
     /* moved into the domain first: a region may be too many periods away to count them */
     return demi_crowd_free(w, c, x, radius) &&
-        demi_walls_clear(w, demi_place_of(&c->p, x), radius);
+        demi_walls_clear(w, c->material, demi_place_of(&c->p, x), radius);
 }
 
 /* --- fills --- */
@@ -438,7 +445,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (!demi_region_check(w, call, region, radius, &g)) return 0;
     /* the region of the smallest contains the centres of all */
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
-    done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
+    done = demi_crowd_begin(w, &c, &g, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
@@ -599,7 +606,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                   "count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
-    done = demi_crowd_begin(w, &c, &room, radius, demi_periods_of(w)) ? 0 : -1;
+    done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     was = demi_calls(w, call, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);

@@ -134,7 +134,8 @@ static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, 
         }
     }
 }
-/* Lists the elements of all surfaces near body i, unless it is fixed or a ghost. */
+/* Lists the elements of all surfaces near body i that it does not ignore, unless it is fixed or a
+   ghost. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, n;
@@ -143,7 +144,9 @@ static void demi_body_walls(dem_world *w, int d, int i) {
         const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
         if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered ||
-            demi_surface_scale(w, j, i) != wall->scale) continue;
+            demi_surface_scale(w, j, i) != wall->scale ||
+            (w->effects.ignoring && demi_ignores(w, w->bodies.material[i] - 1, wall->material)))
+            continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
             demi_wall_look_all(w, domain, d, i, j, shift);

@@ -26,14 +26,15 @@ static void demi_effects_memory(dem_world *w) {
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
-/* Sets the three to 1 if any pair of materials has friction, rolling friction, or static friction
-   above its sliding friction. */
+/* Sets the three to 1 if any pair of materials that is not ignored has friction, rolling friction,
+   or static friction above its sliding friction. */
 static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
     int i, j;
     *friction = *rolling = *sticks = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
+            if (p->ignored) continue;
             *friction |= p->friction > 0 || p->friction_static > 0;
             *rolling |= p->rolling_friction > 0;
             *sticks |= p->friction_static > p->friction;
@@ -76,6 +77,8 @@ static void demi_effects(dem_world *w) {
     demi_pairs_rub(w, &friction, &rolling, &sticks);
     w->effects.sticks = sticks;
     w->effects.twisting = demi_pairs_twist(w);
+    for (i = w->effects.ignoring = 0; i < w->material_count; i++)
+        w->effects.ignoring |= demi_ignorers(w, i) != 0;
     w->normal = (int)w->desc.normal_law;
     w->effects.clustered = demi_clustered(w);
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;

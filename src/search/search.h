@@ -181,7 +181,8 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 }
 
 /* Tests one pair (a < b) and appends it to the list of a's work group d if its gap is below `skin`.
-   Pairs of two fixed bodies and of two ghosts are left out. */
+   Pairs of two fixed bodies, of two ghosts and of materials that ignore each other are left
+   out. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
@@ -195,6 +196,8 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
     if (w->effects.fixed_count && w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0) return;
     if (demi_is_ghost(w, a) && demi_is_ghost(w, b)) return;
+    if (w->effects.ignoring &&
+        demi_ignores(w, w->bodies.material[a] - 1, w->bodies.material[b] - 1)) return;
     if (w->effects.tight && !demi_pair_reaches(w, a, b, demi_v(dx, dy, dz), skin)) return;
     list = b < domain->end ? &w->own : &w->cross;
     k = list == &w->own ? domain->own : domain->cross;

@@ -21,7 +21,8 @@ static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radi
     if (!s->head.stage.primed) demi_slabs_all(&s->head, demi_member_finish);
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
-        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, demi_periods_of(&s->head)))
+        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, 0,
+                              demi_periods_of(&s->head)))
             b->result = demi_no_memory(b->world, "dem_slabs_step");
     }
     return demi_slabs_agree(&s->head, 0, 0);
@@ -55,11 +56,13 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     dem_vec3 x[DEMI_FEED_TRIES], v[DEMI_FEED_TRIES];
     demi_slab *owner = 0;
     dem_result result;
+    const int m = demi_feed_material(&f->desc, (int)f->next);
     int n, k;
     for (n = 0; n < DEMI_FEED_TRIES; n++) {
         taken[n] = !demi_feed_try(h, f, g, &x[n], &v[n]) ||
-                   !demi_walls_clear(s->slabs[0].world, demi_place_of(&p, x[n]), r);
+                   !demi_walls_clear(s->slabs[0].world, m, demi_place_of(&p, x[n]), r);
         after[n] = f->random;
+        for (k = 0; k < s->local; k++) s->slabs[k].crowd.material = m;
         for (k = 0; k < s->local && !(taken[n] > 0); k++)
             taken[n] = !demi_crowd_free(s->slabs[k].world, &s->slabs[k].crowd, x[n], r);
     }

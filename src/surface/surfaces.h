@@ -2,8 +2,8 @@
    >>surfaces
    One surface per rigid motion. Meshes that do not move relative to each other are joined into one
    surface (>>joins), and so are profiles: grains then do not feel how a scene was divided into
-   walls or facets. Facets of a surface share whole sides, and each face, edge and corner has an
-   integer weight (>>facets).
+   walls or facets. Walls that different materials ignore are not joined. Facets of a surface share
+   whole sides, and each face, edge and corner has an integer weight (>>facets).
 
    A wall that shares nothing is its own surface. Any other is part of a joined surface
    (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
@@ -426,9 +426,10 @@ static int demi_surfaces_make(dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         wall->joined = wall->covered = 0;
+        wall->ignorers = demi_ignorers(w, wall->material);
         for (k = 0; k < i; k++)
-            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall))
-                break;
+            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall) &&
+                w->walls[k].ignorers == wall->ignorers) break;
         wall->group = k;
         wall->covered = demi_plane_again(w, i);
     }
@@ -444,4 +445,27 @@ static int demi_surfaces_make(dem_world *w) {
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;
+}
+
+/* Here, because it changes which walls form a surface if the materials ignored each other before
+   and do not now, or the other way round. Contacts of an ignored pair end with the next list. */
+DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
+    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
+    int i = 0, j = 0;
+    char of[48];
+    if (demi_material_index(w, "dem_pair_set", a, &i) ||
+        demi_material_index(w, "dem_pair_set", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
+    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
+                        "start from dem_pair_get and change only what differs"))
+        return DEM_ERROR_ARGUMENT;
+    if (p->ignored != demi_ignores(w, i, j)) {
+        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_pair_set");
+        demi_surfaces_outdated(w);
+    }
+    demi_pair_put(w, i, j, p);
+    demi_pairs_changed(w);
+    demi_built(w, "dem_pair_set");
+    return DEM_OK;
 }
