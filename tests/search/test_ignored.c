@@ -21,12 +21,14 @@ static void must(dem_world *world, dem_result result) {
 enum { BALL, EGG, PAIR, CUBE, ROCK, SHAPES };
 static const char *const shapes[] = {"ball", "ellipsoid", "cluster", "polyhedron", "union"};
 static dem_shape shape_of(dem_world *world, int kind) {
-    static const dem_real corner[24] = {-4e-3f, -4e-3f, -4e-3f, 4e-3f, -4e-3f, -4e-3f, -4e-3f, 4e-3f, -4e-3f, 4e-3f,
-        4e-3f, -4e-3f, -4e-3f, -4e-3f, 4e-3f, 4e-3f, -4e-3f, 4e-3f, -4e-3f, 4e-3f, 4e-3f, 4e-3f, 4e-3f, 4e-3f};
-    static const dem_real two[6] = {0, -2e-3f, 0, 0, 2e-3f, 0};
+    dem_real corner[24];
+    int k;
+    static const dem_real two[6] = {0, DEM_R(-2e-3), 0, 0, DEM_R(2e-3), 0};
+    static const dem_real apart_x[6] = {DEM_R(-3e-3), 0, 0, DEM_R(3e-3), 0, 0};
     dem_cluster_desc cluster = DEM_CLUSTER_DESC;
     dem_shape none;
     none.id = 0;
+    for (k = 0; k < 24; k++) corner[k] = (k/3 >> k%3 & 1) ? DEM_R(4e-3) : DEM_R(-4e-3);
     cluster.count = 2;
     cluster.positions = two;
     cluster.radius = DEM_R(4e-3);
@@ -35,11 +37,8 @@ static dem_shape shape_of(dem_world *world, int kind) {
     if (kind == CUBE) return dem_shape_polyhedron_add(world, 8, corner);
     if (kind == ROCK) {
         dem_shape part[2];
-        dem_vec3 x[2];
         part[0] = part[1] = dem_shape_polyhedron_add(world, 8, corner);
-        x[0] = at(-3e-3, 0, 0);
-        x[1] = at(3e-3, 0, 0);
-        return dem_shape_union_add(world, 2, part, x, 0);
+        return dem_shape_union_add(world, 2, part, apart_x, 0);
     }
     return none;
 }
@@ -57,7 +56,7 @@ static void target_add(dem_world *world, dem_material stuff, int kind, dem_shape
     static const dem_real corner[12] = {0, -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1};
     static const int32_t triangle[6] = {0, 1, 2, 0, 2, 3};
     static const dem_real line[4] = {0, -1, 0, 1}, radius[2] = {2, 2}, height[2] = {-1, 1};
-    static const dem_real grain[6] = {0.01f, 0.1f, 0, 0.01f, -0.1f, 0};
+    static const dem_real grain[6] = {DEM_R(0.01), DEM_R(0.1), 0, DEM_R(0.01), DEM_R(-0.1), 0};
     static const int32_t segment[2] = {0, 1};
     dem_mesh mesh;
     dem_profile profile;
