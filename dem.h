@@ -85,6 +85,7 @@
        >>advice            the time step: what is chosen and what is too large
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
+       >>growth            bodies that change their size
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
@@ -1397,6 +1398,10 @@ typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, doubl
 typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_body_state *body,
                              dem_body id, double time, dem_real dt, void *user);
 
+/* Returns the rate of the radius of a body, m/s (desc.growth): > 0 grows, < 0 wears. *body is its
+   state at `time` (s). Slabs call it from several threads. */
+typedef dem_real (*dem_growth_fn)(const dem_body_state *body, dem_body id, double time, void *user);
+
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
    derivatives of position and rotation. It is called twice per step (for its end and its middle;
@@ -1634,6 +1639,14 @@ typedef struct dem_world_desc {
        of walls stay as set; dem_wall_loads sums what they would gain. */
     dem_reals_fn body_reals_fn;
     void *body_reals_user;         /* passed to body_reals_fn */
+
+    /* -- bodies that change their size -- */
+    /* Returns the rate of the radius of a body, m/s: > 0 grows, < 0 wears. Mass follows at constant
+       density, velocity and contact history stay. Each change of radii costs a new list and another
+       computation of forces. Null means constant radii; see dem_body_radius_set. */
+    dem_growth_fn growth;
+    void *growth_user;             /* passed to growth */
+    dem_real growth_interval;      /* s, between two changes of radii; 0 means every step */
 
     /* -- force fields; both may be given and add up -- */
     dem_force_fn force;            /* force on a body; null means none */
@@ -1932,7 +1945,7 @@ DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real r
 DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
 
 /* The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and
-   ignores the rest. */
+   ignores the rest; dem_body_radius_set sets the radius. */
 struct dem_body_state {
     dem_vec3 position, velocity, spin;   /* m, m/s, rad/s */
     dem_vec3 force, torque;        /* N, N m: of the last step, without gravity */
@@ -1952,6 +1965,13 @@ struct dem_body_state {
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
 /* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
+
+/* Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with
+   it). Mass and moments of inertia follow from the density of the material. Velocity, spin and
+   contacts with their history stay. The next step checks the time step, or chooses it again. The
+   ledger counts the kinetic energy of the new mass as `inserted`, and what springs gain as
+   `growth`. See desc.growth for radii that change all the time. */
+DEM_API dem_result dem_body_radius_set(dem_world *world, dem_body body, dem_real radius);
 
 /* Returns the granular temperature, m2/s2: the mass-weighted mean square deviation of velocities
    from their mean, per axis (two in a planar world), over all bodies that can move. Returns 0 for
@@ -2685,8 +2705,8 @@ DEM_API dem_counters dem_counters_get(const dem_world *world);
 DEM_API void dem_overlap_max_reset(dem_world *world);
 
 /* The account of energy, J, since the world was created; zeros unless desc.ledger is 1.
-       residual = kinetic + rotational + elastic - gravity - walls - force - inserted + removed
-                  + normal + slide + tangent + rolling
+       residual = kinetic + rotational + elastic - gravity - walls - force - inserted - growth
+                  + removed + normal + slide + tangent + rolling
    The residual is the error of the time integration; compare it with `throughput`. Potential energy
    is not stored energy here: `gravity` is the work of gravity. If a user-defined law never fills
    force->energy, the ledger cannot separate what the law stores from what it dissipates: `unknown`
@@ -2701,6 +2721,9 @@ typedef struct dem_ledger {
     double normal, slide, tangent, rolling;
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
+    /* supplied: work of bodies that change their radius. Other changes of the scene between the
+       same two steps count with it. */
+    double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */
 } dem_ledger;
@@ -3324,7 +3347,7 @@ typedef struct dem_effect {
     char text[200];                /* what acts; why nothing acts; what has not happened */
 } dem_effect;
 /* Number of effects. */
-enum { DEM_EFFECTS = 16 };
+enum { DEM_EFFECTS = 17 };
 /* Writes for every effect whether it is off, idle or active, and returns their number. It finds a
    material with rolling friction on which nothing has rolled, or a wall that nothing has touched.
    It can miss contacts of spheres that begin and end between two neighbour lists. If `budget` (s of
@@ -3342,8 +3365,8 @@ DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
 
 /* Prints the report: bodies, time step and what limits it, contact detection, laws and effects,
    what the scene contains but has not happened, the largest overlap, pairs of materials, loads of
-   walls, joints, feeds, outlets, and the ledger. It calls a user-defined force field once per
-   body. */
+   walls, joints, feeds, outlets, and the ledger. It calls a user-defined force field and
+   desc.growth once per body. */
 DEM_API void dem_world_report(const dem_world *world, FILE *out);
 
 /* Creates a world if `version` and `real_size` (bytes of dem_real) are those of the implementation,
@@ -3846,7 +3869,7 @@ typedef struct demi_species {
    DEMI_E_TOLD: what user-defined laws report. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
       DEMI_E_ROLL,
-       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_TOLD, DEMI_ENERGIES };
+       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_TOLD, DEMI_E_GROWTH, DEMI_ENERGIES };
 
 /* A contact point of a body and a wall as >>touch finds it: geometry, before any law is called. */
 typedef struct demi_touching {
@@ -4287,6 +4310,7 @@ typedef struct demi_timing {       /* >>step, >>advice */
     dem_real dt;                   /* s */
     double half_kick;              /* s, half kick of the present step */
     double assumed_speed;          /* m/s, impact speed that dt was chosen for */
+    double grown;                  /* s: end of the step for which radii were set (>>growth) */
     uint64_t press_due;            /* step of the next search for pressed bodies (>>advice) */
     uint64_t press_since;          /* step of the last change of the scene */
     demi_held held;
@@ -4303,6 +4327,7 @@ typedef struct demi_stages {
     int moved;                     /* bodies have moved in a step whose forces are missing, because
                                       memory ran out */
     int synced;                    /* no half kick is pending: see demi_finish */
+    int grown;                     /* 1: radii have changed since the last forces: >>growth */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
     /* 1: a rebuild that ran out of memory had chosen the skin, or the span of the pruned list. The
        next try keeps them, because the counts behind the choice may be lost */
@@ -5259,7 +5284,8 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(clock.half_kick, 'd', DEMI_FROM | DEMI_TO_SLAB | DEMI_FIRSTS),
     DEMI_N(clock.assumed_speed, 'd', DEMI_FROM | DEMI_DEALT),
     DEMI_N(clock.press_due, 'u', 0), DEMI_N(clock.press_since, 'u', 0),
-    DEMI_N(clock.held, 'u', 0),
+    DEMI_N(clock.held, 'u', 0), DEMI_N(clock.grown, 'd', DEMI_ANY | DEMI_DEALT),
+    DEMI_N(stage.grown, 'i', DEMI_TO_SLAB | DEMI_FIRSTS),
     DEMI_N(stage.dt_valid, 'i', DEMI_DEALT), DEMI_N(stage.list_valid, 'i', 0),
     DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
@@ -5336,7 +5362,9 @@ static const demi_field_row demi_world_desc_rows[] = {
                   ">= 0; 0 calls the law only in contact"),
     DEMI_ROW_OF(law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
     DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
-    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
+    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, growth),
+    DEMI_ROW_SAID(growth_interval, 'r', DEMI_FROM, DBL_MAX, "growth_interval (s) must be finite "
+                  "and >= 0; 0 changes radii in every step"), DEMI_ROW_NULL(dem_world_desc, force),
     DEMI_ROW_NULL(dem_world_desc, body_force),
     DEMI_ROW_ENUM(dem_world_desc, integrator, 0, 0, "velocity_verlet forward_euler "
                   "symplectic_euler position_verlet leapfrog"), DEMI_ROW_OF(dt, 'r'),
@@ -5360,7 +5388,8 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
     DEMI_ROW_FREE(dem_world_desc, law_rows), DEMI_ROW_FREE(dem_world_desc, law_user),
     DEMI_ROW_FREE(dem_world_desc, force_user),
-    DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_END};
+    DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_FREE(dem_world_desc, growth_user),
+    DEMI_ROW_END};
 
 /* ---------------------------------------------------------------------------------------------
    >>laws
@@ -27718,6 +27747,143 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>growth
+   Bodies that change their size while a world runs: dem_body_radius_set, and desc.growth. All
+   lengths of a body scale with its radius; mass and moments of inertia follow from the density of
+   its material. Its velocity, spin and contact histories stay. New lists are built, so everything
+   that depends on radii or masses follows: coefficients, reach, skin, tessellations, time step.
+   The ledger. The kinetic energy that new mass has, or that lost mass takes along, counts as
+   inserted. The energy that springs gain or lose because radii change is `growth`: forces are
+   computed twice at the same positions, before and after, and the ledger takes the difference. It
+   is the work of the force on the surface that grows.
+   Owns clock.grown and stage.grown.
+   --------------------------------------------------------------------------------------------- */
+
+/* True if dem_real cannot hold the mass or the moments of inertia, or their inverses, that body i
+   would have with this radius, or if the radius is not positive and within limits. */
+static int demi_size_bad(const dem_world *w, int i, dem_real radius, double *mass) {
+    const demi_shape *shape = demi_shape_of(w, i);
+    const int material = w->bodies.material[i] - 1;
+    const double r = (double)radius, scale = shape ? r/(double)shape->radius : 1;
+    dem_real four[4];
+    dem_vec3 I;
+    int k;
+    *mass = 0;
+    if (!demi_finite(radius) || !(radius > 0) || r > DEMI_FARTHEST) return 1;
+    *mass = shape ? demi_shape_mass(w, material, w->bodies.shape[i] - 1, scale)
+        : demi_sphere_mass(w, material, r);
+    I = shape ? demi_scale(shape->inertia, (dem_real)(*mass*scale*scale))
+        : demi_v((dem_real)demi_sphere_inertia(w, *mass, r), 1, 1);
+    four[0] = (dem_real)*mass;
+    four[1] = shape ? DEMI_MIN(I.x, DEMI_MIN(I.y, I.z)) : I.x;
+    four[2] = 1/four[0];
+    four[3] = 1/four[1];
+    for (k = 0; k < 4; k++) if (!demi_finite(four[k]) || !(four[k] > 0)) return 1;
+    return 0;
+}
+/* Gives body i another radius, m, and mass, kg. The list must have been dropped. */
+static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) {
+    const demi_shape *shape = demi_shape_of(w, i);
+    const int fixed = w->bodies.inv_mass[i] <= 0;
+    const double before = demi_body_energy(w, i);
+    w->bodies.pos[4*i + 3] = radius;
+    w->bodies.mass[i] = (dem_real)mass;
+    w->bodies.inv_mass[i] = fixed ? 0 : (dem_real)(1/mass);
+    w->bodies.inv_inertia[i] = fixed || shape ? 0
+        : (dem_real)(1/demi_sphere_inertia(w, mass, (double)radius));
+    if (w->bodies.orienting) {
+        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
+        if (shape) w->bodies.moment[4*i + 3] = shape->moment_arm*demi_scale_of(w, i, shape);
+        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
+    }
+    w->booked.inserted += demi_body_energy(w, i) - before;
+}
+DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real radius) {
+    if (demi_null(w, "dem_body_radius_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_body_index(w, "dem_body_radius_set", body);
+    double mass;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (demi_size_bad(w, i, radius, &mass))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_radius_set: the radius of body %u is %g "
+                         "m and its mass %g kg, must be > 0 and neither too small nor too large to "
+                         "calculate with in %s precision; lengths are in metres: check the unit",
+                         (unsigned)body.slot, (double)radius, mass,
+                         DEMI_SINGLE ? "single" : "double");
+    demi_finish(w);                             /* the open half kick belongs to the old mass */
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_radius_set");
+    demi_body_resize(w, i, radius, mass);
+    w->stage.grown = 1;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+/* Asks desc.growth for the rates of all bodies and applies them up to the end of the coming step.
+   Radii change after all rates are known, so that no rate depends on the order of bodies.
+   stage.grown receives 1 if a radius has changed, 3 if one has become smaller. */
+static dem_result demi_member_grow(dem_world *w) {
+    const double passed = w->clock.time + (double)w->clock.dt - w->clock.grown;
+    const int n = w->bodies.count;
+    dem_real *radius = (dem_real *)demi_alloc(w, (size_t)n + 1, sizeof *radius);
+    dem_result result = radius ? DEM_OK : demi_no_memory(w, "dem_world_step");
+    double mass = 0;
+    int i, grown = 0;
+    for (i = 0; i < n && result == DEM_OK; i++) {
+        const dem_body id = dem_body_id_get(w, i);
+        const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
+        dem_body_state state;
+        dem_real rate;
+        if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
+        rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user);
+        radius[i] = r + (dem_real)((double)rate*passed);
+        if (rate < 0 || rate > 0 || !demi_finite(rate)) grown |= rate < 0 ? 3 : 1;
+        if (demi_size_bad(w, i, radius[i], &mass))
+            result = demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: body %u grows "
+                               "from %g m to %g m at %g m/s (desc.growth), must stay > 0 and "
+                               "finite; return 0 below the smallest radius, or remove the body",
+                               (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[i] + 1,
+                               (double)r, (double)radius[i], (double)rate);
+    }
+    if (result == DEM_OK && grown) {
+        demi_finish(w);                         /* the open half kick belongs to the old masses */
+        if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
+    }
+    for (i = 0; i < n && result == DEM_OK && grown; i++)
+        if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
+            !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
+    demi_free(w, radius);
+    if (result == DEM_OK) w->stage.grown |= grown;
+    return result;
+}
+/* Changes the radii before a step, if that is due, to those at its end. The time step is then
+   chosen again if a body has become smaller: a growing one allows a longer step. */
+static dem_result demi_radii_grow(dem_world *h) {
+    const double until = h->clock.time + (double)h->clock.dt, passed = until - h->clock.grown;
+    double grown = 0;
+    dem_result result;
+    int k;
+    if (!h->desc.growth || !(passed > 0) || passed < (double)h->desc.growth_interval*(1 - 1e-9))
+        return DEM_OK;
+    result = demi_all(h, demi_member_grow);
+    for (k = 0; k < demi_members(h); k++)
+        grown = DEMI_MAX(grown, demi_member(h, k)->stage.grown);
+    if (result == DEM_OK) result = demi_agree(h, &grown, 1);
+    if (result != DEM_OK) return result;
+    h->clock.grown = until;
+    for (k = 0; k < demi_members(h); k++) {
+        dem_world *w = demi_member(h, k);
+        w->clock.grown = until;
+        if (!(grown > 0)) continue;
+        w->stage.grown = 1;
+        w->stage.forces_valid = w->stage.primed = 0;
+    }
+    if (!(grown > 0)) return DEM_OK;
+    h->stage.list_valid = h->stage.forces_valid = h->stage.primed = 0;
+    h->clock.press_since = h->clock.steps;      /* growing bodies press each other */
+    if (grown > 2) demi_dt_outdated(h);
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>ledger
    The account of energy (desc.ledger), and totals of mass, momentum and kinetic energy. Contact
    laws report what they dissipate and store; the step computes the work of gravity, of force fields
@@ -27740,6 +27906,18 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
         *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
+/* Books what springs hold more than before, because radii have changed and nothing has moved, as
+   the work of growth. The tangential part passes through the work against the tangential force, so
+   that it does not count as a loss. */
+static void demi_growth_book(dem_world *w) {
+    const double shear = demi_sum_energy(w, DEMI_E_SHEAR_STORED) -
+        w->booked.energy[DEMI_E_SHEAR_STORED];
+    const double work = demi_sum_energy(w, DEMI_E_ELASTIC) - w->booked.energy[DEMI_E_ELASTIC] +
+        shear;
+    w->booked.energy[DEMI_E_GROWTH] += work;
+    w->booked.energy[DEMI_E_SHEAR_WORK] += shear;
+    w->booked.throughput += fabs(work);
+}
 /* Closes the account of a step with springs, when its forces are known. Adds the work and losses of
    all domains (work groups) and of walls to the totals, and replaces the stored energies. With a
    user-defined law, DEMI_E_TOLD sums the magnitudes of all that the law reports; while it is 0, the
@@ -27755,6 +27933,7 @@ static void demi_ledger_book(dem_world *w) {
         w->booked.energy[flows[i]] += part;
         if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
+    if (w->stage.grown) demi_growth_book(w);
     w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
@@ -27774,6 +27953,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.gravity = w->booked.energy[DEMI_E_GRAVITY];
     l.walls = w->booked.energy[DEMI_E_WALLS];
     l.force = w->booked.energy[DEMI_E_FORCE];
+    l.growth = w->booked.energy[DEMI_E_GROWTH];
     l.inserted = w->booked.inserted;
     l.removed = w->booked.removed;
     l.normal = w->booked.energy[DEMI_E_DASHPOT];
@@ -27783,7 +27963,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.rolling = w->booked.energy[DEMI_E_ROLL];
     l.throughput = w->booked.throughput + w->booked.inserted;
     l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
-        l.inserted + l.removed +
+        l.inserted - l.growth + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
         l.unknown = l.residual;
@@ -28851,6 +29031,7 @@ static dem_result demi_member_look(dem_world *w) {
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     demi_rails_act(w);
+    w->stage.grown = 0;
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
@@ -29048,14 +29229,18 @@ static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
-/* Prepares a step: settles the time step, inserts grains of feeds, computes the forces of a scene
-   that has changed, checks the time step against the present contacts, and sets half-step
-   velocities. */
+/* Prepares a step: settles the time step, inserts grains of feeds, changes radii, computes the
+   forces of a scene that has changed, checks the time step against the present contacts, and sets
+   half-step velocities. */
 static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
     if (result == DEM_OK && h->feed_count) {
         result = h->team ? h->team->feed(h) : demi_world_feed(h);
         if (result == DEM_OK) result = demi_dt_settle(h);   /* there may be new grains */
+    }
+    if (result == DEM_OK && h->desc.growth) {
+        result = demi_radii_grow(h);
+        if (result == DEM_OK) result = demi_dt_settle(h);
     }
     if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed ||
                              (!h->team && !h->stage.list_valid)))
@@ -36142,6 +36327,22 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
     demi_say(e, "acts on %d of %d bodies now", pushed, w->bodies.count);
     return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+/* State of desc.growth: active if some radius changes now. Calls the user's function for every
+   body. */
+static dem_effect_state demi_look_growth(const dem_world *w, dem_effect *e) {
+    int i, moving = 0;
+    if (!w->desc.growth) return demi_look_off(e, "desc.growth is null");
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_body id = dem_body_id_get(w, i);
+        dem_body_state body;
+        dem_real rate;
+        if (dem_body_get(w, id, &body) != DEM_OK) continue;
+        rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user);
+        moving += rate < 0 || rate > 0;
+    }
+    demi_say(e, "the radii of %d of %d bodies change now", moving, w->bodies.count);
+    return moving ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
 /* State of user-defined numbers of bodies: active if contacts change them on some body now, or if
    body_reals_fn may. */
 static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
@@ -36269,6 +36470,10 @@ static void demi_leave_rolling(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.rolling_law = DEM_ROLLING_NONE;
 }
+static void demi_leave_growth(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.growth = 0;
+}
 static void demi_leave_ledger(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.ledger = 0;
@@ -36375,6 +36580,7 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"user-defined law", demi_look_law,          demi_again_law,          1},
     {"force field",      demi_look_field,        demi_again_field,        1},
     {"body_reals",       demi_look_reals,        0,                       0},
+    {"growth",           demi_look_growth,       demi_leave_growth,       0},
     {"walls",            demi_look_walls,        demi_leave_walls,        0},
     {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
     {"periodic faces",   demi_look_periodic,     0,                       0},
@@ -36852,6 +37058,8 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
             "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n",
             l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
             l.normal, l.slide, l.tangent, l.rolling);
+    if (l.growth < 0 || l.growth > 0)
+        fprintf(out, "           in by bodies that change their radius: %.6g\n", l.growth);
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
         fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
                 "force->energy\n", l.unknown);

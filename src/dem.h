@@ -85,6 +85,7 @@
        >>advice            the time step: what is chosen and what is too large
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
+       >>growth            bodies that change their size
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
@@ -238,6 +239,7 @@
 #include "run/advice.h"
 #include "run/servo.h"
 #include "run/rails.h"
+#include "run/growth.h"
 #include "run/ledger.h"
 #include "run/responses.h"
 #include "run/fields.h"

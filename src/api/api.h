@@ -816,6 +816,10 @@ typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, doubl
 typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_body_state *body,
                              dem_body id, double time, dem_real dt, void *user);
 
+/* Returns the rate of the radius of a body, m/s (desc.growth): > 0 grows, < 0 wears. *body is its
+   state at `time` (s). Slabs call it from several threads. */
+typedef dem_real (*dem_growth_fn)(const dem_body_state *body, dem_body id, double time, void *user);
+
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
    derivatives of position and rotation. It is called twice per step (for its end and its middle;

@@ -389,7 +389,7 @@ typedef struct dem_effect {
     char text[200];                /* what acts; why nothing acts; what has not happened */
 } dem_effect;
 /* Number of effects. */
-enum { DEM_EFFECTS = 16 };
+enum { DEM_EFFECTS = 17 };
 /* Writes for every effect whether it is off, idle or active, and returns their number. It finds a
    material with rolling friction on which nothing has rolled, or a wall that nothing has touched.
    It can miss contacts of spheres that begin and end between two neighbour lists. If `budget` (s of
@@ -407,8 +407,8 @@ DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
 
 /* Prints the report: bodies, time step and what limits it, contact detection, laws and effects,
    what the scene contains but has not happened, the largest overlap, pairs of materials, loads of
-   walls, joints, feeds, outlets, and the ledger. It calls a user-defined force field once per
-   body. */
+   walls, joints, feeds, outlets, and the ledger. It calls a user-defined force field and
+   desc.growth once per body. */
 DEM_API void dem_world_report(const dem_world *world, FILE *out);
 
 /* Creates a world if `version` and `real_size` (bytes of dem_real) are those of the implementation,

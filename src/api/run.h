@@ -167,8 +167,8 @@ DEM_API dem_counters dem_counters_get(const dem_world *world);
 DEM_API void dem_overlap_max_reset(dem_world *world);
 
 /* The account of energy, J, since the world was created; zeros unless desc.ledger is 1.
-       residual = kinetic + rotational + elastic - gravity - walls - force - inserted + removed
-                  + normal + slide + tangent + rolling
+       residual = kinetic + rotational + elastic - gravity - walls - force - inserted - growth
+                  + removed + normal + slide + tangent + rolling
    The residual is the error of the time integration; compare it with `throughput`. Potential energy
    is not stored energy here: `gravity` is the work of gravity. If a user-defined law never fills
    force->energy, the ledger cannot separate what the law stores from what it dissipates: `unknown`
@@ -183,6 +183,9 @@ typedef struct dem_ledger {
     double normal, slide, tangent, rolling;
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
+    /* supplied: work of bodies that change their radius. Other changes of the scene between the
+       same two steps count with it. */
+    double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */
 } dem_ledger;

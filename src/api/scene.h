@@ -75,6 +75,14 @@ typedef struct dem_world_desc {
     dem_reals_fn body_reals_fn;
     void *body_reals_user;         /* passed to body_reals_fn */
 
+    /* -- bodies that change their size -- */
+    /* Returns the rate of the radius of a body, m/s: > 0 grows, < 0 wears. Mass follows at constant
+       density, velocity and contact history stay. Each change of radii costs a new list and another
+       computation of forces. Null means constant radii; see dem_body_radius_set. */
+    dem_growth_fn growth;
+    void *growth_user;             /* passed to growth */
+    dem_real growth_interval;      /* s, between two changes of radii; 0 means every step */
+
     /* -- force fields; both may be given and add up -- */
     dem_force_fn force;            /* force on a body; null means none */
     dem_body_force_fn body_force;  /* force and torque on a body; null means none */
@@ -372,7 +380,7 @@ DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real r
 DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
 
 /* The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and
-   ignores the rest. */
+   ignores the rest; dem_body_radius_set sets the radius. */
 struct dem_body_state {
     dem_vec3 position, velocity, spin;   /* m, m/s, rad/s */
     dem_vec3 force, torque;        /* N, N m: of the last step, without gravity */
@@ -392,6 +400,13 @@ struct dem_body_state {
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
 /* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
+
+/* Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with
+   it). Mass and moments of inertia follow from the density of the material. Velocity, spin and
+   contacts with their history stay. The next step checks the time step, or chooses it again. The
+   ledger counts the kinetic energy of the new mass as `inserted`, and what springs gain as
+   `growth`. See desc.growth for radii that change all the time. */
+DEM_API dem_result dem_body_radius_set(dem_world *world, dem_body body, dem_real radius);
 
 /* Returns the granular temperature, m2/s2: the mass-weighted mean square deviation of velocities
    from their mean, per axis (two in a planar world), over all bodies that can move. Returns 0 for

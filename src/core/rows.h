@@ -175,7 +175,8 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(clock.half_kick, 'd', DEMI_FROM | DEMI_TO_SLAB | DEMI_FIRSTS),
     DEMI_N(clock.assumed_speed, 'd', DEMI_FROM | DEMI_DEALT),
     DEMI_N(clock.press_due, 'u', 0), DEMI_N(clock.press_since, 'u', 0),
-    DEMI_N(clock.held, 'u', 0),
+    DEMI_N(clock.held, 'u', 0), DEMI_N(clock.grown, 'd', DEMI_ANY | DEMI_DEALT),
+    DEMI_N(stage.grown, 'i', DEMI_TO_SLAB | DEMI_FIRSTS),
     DEMI_N(stage.dt_valid, 'i', DEMI_DEALT), DEMI_N(stage.list_valid, 'i', 0),
     DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
@@ -252,7 +253,9 @@ static const demi_field_row demi_world_desc_rows[] = {
                   ">= 0; 0 calls the law only in contact"),
     DEMI_ROW_OF(law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
     DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
-    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
+    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, growth),
+    DEMI_ROW_SAID(growth_interval, 'r', DEMI_FROM, DBL_MAX, "growth_interval (s) must be finite "
+                  "and >= 0; 0 changes radii in every step"), DEMI_ROW_NULL(dem_world_desc, force),
     DEMI_ROW_NULL(dem_world_desc, body_force),
     DEMI_ROW_ENUM(dem_world_desc, integrator, 0, 0, "velocity_verlet forward_euler "
                   "symplectic_euler position_verlet leapfrog"), DEMI_ROW_OF(dt, 'r'),
@@ -276,4 +279,5 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
     DEMI_ROW_FREE(dem_world_desc, law_rows), DEMI_ROW_FREE(dem_world_desc, law_user),
     DEMI_ROW_FREE(dem_world_desc, force_user),
-    DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_END};
+    DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_FREE(dem_world_desc, growth_user),
+    DEMI_ROW_END};

@@ -24,6 +24,7 @@ typedef struct demi_timing {       /* >>step, >>advice */
     dem_real dt;                   /* s */
     double half_kick;              /* s, half kick of the present step */
     double assumed_speed;          /* m/s, impact speed that dt was chosen for */
+    double grown;                  /* s: end of the step for which radii were set (>>growth) */
     uint64_t press_due;            /* step of the next search for pressed bodies (>>advice) */
     uint64_t press_since;          /* step of the last change of the scene */
     demi_held held;
@@ -40,6 +41,7 @@ typedef struct demi_stages {
     int moved;                     /* bodies have moved in a step whose forces are missing, because
                                       memory ran out */
     int synced;                    /* no half kick is pending: see demi_finish */
+    int grown;                     /* 1: radii have changed since the last forces: >>growth */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
     /* 1: a rebuild that ran out of memory had chosen the skin, or the span of the pruned list. The
        next try keeps them, because the counts behind the choice may be lost */

@@ -131,6 +131,22 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
     demi_say(e, "acts on %d of %d bodies now", pushed, w->bodies.count);
     return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+/* State of desc.growth: active if some radius changes now. Calls the user's function for every
+   body. */
+static dem_effect_state demi_look_growth(const dem_world *w, dem_effect *e) {
+    int i, moving = 0;
+    if (!w->desc.growth) return demi_look_off(e, "desc.growth is null");
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_body id = dem_body_id_get(w, i);
+        dem_body_state body;
+        dem_real rate;
+        if (dem_body_get(w, id, &body) != DEM_OK) continue;
+        rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user);
+        moving += rate < 0 || rate > 0;
+    }
+    demi_say(e, "the radii of %d of %d bodies change now", moving, w->bodies.count);
+    return moving ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
 /* State of user-defined numbers of bodies: active if contacts change them on some body now, or if
    body_reals_fn may. */
 static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
@@ -258,6 +274,10 @@ static void demi_leave_rolling(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.rolling_law = DEM_ROLLING_NONE;
 }
+static void demi_leave_growth(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.growth = 0;
+}
 static void demi_leave_ledger(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.ledger = 0;
@@ -364,6 +384,7 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"user-defined law", demi_look_law,          demi_again_law,          1},
     {"force field",      demi_look_field,        demi_again_field,        1},
     {"body_reals",       demi_look_reals,        0,                       0},
+    {"growth",           demi_look_growth,       demi_leave_growth,       0},
     {"walls",            demi_look_walls,        demi_leave_walls,        0},
     {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
     {"periodic faces",   demi_look_periodic,     0,                       0},

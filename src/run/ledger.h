@@ -21,6 +21,18 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
         *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
+/* Books what springs hold more than before, because radii have changed and nothing has moved, as
+   the work of growth. The tangential part passes through the work against the tangential force, so
+   that it does not count as a loss. */
+static void demi_growth_book(dem_world *w) {
+    const double shear = demi_sum_energy(w, DEMI_E_SHEAR_STORED) -
+        w->booked.energy[DEMI_E_SHEAR_STORED];
+    const double work = demi_sum_energy(w, DEMI_E_ELASTIC) - w->booked.energy[DEMI_E_ELASTIC] +
+        shear;
+    w->booked.energy[DEMI_E_GROWTH] += work;
+    w->booked.energy[DEMI_E_SHEAR_WORK] += shear;
+    w->booked.throughput += fabs(work);
+}
 /* Closes the account of a step with springs, when its forces are known. Adds the work and losses of
    all domains (work groups) and of walls to the totals, and replaces the stored energies. With a
    user-defined law, DEMI_E_TOLD sums the magnitudes of all that the law reports; while it is 0, the
@@ -36,6 +48,7 @@ static void demi_ledger_book(dem_world *w) {
         w->booked.energy[flows[i]] += part;
         if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
+    if (w->stage.grown) demi_growth_book(w);
     w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
@@ -55,6 +68,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.gravity = w->booked.energy[DEMI_E_GRAVITY];
     l.walls = w->booked.energy[DEMI_E_WALLS];
     l.force = w->booked.energy[DEMI_E_FORCE];
+    l.growth = w->booked.energy[DEMI_E_GROWTH];
     l.inserted = w->booked.inserted;
     l.removed = w->booked.removed;
     l.normal = w->booked.energy[DEMI_E_DASHPOT];
@@ -64,7 +78,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.rolling = w->booked.energy[DEMI_E_ROLL];
     l.throughput = w->booked.throughput + w->booked.inserted;
     l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
-        l.inserted + l.removed +
+        l.inserted - l.growth + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
         l.unknown = l.residual;

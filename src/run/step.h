@@ -583,6 +583,7 @@ static dem_result demi_member_look(dem_world *w) {
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     demi_rails_act(w);
+    w->stage.grown = 0;
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
@@ -780,14 +781,18 @@ static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
-/* Prepares a step: settles the time step, inserts grains of feeds, computes the forces of a scene
-   that has changed, checks the time step against the present contacts, and sets half-step
-   velocities. */
+/* Prepares a step: settles the time step, inserts grains of feeds, changes radii, computes the
+   forces of a scene that has changed, checks the time step against the present contacts, and sets
+   half-step velocities. */
 static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
     if (result == DEM_OK && h->feed_count) {
         result = h->team ? h->team->feed(h) : demi_world_feed(h);
         if (result == DEM_OK) result = demi_dt_settle(h);   /* there may be new grains */
+    }
+    if (result == DEM_OK && h->desc.growth) {
+        result = demi_radii_grow(h);
+        if (result == DEM_OK) result = demi_dt_settle(h);
     }
     if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed ||
                              (!h->team && !h->stage.list_valid)))
