@@ -79,6 +79,7 @@
      scene/ - filling a scene: size distributions, fills, feeds
        >>sizes             size distributions: sieve curves, drawing of radii, classes
        >>placing           room for new grains: regions, random fills, packings
+       >>groups            named sets of bodies, selections
        >>feed              feeds and outlets
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
@@ -709,6 +710,7 @@ DEM_INLINE dem_vec3 dem_quat_unrotate(dem_quat q, dem_vec3 v) {
 typedef struct dem_material { int32_t id; } dem_material;    /* counts from 1 */
 typedef struct dem_wall { int32_t id; } dem_wall;            /* counts from 1 */
 typedef struct dem_field { int32_t id; } dem_field;          /* counts from 1 */
+typedef struct dem_group { int32_t id; } dem_group;          /* counts from 1 in desc.groups */
 typedef struct dem_shape { int32_t id; } dem_shape;          /* counts from 1; 0 means a sphere */
 /* slot counts from 1. A later body in the same slot has another generation. */
 typedef struct dem_body { uint32_t slot, generation; } dem_body;
@@ -956,6 +958,7 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 
 /* ---- contacts and user-defined laws ---- */
 
+enum { DEM_GROUPS = 32 };         /* largest number of groups: desc.groups */
 enum { DEM_BODY_REALS = 8 };      /* largest number of user-defined reals per body: body_reals */
 enum { DEM_LAW_MEMORY = 16 };     /* largest contact history of a user-defined law: law_memory */
 
@@ -1648,6 +1651,11 @@ typedef struct dem_world_desc {
     void *growth_user;             /* passed to growth */
     dem_real growth_interval;      /* s, between two changes of radii; 0 means every step */
 
+    /* -- groups -- */
+    /* Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters,
+       digits and _. A body belongs to none until dem_bodies_group_set. Null means no groups. */
+    const char *groups;
+
     /* -- force fields; both may be given and add up -- */
     dem_force_fn force;            /* force on a body; null means none */
     dem_body_force_fn body_force;  /* force and torque on a body; null means none */
@@ -2001,11 +2009,62 @@ typedef struct dem_bodies {
     int real_count;                /* numbers per body (desc.body_reals) */
     const dem_real *reals;         /* count x real_count; null if there are none */
     const dem_real *rates;         /* count x real_count, per s, of the last step; null likewise */
+    const uint32_t *groups;        /* bit id - 1: in that group; null without desc.groups */
 } dem_bodies;
 /* Returns the arrays of all bodies; zeros for a null world. */
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
 /* Returns the id of the body at this index of the arrays; zeros if there is none. */
 DEM_API dem_body dem_body_id_get(const dem_world *world, int index);
+
+/* Which bodies: those that fulfil every condition. DEM_SELECTION, all zero, selects every body. */
+typedef struct dem_selection {
+    dem_group group;               /* only members of this group; id 0 means any */
+    dem_material material;         /* only of this material; id 0 means any */
+    dem_shape shape;               /* only of this shape; id 0 means any, spheres included */
+    dem_real radius_min, radius_max;   /* m, only of these (bounding) radii; max 0 means no limit */
+    /* Only bodies whose centre is in this region, or on a periodic axis one of its images. Null
+       means anywhere. */
+    const dem_region *region;
+    int count;                     /* of bodies */
+    /* Only these; ids of bodies that are gone do not count. Null means any. */
+    const dem_body *bodies;
+} dem_selection;
+static const dem_selection DEM_SELECTION_ZERO = DEM_ZERO;
+#define DEM_SELECTION DEM_SELECTION_ZERO
+/* Returns the group with this name in desc.groups. */
+DEM_API dem_group dem_group_get(const dem_world *world, const char *name);
+/* Writes the ids of the selected bodies, in the order of their slots, at most `capacity`
+   of them. Returns how many are selected, -1 on error. `out` or null, to count them. This and the
+   next four cannot be used inside steps, except from outputs. */
+DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *selection, dem_body *out,
+                              int capacity);
+/* Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be
+   in many groups. Members stay members when bodies are sorted, restarted or dealt to slabs. Returns
+   how many bodies are selected, -1 on error. */
+DEM_API int dem_bodies_group_set(dem_world *world, const dem_selection *selection, dem_group group,
+                                 int member);
+/* Gives the selected bodies a velocity (m/s) and a spin (rad/s), as dem_body_set does. Returns
+   their number, -1 on error. */
+DEM_API int dem_bodies_velocity_set(dem_world *world, const dem_selection *selection,
+                                    dem_vec3 velocity, dem_vec3 spin);
+/* Freezes the selected bodies (fixed = 1), which then never move, or frees them (0). Returns their
+   number, -1 on error. */
+DEM_API int dem_bodies_fixed_set(dem_world *world, const dem_selection *selection, int fixed);
+/* Removes the selected bodies, with one new list for all. Returns their number, -1 on error. */
+DEM_API int dem_bodies_remove(dem_world *world, const dem_selection *selection);
+/* Sums and means over selected bodies; zeros if there are none. */
+typedef struct dem_bodies_means {
+    int count;
+    double mass;                   /* kg, sum */
+    double centre[3];              /* m, of mass; positions in the periodic box */
+    double velocity[3];            /* m/s, of the centre of mass */
+    double spin[3], radius;        /* rad/s and m: means over bodies */
+    double force[3];               /* N, sum: of the last step, without gravity */
+    double kinetic, rotational;    /* J, sums, those of fixed bodies included */
+} dem_bodies_means;
+/* Writes the sums and means of the selected bodies to `means`. */
+DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_selection *selection,
+                                        dem_bodies_means *means);
 
 /* The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the
    order of dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it
@@ -2894,6 +2953,7 @@ typedef struct dem_field_desc {
        c = 2 width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
+    dem_group group;          /* only members of this group; id 0 means all grains */
 } dem_field_desc;
 static const dem_field_desc DEM_FIELD_DESC_ZERO = DEM_ZERO;
 #define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO
@@ -3143,9 +3203,9 @@ enum { DEM_REPLAY_VALUES = 16 };
 /* How a replay is recorded. Begin with DEM_REPLAY_DESC. */
 typedef struct dem_replay_desc {
     const char *title;          /* copied; null means the name of the file */
-    /* Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the
-       values of number_fn. Null means the first name, or "number". Copied, at most 63 characters.
-       */
+    /* Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in
+       desc.groups (1: member, 0: not), or one for the values of number_fn. Null means the first
+       name, or "number". Copied, at most 63 characters. */
     const char *number;
     /* returns the number of a body, for every frame; null means one of desc.body_reals */
     double (*number_fn)(const dem_world *world, dem_body body, void *user);
@@ -4421,6 +4481,8 @@ typedef struct demi_bodies {
     int slot_free, slot_pending;
     int real_count;                /* user-defined numbers per body; 0: the next two are null */
     dem_real *reals, *rates;       /* x real_count; 1/s: their rates, by laws, at present forces */
+    int group_count;               /* > 0: `groups` exists */
+    uint32_t *groups;              /* bit k: in group k of desc.groups */
     int zoned;                     /* `zones` exists */
     uint32_t *zones;               /* bit k: in the region of counting outlet k; 16 + k: known */
     uint8_t *ghost;              /* by slot; 1: ghost, a copy owned by another slab; null outside
@@ -4582,7 +4644,8 @@ struct dem_world {
     dem_world_desc desc;           /* as given, with automatic choices filled in */
     dem_world_desc asked;          /* as given */
     char real_names[DEM_BODY_REALS*24];    /* body_reals of both descs point here, */
-    char memory_names[DEM_LAW_MEMORY*24];     /* and law_memory_names here */
+    char memory_names[DEM_LAW_MEMORY*24];     /* law_memory_names here, */
+    char group_names[DEM_GROUPS*24];       /* and groups here */
     /* >>memory: error messages (demi_fail), and all allocations */
     char error[512];
     char refusal[512];             /* message of the first failed call that builds the scene */
@@ -4797,10 +4860,12 @@ static int demi_names_copy(const char *names, char *out) {
    */
 static void demi_names_point(dem_world *w) {
     w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
+    w->desc.groups = w->asked.groups = w->group_names[0] ? w->group_names : 0;
     w->desc.law_memory_names = w->asked.law_memory_names = w->memory_names[0] ? w->memory_names : 0;
 }
 static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
     w->bodies.real_count = demi_names_copy(desc->body_reals, w->real_names);
+    w->bodies.group_count = demi_names_copy(desc->groups, w->group_names);
     demi_names_copy(desc->law_memory_names, w->memory_names);
     demi_names_point(w);
 }
@@ -4823,6 +4888,7 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_BACK_TURNED  if both of these hold
          DEMI_COUNTED      if bodies have user-defined numbers; one item for each number
          DEMI_ZONED        if there are outlets that only count
+         DEMI_GROUPED      if desc.groups names groups
          DEMI_BOOKED       with a ledger and an integrator that predicts velocities
          DEMI_SLOTS        always, with one item for each slot instead of each body
        what: how it is used
@@ -4831,7 +4897,7 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_PLACES       the same; x, y, z are a position, which periodic wrapping shifts
          0                 scratch memory --- */
 enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
-       DEMI_SLOTS };
+       DEMI_GROUPED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     size_t field, item;            /* offset of its pointer in demi_bodies; bytes per body (for
@@ -4864,6 +4930,7 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(reals,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(zones,           1, DEMI_ZONED,  DEMI_KEPT),
+    DEMI_ARRAY(groups,          1, DEMI_GROUPED, DEMI_KEPT),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
@@ -5362,6 +5429,7 @@ static const demi_field_row demi_world_desc_rows[] = {
                   ">= 0; 0 calls the law only in contact"),
     DEMI_ROW_OF(law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
     DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
+    DEMI_ROW_TEXT(dem_world_desc, groups, DEM_GROUPS),
     DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, growth),
     DEMI_ROW_SAID(growth_interval, 'r', DEMI_FROM, DBL_MAX, "growth_interval (s) must be finite "
                   "and >= 0; 0 changes radii in every step"), DEMI_ROW_NULL(dem_world_desc, force),
@@ -8558,6 +8626,7 @@ static int demi_has(const dem_world *w, const demi_body_array *a) {
            : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
            : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
            : a->who == DEMI_ZONED ? w->bodies.zoned
+           : a->who == DEMI_GROUPED ? w->bodies.group_count > 0
            : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
 }
 /* Returns the bytes of one body in an array. */
@@ -8619,7 +8688,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
         (w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
         (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
-        w->bodies.booked << DEMI_BOOKED;
+        w->bodies.booked << DEMI_BOOKED | (w->bodies.group_count > 0) << DEMI_GROUPED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
         if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
@@ -9176,6 +9245,7 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     b.real_count = w->bodies.real_count;
     b.reals = w->bodies.reals;
     b.rates = w->bodies.rates;
+    b.groups = w->bodies.groups;
     return b;
 }
 /* Fails if bodies have no user-defined numbers, or, with `setting`, if a number is not finite. */
@@ -25794,6 +25864,227 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>groups
+   Named sets of bodies (desc.groups) and selections of bodies by group, material, shape, size,
+   region or list. Each body carries one bit for each group in bodies.groups, an array like the
+   others: it is sorted, saved, restored and sent to slabs with the body, and ends with it. A body
+   that is added later belongs to no group. Owns bodies.groups.
+   --------------------------------------------------------------------------------------------- */
+
+/* Returns the index of a group in desc.groups, -1 if there is none of this name. */
+static int demi_group_find(const dem_world *w, const char *name) {
+    const char *at;
+    int k, n;
+    for (k = 0; name && (at = demi_name(w->desc.groups, k, &n)) != 0; k++)
+        if (strlen(name) == (size_t)n && !strncmp(at, name, (size_t)n)) return k;
+    return -1;
+}
+DEM_API dem_group dem_group_get(const dem_world *w, const char *name) {
+    dem_group id;
+    id.id = 0;
+    if (demi_null_look(w, "dem_group_get", name, "name")) return id;
+    id.id = 1 + demi_group_find(w, name);
+    if (!id.id)
+        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_group_get: there is no group \"%.60s\"; "
+                  "desc.groups names \"%.200s\": add the name there, or correct it", name,
+                  w->desc.groups ? w->desc.groups : "");
+    return id;
+}
+/* True if body i is in the group, or if its id is 0. */
+DEM_INLINE int demi_in_group(const dem_world *w, dem_group group, int i) {
+    return !group.id || (w->bodies.groups[i] >> (group.id - 1) & 1);
+}
+/* Fails if an id is neither 0, unless `required`, nor that of a group. */
+static dem_result demi_group_check(dem_world *w, const char *call, dem_group group, int required) {
+    if (group.id >= !!required && group.id <= w->bodies.group_count) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: group %d does not exist, desc.groups names %d; "
+                     "take the id from dem_group_get", call, (int)group.id, w->bodies.group_count);
+}
+/* True if x is in the region, on a periodic axis with any of its images. */
+static int demi_region_holds(const dem_world *w, const demi_periods *p, const dem_region *region,
+                             const demi_region *g, dem_vec3 x, dem_real radius) {
+    const dem_vec3 lo = region->box.lo, hi = region->box.hi;
+    x = demi_v(demi_into(x.x, lo.x, p->period[0]), demi_into(x.y, lo.y, p->period[1]),
+               demi_into(x.z, lo.z, p->period[2]));
+    return x.x >= lo.x && x.x <= hi.x && x.y >= lo.y && x.y <= hi.y &&
+        (w->desc.planar || (x.z >= lo.z && x.z <= hi.z)) && demi_region_has(g, x, radius);
+}
+/* Fails if a selection names what does not exist, or its region has no extent. */
+static dem_result demi_selection_check(dem_world *w, const char *call, const dem_selection *s,
+                                       demi_region *g) {
+    int k;
+    if (demi_group_check(w, call, s->group, 0) != DEM_OK ||
+        (s->material.id && demi_material_index(w, call, s->material, &k) != DEM_OK) ||
+        (s->shape.id && demi_shape_index(w, call, s->shape) < 0)) return DEM_ERROR_ARGUMENT;
+    if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 ||
+        (s->count && !s->bodies))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the selection has radii from %g to %g m and "
+                         "%d bodies%s; radii and count must be >= 0, and a count needs the array",
+                         call, (double)s->radius_min, (double)s->radius_max, s->count,
+                         s->count && !s->bodies ? " in a null array" : "");
+    if (!s->region) return DEM_OK;
+    return demi_region_check(w, call, s->region, 0, g) ? DEM_OK : DEM_ERROR_ARGUMENT;
+}
+/* Returns an array with 1 for each selected body, by index, and sets *count to their number. Null
+   with an error message if the selection is wrong or memory ran out. The caller frees it. */
+static unsigned char *demi_select(dem_world *w, const char *call, const dem_selection *s,
+                                  int *count) {
+    const demi_periods p = demi_periods_of(w);
+    unsigned char *marks;
+    demi_calling was;
+    demi_region g;
+    int i;
+    *count = 0;
+    if (demi_selection_check(w, call, s, &g) != DEM_OK) return 0;
+    marks = (unsigned char *)demi_alloc(w, (size_t)w->bodies.count + 1, 1);
+    if (!marks) { demi_no_memory(w, call); return 0; }
+    memset(marks, !s->bodies, (size_t)w->bodies.count + 1);
+    for (i = 0; i < s->count; i++) {            /* bodies that have gone do not count */
+        const dem_body b = s->bodies[i];
+        if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+            w->bodies.slot_generation[b.slot - 1] != b.generation ||
+            w->bodies.slot_index[b.slot - 1] < 0) continue;
+        marks[w->bodies.slot_index[b.slot - 1]] = 1;
+    }
+    was = demi_calls(w, call, 1);
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_real r = w->bodies.pos[4*i + 3];
+        marks[i] = marks[i] && demi_in_group(w, s->group, i) &&
+            (!s->material.id || w->bodies.material[i] == s->material.id) &&
+            (!s->shape.id || (w->bodies.orienting && w->bodies.shape[i] == s->shape.id)) &&
+            r >= s->radius_min && (!(s->radius_max > 0) || r <= s->radius_max) &&
+            (!s->region || demi_region_holds(w, &p, s->region, &g, demi_at(w->bodies.pos + 4*i),
+                                             r));
+        *count += marks[i];
+    }
+    demi_called(w, was);
+    return marks;
+}
+DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, dem_body *out,
+                              int capacity) {
+    if (demi_null_look(world, "dem_bodies_select", s, "selection")) return -1;
+    dem_world *w = (dem_world *)world;          /* only the error message is written */
+    int count, slot, n = 0;
+    unsigned char *marks = demi_select(w, "dem_bodies_select", s, &count);
+    if (!marks) return -1;
+    for (slot = 0; slot < w->bodies.slot_count && out && n < capacity; slot++) {
+        const int i = w->bodies.slot_index[slot];
+        if (i >= 0 && marks[i]) out[n++] = dem_body_id_get(w, i);
+    }
+    demi_free(w, marks);
+    return count;
+}
+DEM_API int dem_bodies_group_set(dem_world *w, const dem_selection *s, dem_group group,
+                                 int member) {
+    if (demi_null(w, "dem_bodies_group_set", s, "selection")) return -1;
+    int count, i;
+    unsigned char *marks = demi_group_check(w, "dem_bodies_group_set", group, 1) == DEM_OK
+        ? demi_select(w, "dem_bodies_group_set", s, &count) : 0;
+    if (!marks) return -1;
+    for (i = 0; i < w->bodies.count; i++) {
+        const uint32_t bit = (uint32_t)1 << (group.id - 1);
+        if (marks[i])
+            w->bodies.groups[i] = member ? w->bodies.groups[i] | bit : w->bodies.groups[i] & ~bit;
+    }
+    demi_free(w, marks);
+    return count;
+}
+/* Sets velocity and spin of the selected bodies or, if `velocity` is null, whether they are fixed.
+   In the order of slots, so that sums do not depend on the order of bodies. */
+static int demi_selected_set(dem_world *w, const char *call, const dem_selection *s,
+                             const dem_vec3 *velocity, dem_vec3 spin, int fixed) {
+    int count, slot;
+    unsigned char *marks = demi_select(w, call, s, &count);
+    if (!marks) return -1;
+    for (slot = 0; slot < w->bodies.slot_count; slot++) {
+        const int i = w->bodies.slot_index[slot];
+        dem_body_state state;
+        if (i < 0 || !marks[i] || dem_body_get(w, dem_body_id_get(w, i), &state) != DEM_OK)
+            continue;
+        if (velocity) { state.velocity = *velocity; state.spin = spin; }
+        else state.fixed = fixed;
+        if (dem_body_set(w, dem_body_id_get(w, i), &state) != DEM_OK) count = -1;
+        if (count < 0) break;
+    }
+    demi_free(w, marks);
+    return count;
+}
+DEM_API int dem_bodies_velocity_set(dem_world *w, const dem_selection *s, dem_vec3 velocity,
+                                    dem_vec3 spin) {
+    if (demi_null(w, "dem_bodies_velocity_set", s, "selection")) return -1;
+    if (!demi_place(velocity) || !demi_place(spin)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bodies_velocity_set: velocity or spin is not finite, "
+                  "or beyond %g m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
+        return -1;
+    }
+    return demi_selected_set(w, "dem_bodies_velocity_set", s, &velocity, spin, 0);
+}
+DEM_API int dem_bodies_fixed_set(dem_world *w, const dem_selection *s, int fixed) {
+    if (demi_null(w, "dem_bodies_fixed_set", s, "selection")) return -1;
+    return demi_selected_set(w, "dem_bodies_fixed_set", s, 0, demi_v(0, 0, 0), fixed);
+}
+DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
+    if (demi_null(w, "dem_bodies_remove", s, "selection")) return -1;
+    int count, i;
+    unsigned char *marks = demi_select(w, "dem_bodies_remove", s, &count);
+    if (!marks) return -1;
+    if (count && !demi_list_drop(w)) {
+        demi_no_memory(w, "dem_bodies_remove");
+        count = -1;
+    }
+    /* backwards: the last body, which takes the index, has been looked at */
+    for (i = w->bodies.count - 1; i >= 0 && count > 0; i--) {
+        if (!marks[i]) continue;
+        demi_body_take_out(w, i);
+        w->bodies.balance.removed++;
+    }
+    demi_free(w, marks);
+    if (count > 0) demi_scene_changed(w);
+    return count;
+}
+DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_selection *s,
+                                        dem_bodies_means *out) {
+    if (demi_null_look(world, "dem_bodies_means_get", s, "selection") ||
+        demi_null_look(world, "dem_bodies_means_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    dem_world *w = (dem_world *)world;          /* only the error message is written */
+    const demi_periods p = demi_periods_of(w);
+    int count, slot, k;
+    unsigned char *marks = demi_select(w, "dem_bodies_means_get", s, &count);
+    if (!marks) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    for (slot = 0; slot < w->bodies.slot_count; slot++) {
+        const int i = w->bodies.slot_index[slot];
+        const double m = i < 0 ? 0 : (double)w->bodies.mass[i];
+        dem_real x[3];
+        double v2 = 0;
+        if (i < 0 || !marks[i]) continue;
+        demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
+        out->mass += m;
+        out->radius += (double)w->bodies.pos[4*i + 3];
+        for (k = 0; k < 3; k++) {
+            const double v = (double)w->bodies.vel[4*i + k];
+            out->centre[k] += m*(double)x[k];
+            out->velocity[k] += m*v;
+            out->spin[k] += (double)w->bodies.spin[4*i + k];
+            out->force[k] += (double)w->bodies.force[4*i + k];
+            v2 += v*v;
+        }
+        out->kinetic += m*v2/2;
+        out->rotational += (double)demi_dot(demi_angular_of(w, i),
+                                            demi_at(w->bodies.spin + 4*i))/2;
+    }
+    for (k = 0; k < 3 && count; k++) {
+        out->centre[k] /= out->mass;
+        out->velocity[k] /= out->mass;
+        out->spin[k] /= count;
+    }
+    if (count) out->radius /= count;
+    out->count = count;
+    demi_free(w, marks);
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>feed
    Feeds insert grains during a run, and outlets remove or count them. A feed inserts between two
    steps and appends the new grains to the candidate list (demi_list_join). An outlet acts within a
@@ -28223,10 +28514,11 @@ static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const 
                 demi_image_put(g, image, block, n, value);
             }
 }
-/* True if the field includes body i, by material and radius. */
+/* True if the field includes body i, by group, material and radius. */
 static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
     const dem_real r = w->bodies.pos[4*i + 3];
-    return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
+    return demi_in_group(w, d->group, i) &&
+           (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
            (!(d->radius_max > 0) || r <= d->radius_max);
 }
 /* Adds grain i: volume, mass, momentum and number; with desc.stress the flux m v v. */
@@ -28340,7 +28632,8 @@ static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, '
     DEMI_FIELD(start, 'd', DEMI_FROM, "s", 0), DEMI_FIELD(end, 'd', DEMI_ANY, "s", 0),
     DEMI_FIELD(interval, 'd', DEMI_FROM, "s", 0), DEMI_ROW(dem_field_desc, material, 'i'),
     DEMI_FIELD(radius_min, 'r', DEMI_FROM, "m", 0), DEMI_FIELD(radius_max, 'r', DEMI_FROM, "m", 1),
-    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0), DEMI_ROW_END};
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0),
+    DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
@@ -28355,7 +28648,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
-    if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
+    if (demi_group_check(w, "dem_field_add", d->group, 0) != DEM_OK ||
+        (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK))
         return id;
     memset(&field, 0, sizeof field);
     field.used = 1;
@@ -32723,7 +33017,7 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     }
 }
 
-enum { DEMI_GRAIN_COLUMNS = 10 + DEM_BODY_REALS };
+enum { DEMI_GRAIN_COLUMNS = 11 + DEM_BODY_REALS };
 
 /* The rows that are written for the bodies. If no body has an orientation, these are the world's
    arrays. Otherwise there is one row for each part, such as a member sphere of a cluster. */
@@ -32732,7 +33026,7 @@ typedef struct demi_drawing {
     const dem_real *pos, *vel, *spin;              /* count x 4: m, radius (m); m/s; rad/s */
     const dem_real *orient, *axes;                 /* count x 4; m; null: no orientations */
     const uint32_t *slots;                         /* of the body */
-    const int32_t *materials;
+    const int32_t *materials, *groups;             /* groups: bits; null: there are none */
     const dem_real *reals;                         /* count x real_count: user-defined numbers */
     int real_count;
     char names[DEM_BODY_REALS][24];                /* of these numbers */
@@ -32750,6 +33044,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     g->count = w->bodies.count;
     g->pos = places; g->vel = w->bodies.vel; g->spin = w->bodies.spin;
     g->slots = w->bodies.slot; g->materials = w->bodies.material;
+    g->groups = (const int32_t *)w->bodies.groups;
     g->reals = w->bodies.reals; g->real_count = w->bodies.real_count;
     for (k = 0; k < g->real_count; k++) {
         const char *name = demi_name(w->desc.body_reals, k, &n);
@@ -32762,7 +33057,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     reals = 20*(size_t)g->count;
     g->own = (dem_real *)demi_alloc(w, reals + (size_t)(g->real_count*g->count) + 1,
                                     sizeof(dem_real));
-    g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
+    g->own_ids = (int32_t *)demi_alloc(w, 3*(size_t)g->count + 1, sizeof(int32_t));
     if (!g->own || !g->own_ids) return 0;
     for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < demi_parts_count(w, i); k++, n++) {
@@ -32782,6 +33077,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
             row[2] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 0, 1)).z;
             g->own_ids[n] = (int32_t)w->bodies.slot[i];
             g->own_ids[n + g->count] = w->bodies.material[i];
+            g->own_ids[n + 2*g->count] = g->groups ? (int32_t)w->bodies.groups[i] : 0;
             for (e = 0; e < g->real_count; e++)
                 g->own[reals + (size_t)(g->real_count*n + e)] = g->reals[g->real_count*i + e];
         }
@@ -32793,6 +33089,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     g->axes = g->own + 16*(size_t)g->count;
     g->slots = (const uint32_t *)g->own_ids;
     g->materials = g->own_ids + g->count;
+    if (g->groups) g->groups = g->own_ids + 2*(size_t)g->count;
     return 1;
 }
 static void demi_drawing_free(dem_world *w, demi_drawing *g) {
@@ -32821,9 +33118,10 @@ static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
         {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
         {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
         {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
-    const int known = g->orient ? 8 : 6;
-    int k;
+    const demi_column groups = {"PointData", "groups", 'i', 1, g->count, 1, 0, g->groups};
+    int known = g->orient ? 8 : 6, k;
     memcpy(columns, all, (size_t)known*sizeof *all);
+    if (g->groups) columns[known++] = groups;
     for (k = 0; k < g->real_count; k++) {
         const demi_column own = {"PointData", g->names[k], 'r', 1, g->count, g->real_count, k,
                                  g->reals};
@@ -33459,7 +33757,7 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
        allocator, allow_large_dt, user pointers). The file holds the values, so that an error
        message can name the field and both values. --- */
 
-enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes of a field in the file, at most */
+enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
 /* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
    member by member, because the struct has padding. */
 static uint64_t demi_digest_spheres(const void *item) {
@@ -36811,6 +37109,9 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
             "digits and _, separated by one space, such as \"temperature charge\"; null means none";
+    if (demi_names(d->groups, DEM_GROUPS) < 0)
+        return "dem_world_create: groups must be at most 32 words of at most 23 letters, digits "
+            "and _, separated by one space, such as \"coarse tracer\"; null means none";
     if (demi_names(d->law_memory_names, d->law_memory) < 0)
         return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
             "letters, digits and _, separated by one space; null means memory0, memory1, ...";
@@ -39377,6 +39678,7 @@ struct dem_replay {
     dem_replay_desc desc;
     char title[200], number[64];     /* copies of the desc's; number: "" if there is none */
     int real;                        /* index of that number in desc.body_reals, or -1 */
+    int group;                       /* index of the group that is the number, or -1 */
     double resolution;               /* m, of positions; 0: no frame yet */
     demi_seen *seen;                 /* x seen_count: one for each slot */
     float (*pose)[7];                /* by index of the wall: its pose when last written */
@@ -39676,7 +39978,8 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
         id.slot = (uint32_t)s + 1;
         id.generation = one->generation;
         own = (float)r->desc.number_fn(r->world, id, r->desc.user);
-    } else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
+    } else if (r->group >= 0) own = (float)(r->world->bodies.groups[i] >> r->group & 1);
+    else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
     if (told != one->speed) flags |= 64;
     if (turn != one->turn) more |= 1;
     if (memcmp(&own, &one->own, sizeof own)) more |= 2;    /* compares bits: it may be NaN */
@@ -39799,7 +40102,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     const char *slash;
     dem_replay *r;
     size_t k;
-    int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
+    int i, n, group, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
     if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
     if (demi_rows_check(w, "dem_replay_open", demi_replay_rows, &d, "",
                         "start from DEM_REPLAY_DESC and set only what differs")) return 0;
@@ -39808,9 +40111,12 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
         if (strlen(d.number) == (size_t)n && !strncmp(name, d.number, (size_t)n)) break;
         real = i + 1;
     }
-    if (d.number && !d.number_fn && (real < 0 || real >= w->bodies.real_count)) {
+    group = d.number_fn ? -1 : demi_group_find(w, d.number);
+    if (group >= 0) real = -1;
+    if (d.number && !d.number_fn && group < 0 && (real < 0 || real >= w->bodies.real_count)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
-                  "desc.body_reals does not name; name it there, or give number_fn", d.number);
+                  "neither desc.body_reals nor desc.groups names; name it there, or give "
+                  "number_fn", d.number);
         return 0;
     }
     r = (dem_replay *)demi_alloc(w, 1, sizeof *r);
@@ -39818,6 +40124,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     r->world = w;
     r->desc = d;
     r->real = real;
+    r->group = group;
     if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
     r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
@@ -39825,7 +40132,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (real >= 0) {
         const char *name = demi_name(w->desc.body_reals, real, &n);
         snprintf(r->number, sizeof r->number, "%.*s", n, name);
-    } else if (d.number_fn)
+    } else if (d.number_fn || group >= 0)
         snprintf(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
     r->due = -1;

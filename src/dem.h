@@ -79,6 +79,7 @@
      scene/ - filling a scene: size distributions, fills, feeds
        >>sizes             size distributions: sieve curves, drawing of radii, classes
        >>placing           room for new grains: regions, random fills, packings
+       >>groups            named sets of bodies, selections
        >>feed              feeds and outlets
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
@@ -234,6 +235,7 @@
 #include "impulse/impulses-told.h"
 #include "scene/sizes.h"
 #include "scene/placing.h"
+#include "scene/groups.h"
 #include "scene/feed.h"
 #include "run/team.h"
 #include "run/advice.h"

@@ -127,6 +127,7 @@ DEM_INLINE dem_vec3 dem_quat_unrotate(dem_quat q, dem_vec3 v) {
 typedef struct dem_material { int32_t id; } dem_material;    /* counts from 1 */
 typedef struct dem_wall { int32_t id; } dem_wall;            /* counts from 1 */
 typedef struct dem_field { int32_t id; } dem_field;          /* counts from 1 */
+typedef struct dem_group { int32_t id; } dem_group;          /* counts from 1 in desc.groups */
 typedef struct dem_shape { int32_t id; } dem_shape;          /* counts from 1; 0 means a sphere */
 /* slot counts from 1. A later body in the same slot has another generation. */
 typedef struct dem_body { uint32_t slot, generation; } dem_body;
@@ -374,6 +375,7 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 
 /* ---- contacts and user-defined laws ---- */
 
+enum { DEM_GROUPS = 32 };         /* largest number of groups: desc.groups */
 enum { DEM_BODY_REALS = 8 };      /* largest number of user-defined reals per body: body_reals */
 enum { DEM_LAW_MEMORY = 16 };     /* largest contact history of a user-defined law: law_memory */
 

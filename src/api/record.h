@@ -185,9 +185,9 @@ enum { DEM_REPLAY_VALUES = 16 };
 /* How a replay is recorded. Begin with DEM_REPLAY_DESC. */
 typedef struct dem_replay_desc {
     const char *title;          /* copied; null means the name of the file */
-    /* Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the
-       values of number_fn. Null means the first name, or "number". Copied, at most 63 characters.
-       */
+    /* Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in
+       desc.groups (1: member, 0: not), or one for the values of number_fn. Null means the first
+       name, or "number". Copied, at most 63 characters. */
     const char *number;
     /* returns the number of a body, for every frame; null means one of desc.body_reals */
     double (*number_fn)(const dem_world *world, dem_body body, void *user);

@@ -356,6 +356,7 @@ typedef struct dem_field_desc {
        c = 2 width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
+    dem_group group;          /* only members of this group; id 0 means all grains */
 } dem_field_desc;
 static const dem_field_desc DEM_FIELD_DESC_ZERO = DEM_ZERO;
 #define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO

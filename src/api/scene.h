@@ -83,6 +83,11 @@ typedef struct dem_world_desc {
     void *growth_user;             /* passed to growth */
     dem_real growth_interval;      /* s, between two changes of radii; 0 means every step */
 
+    /* -- groups -- */
+    /* Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters,
+       digits and _. A body belongs to none until dem_bodies_group_set. Null means no groups. */
+    const char *groups;
+
     /* -- force fields; both may be given and add up -- */
     dem_force_fn force;            /* force on a body; null means none */
     dem_body_force_fn body_force;  /* force and torque on a body; null means none */
@@ -436,11 +441,62 @@ typedef struct dem_bodies {
     int real_count;                /* numbers per body (desc.body_reals) */
     const dem_real *reals;         /* count x real_count; null if there are none */
     const dem_real *rates;         /* count x real_count, per s, of the last step; null likewise */
+    const uint32_t *groups;        /* bit id - 1: in that group; null without desc.groups */
 } dem_bodies;
 /* Returns the arrays of all bodies; zeros for a null world. */
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
 /* Returns the id of the body at this index of the arrays; zeros if there is none. */
 DEM_API dem_body dem_body_id_get(const dem_world *world, int index);
+
+/* Which bodies: those that fulfil every condition. DEM_SELECTION, all zero, selects every body. */
+typedef struct dem_selection {
+    dem_group group;               /* only members of this group; id 0 means any */
+    dem_material material;         /* only of this material; id 0 means any */
+    dem_shape shape;               /* only of this shape; id 0 means any, spheres included */
+    dem_real radius_min, radius_max;   /* m, only of these (bounding) radii; max 0 means no limit */
+    /* Only bodies whose centre is in this region, or on a periodic axis one of its images. Null
+       means anywhere. */
+    const dem_region *region;
+    int count;                     /* of bodies */
+    /* Only these; ids of bodies that are gone do not count. Null means any. */
+    const dem_body *bodies;
+} dem_selection;
+static const dem_selection DEM_SELECTION_ZERO = DEM_ZERO;
+#define DEM_SELECTION DEM_SELECTION_ZERO
+/* Returns the group with this name in desc.groups. */
+DEM_API dem_group dem_group_get(const dem_world *world, const char *name);
+/* Writes the ids of the selected bodies, in the order of their slots, at most `capacity`
+   of them. Returns how many are selected, -1 on error. `out` or null, to count them. This and the
+   next four cannot be used inside steps, except from outputs. */
+DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *selection, dem_body *out,
+                              int capacity);
+/* Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be
+   in many groups. Members stay members when bodies are sorted, restarted or dealt to slabs. Returns
+   how many bodies are selected, -1 on error. */
+DEM_API int dem_bodies_group_set(dem_world *world, const dem_selection *selection, dem_group group,
+                                 int member);
+/* Gives the selected bodies a velocity (m/s) and a spin (rad/s), as dem_body_set does. Returns
+   their number, -1 on error. */
+DEM_API int dem_bodies_velocity_set(dem_world *world, const dem_selection *selection,
+                                    dem_vec3 velocity, dem_vec3 spin);
+/* Freezes the selected bodies (fixed = 1), which then never move, or frees them (0). Returns their
+   number, -1 on error. */
+DEM_API int dem_bodies_fixed_set(dem_world *world, const dem_selection *selection, int fixed);
+/* Removes the selected bodies, with one new list for all. Returns their number, -1 on error. */
+DEM_API int dem_bodies_remove(dem_world *world, const dem_selection *selection);
+/* Sums and means over selected bodies; zeros if there are none. */
+typedef struct dem_bodies_means {
+    int count;
+    double mass;                   /* kg, sum */
+    double centre[3];              /* m, of mass; positions in the periodic box */
+    double velocity[3];            /* m/s, of the centre of mass */
+    double spin[3], radius;        /* rad/s and m: means over bodies */
+    double force[3];               /* N, sum: of the last step, without gravity */
+    double kinetic, rotational;    /* J, sums, those of fixed bodies included */
+} dem_bodies_means;
+/* Writes the sums and means of the selected bodies to `means`. */
+DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_selection *selection,
+                                        dem_bodies_means *means);
 
 /* The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the
    order of dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it

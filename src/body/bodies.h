@@ -106,6 +106,7 @@ static int demi_has(const dem_world *w, const demi_body_array *a) {
            : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
            : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
            : a->who == DEMI_ZONED ? w->bodies.zoned
+           : a->who == DEMI_GROUPED ? w->bodies.group_count > 0
            : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
 }
 /* Returns the bytes of one body in an array. */
@@ -167,7 +168,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
         (w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
         (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
-        w->bodies.booked << DEMI_BOOKED;
+        w->bodies.booked << DEMI_BOOKED | (w->bodies.group_count > 0) << DEMI_GROUPED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
         if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
@@ -724,6 +725,7 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     b.real_count = w->bodies.real_count;
     b.reals = w->bodies.reals;
     b.rates = w->bodies.rates;
+    b.groups = w->bodies.groups;
     return b;
 }
 /* Fails if bodies have no user-defined numbers, or, with `setting`, if a number is not finite. */

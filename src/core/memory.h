@@ -80,10 +80,12 @@ static int demi_names_copy(const char *names, char *out) {
    */
 static void demi_names_point(dem_world *w) {
     w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
+    w->desc.groups = w->asked.groups = w->group_names[0] ? w->group_names : 0;
     w->desc.law_memory_names = w->asked.law_memory_names = w->memory_names[0] ? w->memory_names : 0;
 }
 static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
     w->bodies.real_count = demi_names_copy(desc->body_reals, w->real_names);
+    w->bodies.group_count = demi_names_copy(desc->groups, w->group_names);
     demi_names_copy(desc->law_memory_names, w->memory_names);
     demi_names_point(w);
 }
@@ -106,6 +108,7 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_BACK_TURNED  if both of these hold
          DEMI_COUNTED      if bodies have user-defined numbers; one item for each number
          DEMI_ZONED        if there are outlets that only count
+         DEMI_GROUPED      if desc.groups names groups
          DEMI_BOOKED       with a ledger and an integrator that predicts velocities
          DEMI_SLOTS        always, with one item for each slot instead of each body
        what: how it is used
@@ -114,7 +117,7 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_PLACES       the same; x, y, z are a position, which periodic wrapping shifts
          0                 scratch memory --- */
 enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
-       DEMI_SLOTS };
+       DEMI_GROUPED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     size_t field, item;            /* offset of its pointer in demi_bodies; bytes per body (for
@@ -147,6 +150,7 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(reals,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(zones,           1, DEMI_ZONED,  DEMI_KEPT),
+    DEMI_ARRAY(groups,          1, DEMI_GROUPED, DEMI_KEPT),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),

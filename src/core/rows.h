@@ -253,6 +253,7 @@ static const demi_field_row demi_world_desc_rows[] = {
                   ">= 0; 0 calls the law only in contact"),
     DEMI_ROW_OF(law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
     DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
+    DEMI_ROW_TEXT(dem_world_desc, groups, DEM_GROUPS),
     DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, growth),
     DEMI_ROW_SAID(growth_interval, 'r', DEMI_FROM, DBL_MAX, "growth_interval (s) must be finite "
                   "and >= 0; 0 changes radii in every step"), DEMI_ROW_NULL(dem_world_desc, force),

@@ -135,6 +135,8 @@ typedef struct demi_bodies {
     int slot_free, slot_pending;
     int real_count;                /* user-defined numbers per body; 0: the next two are null */
     dem_real *reals, *rates;       /* x real_count; 1/s: their rates, by laws, at present forces */
+    int group_count;               /* > 0: `groups` exists */
+    uint32_t *groups;              /* bit k: in group k of desc.groups */
     int zoned;                     /* `zones` exists */
     uint32_t *zones;               /* bit k: in the region of counting outlet k; 16 + k: known */
     uint8_t *ghost;              /* by slot; 1: ghost, a copy owned by another slab; null outside
@@ -296,7 +298,8 @@ struct dem_world {
     dem_world_desc desc;           /* as given, with automatic choices filled in */
     dem_world_desc asked;          /* as given */
     char real_names[DEM_BODY_REALS*24];    /* body_reals of both descs point here, */
-    char memory_names[DEM_LAW_MEMORY*24];     /* and law_memory_names here */
+    char memory_names[DEM_LAW_MEMORY*24];     /* law_memory_names here, */
+    char group_names[DEM_GROUPS*24];       /* and groups here */
     /* >>memory: error messages (demi_fail), and all allocations */
     char error[512];
     char refusal[512];             /* message of the first failed call that builds the scene */

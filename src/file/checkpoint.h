@@ -58,7 +58,7 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
        allocator, allow_large_dt, user pointers). The file holds the values, so that an error
        message can name the field and both values. --- */
 
-enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes of a field in the file, at most */
+enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
 /* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
    member by member, because the struct has padding. */
 static uint64_t demi_digest_spheres(const void *item) {

@@ -212,7 +212,7 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     }
 }
 
-enum { DEMI_GRAIN_COLUMNS = 10 + DEM_BODY_REALS };
+enum { DEMI_GRAIN_COLUMNS = 11 + DEM_BODY_REALS };
 
 /* The rows that are written for the bodies. If no body has an orientation, these are the world's
    arrays. Otherwise there is one row for each part, such as a member sphere of a cluster. */
@@ -221,7 +221,7 @@ typedef struct demi_drawing {
     const dem_real *pos, *vel, *spin;              /* count x 4: m, radius (m); m/s; rad/s */
     const dem_real *orient, *axes;                 /* count x 4; m; null: no orientations */
     const uint32_t *slots;                         /* of the body */
-    const int32_t *materials;
+    const int32_t *materials, *groups;             /* groups: bits; null: there are none */
     const dem_real *reals;                         /* count x real_count: user-defined numbers */
     int real_count;
     char names[DEM_BODY_REALS][24];                /* of these numbers */
@@ -239,6 +239,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     g->count = w->bodies.count;
     g->pos = places; g->vel = w->bodies.vel; g->spin = w->bodies.spin;
     g->slots = w->bodies.slot; g->materials = w->bodies.material;
+    g->groups = (const int32_t *)w->bodies.groups;
     g->reals = w->bodies.reals; g->real_count = w->bodies.real_count;
     for (k = 0; k < g->real_count; k++) {
         const char *name = demi_name(w->desc.body_reals, k, &n);
@@ -251,7 +252,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     reals = 20*(size_t)g->count;
     g->own = (dem_real *)demi_alloc(w, reals + (size_t)(g->real_count*g->count) + 1,
                                     sizeof(dem_real));
-    g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
+    g->own_ids = (int32_t *)demi_alloc(w, 3*(size_t)g->count + 1, sizeof(int32_t));
     if (!g->own || !g->own_ids) return 0;
     for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < demi_parts_count(w, i); k++, n++) {
@@ -271,6 +272,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
             row[2] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 0, 1)).z;
             g->own_ids[n] = (int32_t)w->bodies.slot[i];
             g->own_ids[n + g->count] = w->bodies.material[i];
+            g->own_ids[n + 2*g->count] = g->groups ? (int32_t)w->bodies.groups[i] : 0;
             for (e = 0; e < g->real_count; e++)
                 g->own[reals + (size_t)(g->real_count*n + e)] = g->reals[g->real_count*i + e];
         }
@@ -282,6 +284,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     g->axes = g->own + 16*(size_t)g->count;
     g->slots = (const uint32_t *)g->own_ids;
     g->materials = g->own_ids + g->count;
+    if (g->groups) g->groups = g->own_ids + 2*(size_t)g->count;
     return 1;
 }
 static void demi_drawing_free(dem_world *w, demi_drawing *g) {
@@ -310,9 +313,10 @@ static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
         {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
         {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
         {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
-    const int known = g->orient ? 8 : 6;
-    int k;
+    const demi_column groups = {"PointData", "groups", 'i', 1, g->count, 1, 0, g->groups};
+    int known = g->orient ? 8 : 6, k;
     memcpy(columns, all, (size_t)known*sizeof *all);
+    if (g->groups) columns[known++] = groups;
     for (k = 0; k < g->real_count; k++) {
         const demi_column own = {"PointData", g->names[k], 'r', 1, g->count, g->real_count, k,
                                  g->reals};

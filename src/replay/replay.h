@@ -42,6 +42,7 @@ struct dem_replay {
     dem_replay_desc desc;
     char title[200], number[64];     /* copies of the desc's; number: "" if there is none */
     int real;                        /* index of that number in desc.body_reals, or -1 */
+    int group;                       /* index of the group that is the number, or -1 */
     double resolution;               /* m, of positions; 0: no frame yet */
     demi_seen *seen;                 /* x seen_count: one for each slot */
     float (*pose)[7];                /* by index of the wall: its pose when last written */
@@ -341,7 +342,8 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
         id.slot = (uint32_t)s + 1;
         id.generation = one->generation;
         own = (float)r->desc.number_fn(r->world, id, r->desc.user);
-    } else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
+    } else if (r->group >= 0) own = (float)(r->world->bodies.groups[i] >> r->group & 1);
+    else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
     if (told != one->speed) flags |= 64;
     if (turn != one->turn) more |= 1;
     if (memcmp(&own, &one->own, sizeof own)) more |= 2;    /* compares bits: it may be NaN */
@@ -464,7 +466,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     const char *slash;
     dem_replay *r;
     size_t k;
-    int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
+    int i, n, group, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
     if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
     if (demi_rows_check(w, "dem_replay_open", demi_replay_rows, &d, "",
                         "start from DEM_REPLAY_DESC and set only what differs")) return 0;
@@ -473,9 +475,12 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
         if (strlen(d.number) == (size_t)n && !strncmp(name, d.number, (size_t)n)) break;
         real = i + 1;
     }
-    if (d.number && !d.number_fn && (real < 0 || real >= w->bodies.real_count)) {
+    group = d.number_fn ? -1 : demi_group_find(w, d.number);
+    if (group >= 0) real = -1;
+    if (d.number && !d.number_fn && group < 0 && (real < 0 || real >= w->bodies.real_count)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
-                  "desc.body_reals does not name; name it there, or give number_fn", d.number);
+                  "neither desc.body_reals nor desc.groups names; name it there, or give "
+                  "number_fn", d.number);
         return 0;
     }
     r = (dem_replay *)demi_alloc(w, 1, sizeof *r);
@@ -483,6 +488,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     r->world = w;
     r->desc = d;
     r->real = real;
+    r->group = group;
     if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
     r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
@@ -490,7 +496,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (real >= 0) {
         const char *name = demi_name(w->desc.body_reals, real, &n);
         snprintf(r->number, sizeof r->number, "%.*s", n, name);
-    } else if (d.number_fn)
+    } else if (d.number_fn || group >= 0)
         snprintf(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
     r->due = -1;

@@ -62,6 +62,9 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
             "digits and _, separated by one space, such as \"temperature charge\"; null means none";
+    if (demi_names(d->groups, DEM_GROUPS) < 0)
+        return "dem_world_create: groups must be at most 32 words of at most 23 letters, digits "
+            "and _, separated by one space, such as \"coarse tracer\"; null means none";
     if (demi_names(d->law_memory_names, d->law_memory) < 0)
         return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
             "letters, digits and _, separated by one space; null means memory0, memory1, ...";

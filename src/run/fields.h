@@ -127,10 +127,11 @@ static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const 
                 demi_image_put(g, image, block, n, value);
             }
 }
-/* True if the field includes body i, by material and radius. */
+/* True if the field includes body i, by group, material and radius. */
 static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
     const dem_real r = w->bodies.pos[4*i + 3];
-    return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
+    return demi_in_group(w, d->group, i) &&
+           (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
            (!(d->radius_max > 0) || r <= d->radius_max);
 }
 /* Adds grain i: volume, mass, momentum and number; with desc.stress the flux m v v. */
@@ -244,7 +245,8 @@ static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, '
     DEMI_FIELD(start, 'd', DEMI_FROM, "s", 0), DEMI_FIELD(end, 'd', DEMI_ANY, "s", 0),
     DEMI_FIELD(interval, 'd', DEMI_FROM, "s", 0), DEMI_ROW(dem_field_desc, material, 'i'),
     DEMI_FIELD(radius_min, 'r', DEMI_FROM, "m", 0), DEMI_FIELD(radius_max, 'r', DEMI_FROM, "m", 1),
-    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0), DEMI_ROW_END};
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0),
+    DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
@@ -259,7 +261,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
-    if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
+    if (demi_group_check(w, "dem_field_add", d->group, 0) != DEM_OK ||
+        (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK))
         return id;
     memset(&field, 0, sizeof field);
     field.used = 1;

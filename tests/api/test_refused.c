@@ -71,7 +71,7 @@ static int32_t take_id(refuser *r, int at_, const char *name) {
     return is_bad(r, at_, 5, name) ? none[r->kind] : 1;
 }
 #define TAKE_ID(type) static type take_##type(refuser *r, int at_, const char *name) { type id; id.id = take_id(r, at_, name); return id; }
-TAKE_ID(dem_material) TAKE_ID(dem_shape) TAKE_ID(dem_wall) TAKE_ID(dem_joint) TAKE_ID(dem_feed) TAKE_ID(dem_outlet) TAKE_ID(dem_field) TAKE_ID(dem_output)
+TAKE_ID(dem_material) TAKE_ID(dem_shape) TAKE_ID(dem_wall) TAKE_ID(dem_joint) TAKE_ID(dem_feed) TAKE_ID(dem_outlet) TAKE_ID(dem_field) TAKE_ID(dem_output) TAKE_ID(dem_group)
 static dem_body take_dem_body(refuser *r, int at_, const char *name) {
     dem_body id = dem_body_id_get(r->world, 0);
     if (!is_bad(r, at_, 4, name)) return id;
@@ -121,6 +121,7 @@ static dem_material_desc good_dem_material_desc(refuser *r) { dem_material_desc 
 static dem_pair good_dem_pair(refuser *r) { dem_pair p; dem_material m; m.id = 1; dem_pair_get(r->world, m, m, &p); return p; }
 static dem_sizes good_dem_sizes(refuser *r) { dem_sizes d; (void)r; memset(&d, 0, sizeof d); d.min = DEM_R(1e-3); d.max = DEM_R(2e-3); return d; }
 static dem_region good_dem_region(refuser *r) { dem_region g = DEM_REGION; (void)r; g.box = box_of(0.02, 0.02, 0.02, 0.04, 0.04, 0.04); return g; }
+static dem_selection good_dem_selection(refuser *r) { dem_selection s = DEM_SELECTION; (void)r; s.radius_min = 1000; return s; }
 static dem_body_state good_dem_body_state(refuser *r) { dem_body_state s; dem_body_get(r->world, dem_body_id_get(r->world, 0), &s); return s; }
 static dem_cluster_desc good_dem_cluster_desc(refuser *r) { dem_cluster_desc d; (void)r; memset(&d, 0, sizeof d); d.count = 2; d.positions = corner_reals; d.radius = DEM_R(0.2); return d; }
 static dem_mesh good_dem_mesh(refuser *r) { static int32_t t[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}; static dem_real v[12]; dem_mesh m; (void)r; memcpy(v, corner_reals, sizeof v); memset(&m, 0, sizeof m); m.vertex_count = 4; m.triangle_count = 4; m.vertices = v; m.triangles = t; return m; }
@@ -181,6 +182,7 @@ static dem_world *refused_world(int impulses) {
     desc.gravity.z = DEM_R(-9.81);
     desc.threads = 1;
     desc.body_reals = "charge";
+    desc.groups = "one";
     desc.orientations = 1;                      /* of spheres: a joint asks for them */
     desc.dt = impulses ? DEM_R(1e-4) : DEM_R(1e-5);
     if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
