@@ -2054,7 +2054,7 @@ DEM_API int dem_bodies_fixed_set(dem_world *world, const dem_selection *selectio
 DEM_API int dem_bodies_remove(dem_world *world, const dem_selection *selection);
 /* Sums and means over selected bodies; zeros if there are none. */
 typedef struct dem_bodies_means {
-    int count;
+    int bodies;                    /* their number */
     double mass;                   /* kg, sum */
     double centre[3];              /* m, of mass; positions in the periodic box */
     double velocity[3];            /* m/s, of the centre of mass */
@@ -26079,7 +26079,7 @@ DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_select
         out->spin[k] /= count;
     }
     if (count) out->radius /= count;
-    out->count = count;
+    out->bodies = count;
     demi_free(w, marks);
     return DEM_OK;
 }

@@ -499,7 +499,7 @@ class Writer:
                 size = (self.number(a.dim) if a.dim else "capacity" if capacity else "count" if any(x.name == "count" for x in args) else
                         "class_count" if any(x.name == "class_count" for x in args) else "%s._context.reals" % world)
                 if capacity:
-                    pre.append("capacity = %s" % ("64" if "finding" in kind else "%s._number(_lib.%s(%s, None, 0))" % (world, f.name, "%s._at" % world)))
+                    pre.append("capacity = %s" % ("64" if "finding" in kind else "%s._number(_lib.%s(%s, None, 0))" % (world, f.name, ", ".join(pass_on))))
                 whole = item if width == 1 else "(%s*%d)" % (item, width)
                 pre.append("%s = (%s*max(%s, 1))()" % (a.name, whole, size))
                 pass_on.append("ctypes.cast(%s, ctypes.POINTER(%s))" % (a.name, item))

@@ -486,7 +486,7 @@ DEM_API int dem_bodies_fixed_set(dem_world *world, const dem_selection *selectio
 DEM_API int dem_bodies_remove(dem_world *world, const dem_selection *selection);
 /* Sums and means over selected bodies; zeros if there are none. */
 typedef struct dem_bodies_means {
-    int count;
+    int bodies;                    /* their number */
     double mass;                   /* kg, sum */
     double centre[3];              /* m, of mass; positions in the periodic box */
     double velocity[3];            /* m/s, of the centre of mass */

@@ -214,7 +214,7 @@ DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_select
         out->spin[k] /= count;
     }
     if (count) out->radius /= count;
-    out->count = count;
+    out->bodies = count;
     demi_free(w, marks);
     return DEM_OK;
 }
