@@ -102,6 +102,7 @@
        >>write             writing VTP, VTK, XYZ and CSV
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
+       >>changed           reading a checkpoint into a world that differs
        >>output            files and calls on a schedule
      report/ - what a scene costs, what is wrong with it, what it did
        >>check             likely mistakes in a scene, found before it runs
@@ -3247,6 +3248,19 @@ DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
    precision; a file of another scene, for which the message names the first field that differs,
    with both values. */
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
+/* The same for a world that differs from the one that wrote the file. allowed: words, each the name
+   of a field of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all
+   but density) or "pairs"; "" allows nothing. Fields named there keep the values of this world.
+   Everything else must agree: domain, boundary, planar, thickness, response, names, shapes, walls,
+   fields, feeds and outlets always. Contact histories are converted where a law is the same, and
+   begin at 0 if a law is user-defined and `law`, `law_memory` or the like differs. A ledger that
+   the file lacks begins with the present kinetic energy as `inserted` and the present elastic
+   energy as `growth`. */
+DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *path,
+                                               const char *allowed);
+/* Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as
+   "dt: 1e-05 there, 2e-05 here", or "". */
+DEM_API const char *dem_checkpoint_changes_get(const dem_world *world);
 
 /* ---- outputs on a schedule ---- */
 
@@ -4651,6 +4665,7 @@ struct dem_world {
     char refusal[512];             /* message of the first failed call that builds the scene */
     int refused;                   /* failed calls of that kind since dem_world_error_get */
     char refused_calls[24][32];    /* their names */
+    char changes[512];             /* >>changed: what differed in the last checkpoint */
     size_t bytes;                  /* allocated */
     struct demi_block *chains[DEMI_CHAINS];
     /* numbers without pointers, saved and copied whole */
@@ -34966,6 +34981,225 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_free(w, bytes);
     return result;
 }
+
+/* ---------------------------------------------------------------------------------------------
+   >>changed
+   dem_checkpoint_read_changed: a checkpoint read into a world whose desc, materials or pairs of
+   materials differ where the caller allows it. The world takes on the values of the file while the
+   file is read, so that all checks of a restart hold. Then it gets its own values back, as if they
+   had been changed between two steps: lists are built again, contact histories are converted to the
+   laws in force, and arrays that the world needs and the file lacks begin empty.
+   Owns w->changes.
+   --------------------------------------------------------------------------------------------- */
+
+/* Fields of a dem_world_desc that may not differ: they decide what the numbers of a body mean. */
+static const char demi_changes_never[] = " domain boundary planar thickness response body_reals "
+    "law_memory_names groups ";
+/* What a restart may change, and what it has changed. */
+typedef struct demi_changes {
+    const char *allowed;           /* words */
+    dem_world_desc desc, asked;    /* of the world */
+    dem_material_desc *materials;  /* null unless allowed */
+    demi_pair *pairs;              /* likewise */
+    char said[512];
+    int laws;                      /* 1: user-defined laws or their history differ */
+} demi_changes;
+
+/* True if the n characters at `word` are one of the words. */
+static int demi_word_in(const char *words, const char *word, size_t n) {
+    int k, length;
+    const char *at;
+    for (k = 0; (at = demi_name(words, k, &length)) != 0; k++)
+        if ((size_t)length == n && !strncmp(at, word, n)) return 1;
+    return 0;
+}
+/* True if a field of the world desc may differ at all. */
+static int demi_may_change(const demi_field_row *r) {
+    return !(r->how & DEMI_FREE) && r->type != 't' &&
+        !demi_word_in(demi_changes_never, r->name, strlen(r->name));
+}
+/* Fails if a word is neither the name of a field that may differ nor "materials" nor "pairs". */
+static dem_result demi_changes_check(dem_world *w, const char *allowed) {
+    const demi_field_row *r;
+    int k, n;
+    const char *at;
+    for (k = 0; (at = demi_name(allowed, k, &n)) != 0; k++) {
+        if (demi_word_in("materials pairs", at, (size_t)n)) continue;
+        for (r = demi_world_desc_rows; r->name && !(strlen(r->name) == (size_t)n &&
+             !strncmp(r->name, at, (size_t)n) && demi_may_change(r)); r++) continue;
+        if (r->name) continue;
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_read_changed: \"%.*s\" is not a "
+                         "field of dem_world_desc that may differ, and not \"materials\" or "
+                         "\"pairs\"; domain, boundary, planar, thickness, response and names must "
+                         "agree: create the world with those of the file", DEMI_MIN(n, 60), at);
+    }
+    return DEM_OK;
+}
+/* Adds "name: A there, B here" to what has changed. */
+static void demi_changes_say(demi_changes *c, const demi_field_row *r, const char *there,
+                             const char *here, const char *of) {
+    const size_t n = strlen(c->said), item = demi_row_item(r), count = r->size/item;
+    char a[48], b[48];
+    size_t k = 0;
+    while (k + 1 < count && !memcmp(there + item*k, here + item*k, item)) k++;
+    demi_row_print(r, there, k, 6, a, sizeof a);
+    demi_row_print(r, here, k, 6, b, sizeof b);
+    snprintf(c->said + n, sizeof c->said - n, "%s%s%s: %s there, %s here", n ? "; " : "", r->name,
+             of, a, b);
+}
+/* Gives a field the value of the file. A function becomes one that is never called, or null. */
+static void demi_change_put(const demi_field_row *r, void *item, const char *there) {
+    void (*fn)(const dem_contact *, dem_real *, dem_contact_force *) = dem_law_hertz;
+    int32_t set;
+    if (r->type != 'p') { memcpy((char *)item + r->offset, there, r->size); return; }
+    memcpy(&set, there, sizeof set);
+    if (set) memcpy((char *)item + r->offset, &fn, sizeof fn);
+    else memset((char *)item + r->offset, 0, sizeof fn);
+}
+/* Compares the descs, materials and pairs in the file with those of the world. Where they differ
+   and may, the world takes the value of the file. What may not differ stays, and reading fails. */
+static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
+    int32_t counts[DEMI_PARTS];
+    char here[DEMI_ROW_MOST], there[DEMI_ROW_MOST], of[48];
+    const demi_field_row *r;
+    int part, i;
+    demi_scene_counts(w, counts);
+    for (part = 0; part <= DEMI_PART_PAIRS; part++)
+        for (i = 0; i < counts[part]; i++)
+            for (r = demi_scene_parts[part].rows; r->name; r++) {
+                const int n = w->material_count;
+                const int may = part == 0 ? demi_may_change(r) &&
+                    demi_word_in(c->allowed, r->name, strlen(r->name))
+                    : part == 1 ? c->materials && strcmp(r->name, "density") : c->pairs != 0;
+                void *item = part == 0 ? (void *)&w->asked : part == 1 ? (void *)&w->materials[i]
+                    : (void *)&w->pairs[i/n*DEMI_MATERIALS + i%n].given;
+                if (r->how & DEMI_FREE) continue;
+                demi_row_value(r, item, here);
+                demi_visit(s, there, r->size);
+                if (s->cut || !may || !memcmp(here, there, r->size)) continue;
+                snprintf(of, sizeof of, part == 0 ? "" : part == 1 ? " of material %d"
+                         : " of materials %d and %d", part == 1 ? i + 1 : i/n + 1, i%n + 1);
+                if (part < 2 || i/n <= i%n) demi_changes_say(c, r, there, here, of);
+                demi_change_put(r, item, there);
+                if (part) continue;
+                demi_change_put(r, &w->desc, there);
+                c->laws |= !strncmp(r->name, "law", 3) && (r->type == 'p' || r->type == 'i');
+            }
+}
+/* Gives the world its own values back. */
+static void demi_changes_back(dem_world *w, const demi_changes *c) {
+    const demi_field_row *r;
+    for (r = demi_world_desc_rows; r->name; r++) {
+        const size_t size = r->type == 'p' && !(r->how & DEMI_FREE) ? sizeof(void (*)(void))
+            : r->size;
+        if (!demi_may_change(r) || !demi_word_in(c->allowed, r->name, strlen(r->name))) continue;
+        memcpy((char *)&w->desc + r->offset, (const char *)&c->desc + r->offset, size);
+        memcpy((char *)&w->asked + r->offset, (const char *)&c->asked + r->offset, size);
+    }
+    w->desc.integrator = c->desc.integrator;    /* of impulses, chosen when the world was created */
+    if (c->materials) memcpy(w->materials, c->materials, sizeof w->materials);
+    if (c->pairs)
+        memcpy(w->pairs, c->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof *w->pairs);
+}
+/* Allocates the arrays of bodies that the world needs beside those of the file, zeros. Returns 0 if
+   memory ran out. */
+static int demi_changes_arrays(dem_world *w) {
+    const int backward = demi_integrator_of(w)->backward;
+    const int booked = w->desc.ledger && demi_integrator_of(w)->predicts;
+    const size_t room = (size_t)w->bodies.capacity;
+    const int sets = (backward && !w->bodies.backward) << DEMI_BACK |
+        (backward && !w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
+        (booked && !w->bodies.booked) << DEMI_BOOKED;
+    int k;
+    if (w->asked.orientations && !demi_orient_begin(w)) return 0;
+    if (sets && !demi_bodies_room(w, sets, 0, room)) return 0;
+    for (k = 0; k < DEMI_BODY_ARRAYS && room; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (sets >> a->who & 1) memset(demi_data(w, a), 0, room*demi_item(w, a));
+    }
+    w->bodies.backward = backward;
+    w->bodies.booked = booked;
+    return 1;
+}
+/* Continues with the world's own values after a restart with those of the file. ledger: 1 if the
+   file has an account of energy. */
+static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int ledger) {
+    int d, i, j;
+    double kinetic, rotational;
+    memcpy(w->changes, c->said, sizeof w->changes);
+    if (!demi_name(c->allowed, 0, &d)) return DEM_OK;
+    if (!demi_list_drop(w)) return DEM_ERROR_MEMORY;
+    demi_changes_back(w, c);
+    if (!demi_changes_arrays(w)) return DEM_ERROR_MEMORY;
+    for (i = 0; i < w->material_count; i++)     /* damping depends on desc.tension */
+        for (j = i; j < w->material_count; j++) {
+            const dem_pair pair = w->pairs[i*DEMI_MATERIALS + j].given;
+            demi_pair_put(w, i, j, &pair);
+        }
+    if (c->laws) w->filed.count = 0;            /* they mean something else */
+    for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
+    if (c->pairs) demi_surfaces_outdated(w);
+    if (w->desc.ledger && !ledger) {            /* its account begins now */
+        demi_kinetic(w, &kinetic, &rotational);
+        memset(w->booked.energy, 0, sizeof w->booked.energy);
+        w->booked.inserted = kinetic + rotational;
+        w->booked.removed = w->booked.throughput = 0;
+        w->stage.grown = 1;
+    }
+    w->lll_valid = 0;
+    demi_pairs_changed(w);
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
+                                               const char *allowed) {
+    const char *call = "dem_checkpoint_read_changed";
+    const size_t pairs = (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair);
+    if (demi_null(w, call, allowed, "allowed")) return DEM_ERROR_ARGUMENT;
+    demi_checkpoint_head head;
+    demi_changes c;
+    demi_stream s;
+    char *bytes = 0;
+    size_t size = 0;
+    int ledger;
+    dem_result result = demi_changes_check(w, allowed);
+    if (result == DEM_OK) result = demi_load(w, call, path, &bytes, &size);
+    if (result == DEM_OK) result = demi_checkpoint_check(w, path, bytes, size, &head);
+    memset(&c, 0, sizeof c);
+    memset(&s, 0, sizeof s);
+    c.allowed = allowed;
+    c.desc = w->desc;
+    c.asked = w->asked;
+    if (demi_word_in(allowed, "materials", 9))
+        c.materials = (dem_material_desc *)demi_alloc(w, 1, sizeof w->materials);
+    if (demi_word_in(allowed, "pairs", 5)) c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
+    if (result == DEM_OK && ((demi_word_in(allowed, "materials", 9) && !c.materials) ||
+                             (demi_word_in(allowed, "pairs", 5) && !c.pairs)))
+        result = demi_no_memory(w, call);
+    if (result == DEM_OK) {
+        if (c.materials) memcpy(c.materials, w->materials, sizeof w->materials);
+        if (c.pairs) memcpy(c.pairs, w->pairs, pairs);
+        s.from = bytes + sizeof head;
+        s.left = (size_t)head.body_size;
+        demi_changes_take(w, &c, &s);
+        w->bodies.backward = demi_integrator_of(w)->backward;
+        w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
+        ledger = w->desc.ledger;
+        result = demi_checkpoint_parse(w, path, bytes, size);
+        if (result == DEM_OK) result = demi_changes_apply(w, &c, ledger);
+        else {
+            demi_changes_back(w, &c);
+            w->bodies.backward = demi_integrator_of(w)->backward;
+            w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
+        }
+        if (result == DEM_ERROR_MEMORY) demi_no_memory(w, call);
+    }
+    demi_free(w, c.materials);
+    demi_free(w, c.pairs);
+    demi_free(w, bytes);
+    return result;
+}
+DEM_API const char *dem_checkpoint_changes_get(const dem_world *w) { return w ? w->changes : ""; }
 
 /* ---------------------------------------------------------------------------------------------
    >>output

@@ -102,6 +102,7 @@
        >>write             writing VTP, VTK, XYZ and CSV
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
+       >>changed           reading a checkpoint into a world that differs
        >>output            files and calls on a schedule
      report/ - what a scene costs, what is wrong with it, what it did
        >>check             likely mistakes in a scene, found before it runs
@@ -256,6 +257,7 @@
 #include "file/write.h"
 #include "file/checkpoint.h"
 #include "file/restore.h"
+#include "file/changed.h"
 #include "file/output.h"
 #include "report/check.h"
 #include "report/trials.h"

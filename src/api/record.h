@@ -229,6 +229,19 @@ DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
    precision; a file of another scene, for which the message names the first field that differs,
    with both values. */
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
+/* The same for a world that differs from the one that wrote the file. allowed: words, each the name
+   of a field of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all
+   but density) or "pairs"; "" allows nothing. Fields named there keep the values of this world.
+   Everything else must agree: domain, boundary, planar, thickness, response, names, shapes, walls,
+   fields, feeds and outlets always. Contact histories are converted where a law is the same, and
+   begin at 0 if a law is user-defined and `law`, `law_memory` or the like differs. A ledger that
+   the file lacks begins with the present kinetic energy as `inserted` and the present elastic
+   energy as `growth`. */
+DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *path,
+                                               const char *allowed);
+/* Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as
+   "dt: 1e-05 there, 2e-05 here", or "". */
+DEM_API const char *dem_checkpoint_changes_get(const dem_world *world);
 
 /* ---- outputs on a schedule ---- */
 

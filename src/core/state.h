@@ -305,6 +305,7 @@ struct dem_world {
     char refusal[512];             /* message of the first failed call that builds the scene */
     int refused;                   /* failed calls of that kind since dem_world_error_get */
     char refused_calls[24][32];    /* their names */
+    char changes[512];             /* >>changed: what differed in the last checkpoint */
     size_t bytes;                  /* allocated */
     struct demi_block *chains[DEMI_CHAINS];
     /* numbers without pointers, saved and copied whole */

@@ -540,6 +540,8 @@ def _():
     first.run(0.05)
     first.checkpoint_write(path)
     first.run(0.05)
+    second.checkpoint_read_changed(path, "")
+    same(second.checkpoint_changes, "")
     second.checkpoint_read(path)
     second.run(0.05)
     same(second.hash, first.hash)
