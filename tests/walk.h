@@ -204,6 +204,10 @@ static inline void walk_reals(dem_real *reals, const dem_real *rates, const dem_
     (void)rates; (void)b; (void)id; (void)time; (void)user;
     reals[0] += dt;
 }
+static inline dem_real walk_growth(const dem_body_state *b, dem_body id, double time, void *user) {
+    (void)b; (void)time; (void)user;
+    return (dem_real)(1e-5*(id.slot%2));        /* m/s */
+}
 static inline void walk_motion(double time, dem_pose *pose, void *user) { (void)time; (void)pose; (void)user; }
 static inline int walk_inside(dem_vec3 x, dem_real radius, void *user) { (void)radius; (void)user; return x.x > 0; }
 static dem_motion_row walk_rows[8], walk_rows_other[8];       /* the walk changes their count, too */
@@ -217,6 +221,7 @@ static inline int walk_pointer(const walk_field *f, void *out) {
     if (!strcmp(f->of, #name)) { name p = value; memcpy(out, &p, sizeof p); return 1; }
     WALK_FUNCTION(dem_law_fn, walk_law) WALK_FUNCTION(dem_law_rate_fn, walk_rate) WALK_FUNCTION(dem_force_fn, walk_force)
     WALK_FUNCTION(dem_body_force_fn, walk_body_force) WALK_FUNCTION(dem_reals_fn, walk_reals)
+    WALK_FUNCTION(dem_growth_fn, walk_growth)
     WALK_FUNCTION(dem_motion_fn, walk_motion) WALK_FUNCTION(dem_inside_fn, walk_inside)
     WALK_TO("char", const char, "b a") WALK_TO("dem_motion_row", const dem_motion_row, walk_rows_other)
     WALK_TO("dem_sizes", const dem_sizes, &walk_sizes[1]) WALK_TO("dem_real", const dem_real, walk_centres_other)
@@ -276,6 +281,7 @@ static inline walk_scene walk_begin(int kind) {
     s.world.domain = dem_box_make(DEM_R(-0.1), DEM_R(-0.1), DEM_R(-0.1), DEM_R(0.1), DEM_R(0.1), DEM_R(0.1));
     s.world.dt = kind == WALK_IMPULSES ? DEM_R(1e-4) : DEM_R(1e-6);
     s.world.body_reals = "heat";
+    s.world.groups = "one two";
     s.world.ledger = 1;
     if (kind == WALK_LAW) { s.world.law = walk_law; s.world.law_who = 1; s.world.law_memory = 6; s.world.law_stiffness = 1000; s.world.law_memory_names = "a b c d e f"; }
     if (kind == WALK_HYSTERETIC) s.world.normal_law = DEM_NORMAL_HYSTERETIC;

@@ -521,6 +521,7 @@ static dem_world *kept_world(int count) {
     desc.ledger = 1;                            /* what predictions fell short by */
     desc.dt = DEM_R(1e-6);
     desc.body_reals = "a b c d e f";
+    desc.groups = "a b c";
     world = dem_world_create(&desc);
     stuff = scene_material(world, 1e7, 0.5, 0.3, 0);
     egg = dem_shape_ellipsoid_add(world, at(1, 2, 3));
