@@ -35077,8 +35077,10 @@ static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
                 demi_row_value(r, item, here);
                 demi_visit(s, there, r->size);
                 if (s->cut || !may || !memcmp(here, there, r->size)) continue;
-                snprintf(of, sizeof of, part == 0 ? "" : part == 1 ? " of material %d"
-                         : " of materials %d and %d", part == 1 ? i + 1 : i/n + 1, i%n + 1);
+                *of = 0;
+                if (part == 1) snprintf(of, sizeof of, " of material %d", i + 1);
+                if (part == 2)
+                    snprintf(of, sizeof of, " of materials %d and %d", i/n + 1, i%n + 1);
                 if (part < 2 || i/n <= i%n) demi_changes_say(c, r, there, here, of);
                 demi_change_put(r, item, there);
                 if (part) continue;
@@ -40349,7 +40351,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (group >= 0) real = -1;
     if (d.number && !d.number_fn && group < 0 && (real < 0 || real >= w->bodies.real_count)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
-                  "neither desc.body_reals nor desc.groups names; name it there, or give "
+                  "desc.body_reals does not name, nor desc.groups; name it there, or give "
                   "number_fn", d.number);
         return 0;
     }

@@ -93,8 +93,10 @@ static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
                 demi_row_value(r, item, here);
                 demi_visit(s, there, r->size);
                 if (s->cut || !may || !memcmp(here, there, r->size)) continue;
-                snprintf(of, sizeof of, part == 0 ? "" : part == 1 ? " of material %d"
-                         : " of materials %d and %d", part == 1 ? i + 1 : i/n + 1, i%n + 1);
+                *of = 0;
+                if (part == 1) snprintf(of, sizeof of, " of material %d", i + 1);
+                if (part == 2)
+                    snprintf(of, sizeof of, " of materials %d and %d", i/n + 1, i%n + 1);
                 if (part < 2 || i/n <= i%n) demi_changes_say(c, r, there, here, of);
                 demi_change_put(r, item, there);
                 if (part) continue;

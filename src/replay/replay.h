@@ -479,7 +479,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (group >= 0) real = -1;
     if (d.number && !d.number_fn && group < 0 && (real < 0 || real >= w->bodies.real_count)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
-                  "neither desc.body_reals nor desc.groups names; name it there, or give "
+                  "desc.body_reals does not name, nor desc.groups; name it there, or give "
                   "number_fn", d.number);
         return 0;
     }
