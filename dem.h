@@ -222,6 +222,8 @@
                                 (the other reproduces [MIL] only)
        law, law_...             a user-defined law: section 5          built-in laws
        body_reals, ...          user-defined numbers on bodies, walls  none
+       growth, ...              bodies that change their size          constant radii
+       groups                   named sets of bodies                   none
        force, body_force        force fields                           none
        integrator               time integration with springs          velocity Verlet
        dt                       time step, s                           chosen; impulses: required
@@ -397,6 +399,8 @@
        dem_contacts_get, dem_contacts_each   contacts with forces; with their contact history
        dem_wall_loads_get                    force, torque, power, work on a wall
        dem_totals_get, dem_temperature_get   mass, momentum, energy; granular temperature
+       dem_bodies_select,                    bodies by group, material, size or region: their ids;
+         dem_bodies_means_get                their mass, velocity, energy
        dem_field_add, dem_field_get,         solid fraction, velocity, stress on a grid; all cells,
          dem_field_cell_get                  or one
        dem_repose_heap_get, _drum_get        angle of repose
@@ -2035,8 +2039,8 @@ static const dem_selection DEM_SELECTION_ZERO = DEM_ZERO;
 /* Returns the group with this name in desc.groups. */
 DEM_API dem_group dem_group_get(const dem_world *world, const char *name);
 /* Writes the ids of the selected bodies, in the order of their slots, at most `capacity`
-   of them. Returns how many are selected, -1 on error. `out` or null, to count them. This and the
-   next four cannot be used inside steps, except from outputs. */
+   of them. Returns how many are selected, -1 on error. `out` or null, to count them. Selections
+   are made between steps: laws and other functions that a step calls cannot make them. */
 DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *selection, dem_body *out,
                               int capacity);
 /* Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be
@@ -25950,6 +25954,13 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
     demi_region g;
     int i;
     *count = 0;
+    if (w->look.calling.who && w->look.calling.within) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls within a step, "
+                  "possibly on several threads, and a selection needs memory of the world; make "
+                  "this call between two steps, for example in an output of kind "
+                  "DEM_OUTPUT_CALL", call, w->look.calling.who);
+        return 0;
+    }
     if (demi_selection_check(w, call, s, &g) != DEM_OK) return 0;
     marks = (unsigned char *)demi_alloc(w, (size_t)w->bodies.count + 1, 1);
     if (!marks) { demi_no_memory(w, call); return 0; }

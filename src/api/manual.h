@@ -101,6 +101,8 @@
                                 (the other reproduces [MIL] only)
        law, law_...             a user-defined law: section 5          built-in laws
        body_reals, ...          user-defined numbers on bodies, walls  none
+       growth, ...              bodies that change their size          constant radii
+       groups                   named sets of bodies                   none
        force, body_force        force fields                           none
        integrator               time integration with springs          velocity Verlet
        dt                       time step, s                           chosen; impulses: required
@@ -276,6 +278,8 @@
        dem_contacts_get, dem_contacts_each   contacts with forces; with their contact history
        dem_wall_loads_get                    force, torque, power, work on a wall
        dem_totals_get, dem_temperature_get   mass, momentum, energy; granular temperature
+       dem_bodies_select,                    bodies by group, material, size or region: their ids;
+         dem_bodies_means_get                their mass, velocity, energy
        dem_field_add, dem_field_get,         solid fraction, velocity, stress on a grid; all cells,
          dem_field_cell_get                  or one
        dem_repose_heap_get, _drum_get        angle of repose

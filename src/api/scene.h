@@ -466,8 +466,8 @@ static const dem_selection DEM_SELECTION_ZERO = DEM_ZERO;
 /* Returns the group with this name in desc.groups. */
 DEM_API dem_group dem_group_get(const dem_world *world, const char *name);
 /* Writes the ids of the selected bodies, in the order of their slots, at most `capacity`
-   of them. Returns how many are selected, -1 on error. `out` or null, to count them. This and the
-   next four cannot be used inside steps, except from outputs. */
+   of them. Returns how many are selected, -1 on error. `out` or null, to count them. Selections
+   are made between steps: laws and other functions that a step calls cannot make them. */
 DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *selection, dem_body *out,
                               int capacity);
 /* Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be

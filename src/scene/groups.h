@@ -70,6 +70,13 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
     demi_region g;
     int i;
     *count = 0;
+    if (w->look.calling.who && w->look.calling.within) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls within a step, "
+                  "possibly on several threads, and a selection needs memory of the world; make "
+                  "this call between two steps, for example in an output of kind "
+                  "DEM_OUTPUT_CALL", call, w->look.calling.who);
+        return 0;
+    }
     if (demi_selection_check(w, call, s, &g) != DEM_OK) return 0;
     marks = (unsigned char *)demi_alloc(w, (size_t)w->bodies.count + 1, 1);
     if (!marks) { demi_no_memory(w, call); return 0; }

@@ -61,6 +61,14 @@ static int same(const dem_world *world, const dem_body *who, int n) {
     return right == n;
 }
 
+static int asked;
+static dem_vec3 asks(dem_vec3 x, dem_vec3 v, dem_real r, dem_real m, double time, void *user) {
+    dem_selection s = DEM_SELECTION;
+    (void)x; (void)v; (void)r; (void)m; (void)time;
+    asked = dem_bodies_select(*(dem_world **)user, &s, 0, 0);
+    return at(0, 0, 0);
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("members stay members when bodies are sorted, saved, restored, dealt to slabs and collected") {
@@ -252,6 +260,17 @@ int main(int argc, char **argv) {
         s.group.id = 0;
         s.count = 1;
         CHECK_EQ(dem_bodies_select(world, &s, 0, 0), -1);
+        s.count = 0;
+        dem_world_destroy(world);
+        desc.force = asks;
+        desc.force_user = &world;
+        desc.threads = 1;
+        world = dem_world_create(&desc);
+        dem_sphere_add(world, scene_material(world, 1e7, 0.5, 0, 0), DEM_R(1e-3), at(0, 0, 0));
+        CHECK_EQ(dem_world_step(world, 2), DEM_OK);
+        CHECK_EQ(asked, -1);
+        CHECK_STR(dem_world_error_get(world), "dem_bodies_select: called from a function that dem_world_step calls");
+        CHECK_EQ(dem_bodies_select(world, &s, 0, 0), 1);
         dem_world_destroy(world);
         desc.groups = "a-b";
         CHECK(dem_world_create(&desc) == 0);
