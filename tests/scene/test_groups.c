@@ -172,7 +172,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_bodies_velocity_set(world, &s, at(0.1, 0, 0.2), at(0, 3, 0)), GRAINS/3);
         CHECK_EQ(dem_bodies_means_get(world, &s, &m), DEM_OK);
         CHECK_EQ(m.bodies, GRAINS/3);
-        CHECK_REL(m.mass, 2500*4/3.0*3.14159265358979*3.375e-9*GRAINS/3, 1e-6);
+        CHECK_REL(m.mass, 2500*4/3.0*3.14159265358979*3.375e-9*m.bodies, 1e-6);
         CHECK_NEAR(m.velocity[0], 0.1, 1e-7);
         CHECK_NEAR(m.spin[1], 3, 1e-6);
         CHECK_NEAR(m.radius, 1.5e-3, 1e-9);
