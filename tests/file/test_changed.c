@@ -92,9 +92,10 @@ int main(int argc, char **argv) {
         must(fresh, dem_world_step(fresh, 200));
         l = dem_ledger_get(fresh);
         CHECK(l.inserted > 0 && l.growth > 0);
-        CHECK_NEAR(l.residual, 0, 2e-3*l.throughput);
+        CHECK_NEAR(l.residual, 0, (sizeof(dem_real) == 8 ? 2e-3 : 0.1)*l.throughput);
         must(old, dem_world_step(old, 100));
-        CHECK_NEAR(apart(old, fresh), 0, 1e-3);             /* the same motion, by another scheme */
+        /* the same motion, by another scheme; in single precision its velocities are differences of positions */
+        CHECK_NEAR(apart(old, fresh), 0, sizeof(dem_real) == 8 ? 1e-3 : 0.05);
         dem_world_destroy(fresh);
         dem_world_destroy(old);
     }
