@@ -93,6 +93,7 @@
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
+       >>mixing            mixing and segregation of two components
      file/ - reading and writing
        >>outlines          polygons with many corners cut into triangles
        >>read              reading meshes and profiles
@@ -100,6 +101,7 @@
        >>read-tables       reading grains: columns and arrays recognised by name
        >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
        >>write             writing VTP, VTK, XYZ and CSV
+       >>tables            tables of bodies, contacts, fields and residence times (CSV)
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>changed           reading a checkpoint into a world that differs
@@ -562,10 +564,12 @@
                gradients for cones
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
+     [LAC54]   Lacey, J. Appl. Chem. 4 (1954) 257: mixing index
      [MAZ11]   Mazhar, Heyn & Negrut, Multibody Syst. Dyn. 26 (2011) 37: collisions by bins
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU (our copy has neither author nor year): laws by
                the step, meshes, segments
+     [MW47]    Mann & Whitney, Ann. Math. Stat. 18 (1947) 50: comparison of ranks
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PAI95]   Painleve, C. R. Acad. Sci. Paris 121 (1895) 112: a rod that friction jams
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
@@ -580,6 +584,7 @@
      [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
      [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025) 109524: law velocities at the full
                step
+     [WEL62]   Welford, Technometrics 4 (1962) 419: variances in one pass
      [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
 */
 
@@ -2512,6 +2517,7 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *world, dem_body body,
 
 /* ---- feed and outlets ---- */
 enum { DEM_CLASSES = 16 };         /* largest number of size classes */
+enum { DEM_RESIDENCE_BINS = 64 };  /* bins of the distribution of residence times */
 typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */
 typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
 
@@ -2576,6 +2582,9 @@ typedef struct dem_outlet_desc {
     dem_real radius[DEM_CLASSES];  /* m, ascending; a grain counts in the nearest class */
     dem_material material;         /* only grains of this material; id 0 means all */
     int keep;                      /* 1: grains stay and are only counted; at most 16 such */
+    /* s, >= 0: width of a bin of residence times, which run from the insertion of a grain (grains
+       that were there before: from dem_outlet_add) until the outlet counts it; 0: not measured */
+    double residence_bin;
 } dem_outlet_desc;
 static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
@@ -2591,6 +2600,11 @@ typedef struct dem_outlet_state {
     uint64_t back[DEM_CLASSES], held[DEM_CLASSES], back_total, held_total;
     double back_mass[DEM_CLASSES], held_mass[DEM_CLASSES];      /* kg */
     double back_total_mass, held_total_mass;                    /* kg */
+    /* residence_bin only: sums over the counted grains, per class, of their residence times, s, and
+       of the squares, s2: the mean of class k is residence[k]/count[k]. Grains per bin; the last
+       bin has all longer times. */
+    double residence[DEM_CLASSES], residence_square[DEM_CLASSES];
+    uint64_t residence_count[DEM_RESIDENCE_BINS];
 } dem_outlet_state;
 /* Adds an outlet. The wall that is its frame cannot be removed. */
 DEM_API dem_outlet dem_outlet_add(dem_world *world, const dem_outlet_desc *desc);
@@ -2959,6 +2973,8 @@ typedef struct dem_field_desc {
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
     dem_group group;          /* only members of this group; id 0 means all grains */
+    int variance;             /* 1: also variances of cells over the samples; not in slabs */
+    int bodies;               /* 1: also averages each grain (dem_body_means); one field may */
 } dem_field_desc;
 static const dem_field_desc DEM_FIELD_DESC_ZERO = DEM_ZERO;
 #define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO
@@ -2992,14 +3008,64 @@ typedef struct dem_field_cell {
        unless desc.stress is 1 */
     double stress[6];
     double coordination;      /* contacts per grain, with walls; 0 unless desc.stress is 1 */
+    /* Variances over the samples, of the values of the whole cell; 0 unless desc.variance is 1:
+       of grains, solid, density, (kg/m3)^2, and velocity, m2/s2, weighted by mass. The mean of n
+       independent samples has the standard error sqrt(variance/n). */
+    double grains_variance, solid_variance, density_variance, velocity_variance[3];
 } dem_field_cell;
+/* Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The
+   field chooses grains by material and radius only. */
+typedef struct dem_body_means {
+    uint64_t samples;         /* number of samples; 0: all others are 0 */
+    double velocity[3], velocity_variance[3];   /* m/s; m2/s2 */
+    double spin[3], spin_variance[3];           /* rad/s; (rad/s)^2 */
+    double force[3], force_variance[3];         /* N; N2: of contacts and fields, not of gravity */
+} dem_body_means;
 /* Writes pointers to the sums of a field to `data`. */
 DEM_API dem_result dem_field_get(const dem_world *world, dem_field field, dem_field_data *data);
 /* Computes the means of the cell (i, j, k), which count from 0. */
 DEM_API dem_result dem_field_cell_get(const dem_world *world, dem_field field, int i, int j, int k,
                                       dem_field_cell *cell);
-/* Sets the sums of a field and its number of samples to 0; the window of time stays. */
+/* Writes the averages of a grain to means. An error if no field averages bodies. */
+DEM_API dem_result dem_body_means_get(const dem_world *world, dem_body body,
+                                      dem_body_means *means);
+/* Sets the sums of a field, the averages of its bodies and its number of samples to 0; the window
+   of time stays. */
 DEM_API dem_result dem_field_reset(dem_world *world, dem_field field);
+
+/* Two components of a mixture: the grains of one material or of a range of radii, and all others.
+   Only grains in `box` that can move count. Begin with DEM_MIXING_DESC. */
+typedef struct dem_mixing_desc {
+    dem_box box;              /* m, required: what the cells divide */
+    int cells[3];             /* required, >= 1: along each axis; 10 to 30 grains per cell suit */
+    /* the component: a material (id 0: any), and (bounding) radii, m (max 0: any); not both open */
+    dem_material material;
+    dem_real radius_min, radius_max;
+    dem_vec3 centre, axis;    /* m, a point on an axis; its direction, of any length, 0: no axis */
+} dem_mixing_desc;
+static const dem_mixing_desc DEM_MIXING_DESC_ZERO = DEM_ZERO;
+#define DEM_MIXING_DESC DEM_MIXING_DESC_ZERO
+/* Mixing of two components (>>mixing has the formulas). Indices that are not defined are NaN: if
+   one component is absent, if all grains are in one cell, or if no cell has two grains. */
+typedef struct dem_mixing {
+    int grains, part;         /* grains in the box; of these, grains of the component */
+    int cells;                /* cells with at least one grain */
+    double fraction;          /* part/grains */
+    /* variance of the component's fraction over the cells, weighted by their grains; of cells that
+       hold one component each; of a random mixture */
+    double variance, variance_segregated, variance_random;
+    /* [LAC54]: 0 segregated, 1 random, above 1 more regular than random; Kramer's index, the same
+       with standard deviations instead of variances */
+    double lacey, kramer;
+    /* along x, y, z, and of the distance from the axis: 1 if the component is ahead of all others,
+       0 random, -1 if it is behind; random mixtures deviate by sqrt((N + 1)/(3 Na Nb)) */
+    double segregation[3], segregation_radial;
+    int contacts;             /* between grains in the box; -1: no list (dem_contacts_get) */
+    double contact_segregation;   /* 1: no contact between the components, 0 random; needs a list */
+} dem_mixing;
+/* Computes the mixing of two components from the present places of all grains. */
+DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *desc,
+                                  dem_mixing *mixing);
 
 /* The slope of a free surface, against gravity. */
 typedef struct dem_repose {
@@ -3186,6 +3252,23 @@ DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path);
    power (W), number of contacts. Writes the heading first if the file is new or empty. */
 DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path);
 
+/* The next four write tables (CSV): a line of names, then one line per item. `id` is as above. */
+
+/* Writes the bodies: id, number of the material, (bounding) radius, position, velocity, spin and
+   body_reals. If a field averages bodies (dem_field_desc.bodies), also the samples, and mean and
+   variance of velocity, spin and force. dem_grains_read reads such a table. */
+DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path);
+/* Writes the contacts: ids of a and b (-1: a wall), wall (0: none), point (m), normal (from a to
+   b), overlap (m) and force (N, on a). Computes forces first if the scene has changed. */
+DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path);
+/* Writes the cells of a field: centre (m) and what dem_field_cell_get returns. */
+DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path);
+/* Writes the distribution of the residence times of an outlet with residence_bin: for each bin up
+   to the last one in use its middle (s), its grains, their fraction per s, and the fraction of all
+   grains up to its end. */
+DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
+                                                  const char *path);
+
 /* ---- replay: a run in one HTML file ---- */
 
 /* A replay plays in any browser, without network or other files. It shows grains of every shape,
@@ -3280,7 +3363,11 @@ typedef enum dem_output_kind {
     DEM_OUTPUT_CONTACTS,     /* dem_contacts_vtp_write */
     DEM_OUTPUT_CHECKPOINT,   /* dem_checkpoint_write */
     DEM_OUTPUT_CSV,          /* appends the time and some values as a line to a CSV file */
-    DEM_OUTPUT_SURFACES      /* dem_surfaces_vtp_write */
+    DEM_OUTPUT_SURFACES,     /* dem_surfaces_vtp_write */
+    DEM_OUTPUT_WALLS,        /* dem_walls_vtp_write, from z0 to z1 */
+    DEM_OUTPUT_BODIES_CSV,   /* dem_bodies_csv_write */
+    DEM_OUTPUT_CONTACTS_CSV, /* dem_contacts_csv_write */
+    DEM_OUTPUT_FIELD_CSV     /* dem_field_csv_write, of `field` */
 } dem_output_kind;
 /* How an output works. Begin with DEM_OUTPUT_DESC. */
 typedef struct dem_output_desc {
@@ -3291,11 +3378,14 @@ typedef struct dem_output_desc {
     const char *path;
     double interval;         /* s, required, 1e-12 to 1e15 */
     double start, end;       /* s, times of the first and the last; end 0 means no last */
-    /* CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write;
-       or the values that `values` writes, with `columns` as their names (1 to 32 words as in
-       body_reals, copied); or, if all three are zero, steps, bodies, contacts, kinetic and
-       rotational energy (J) and overlap_max */
+    /* CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write;
+       the mixing of two components, if mixing.cells are set; the values that `values` writes, with
+       `columns` as their names (1 to 32 words as in body_reals, copied); or, if all four are zero,
+       steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max */
     dem_wall wall;
+    dem_mixing_desc mixing;
+    dem_field field;         /* FIELD_CSV: required */
+    dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
     /* CALL: may change the world, but not step it. A return value other than 0 stops the run
@@ -4503,6 +4593,9 @@ typedef struct demi_bodies {
     uint32_t *groups;              /* bit k: in group k of desc.groups */
     int zoned;                     /* `zones` exists */
     uint32_t *zones;               /* bit k: in the region of counting outlet k; 16 + k: known */
+    int aged, averaged;            /* `born` exists; `means` exists */
+    double *born;                  /* s: when it was inserted, or measuring began (>>feed) */
+    double *means;                 /* x DEMI_MEANS: averages over samples (>>fields) */
     uint8_t *ghost;              /* by slot; 1: ghost, a copy owned by another slab; null outside
                                     >>slabs */
     dem_real *scratch;             /* x 4, for permuting */
@@ -4908,6 +5001,8 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_COUNTED      if bodies have user-defined numbers; one item for each number
          DEMI_ZONED        if there are outlets that only count
          DEMI_GROUPED      if desc.groups names groups
+         DEMI_AGED         if an outlet measures residence times
+         DEMI_AVERAGED     if a field averages bodies
          DEMI_BOOKED       with a ledger and an integrator that predicts velocities
          DEMI_SLOTS        always, with one item for each slot instead of each body
        what: how it is used
@@ -4915,8 +5010,9 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_REALS        the same, and reals that must be finite
          DEMI_PLACES       the same; x, y, z are a position, which periodic wrapping shifts
          0                 scratch memory --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
-       DEMI_GROUPED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_AGED,
+       DEMI_AVERAGED, DEMI_BOOKED, DEMI_GROUPED, DEMI_SLOTS };
+enum { DEMI_MEANS = 19 };          /* doubles of a body's averages: see demi_means_add */
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     size_t field, item;            /* offset of its pointer in demi_bodies; bytes per body (for
@@ -4950,6 +5046,8 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(zones,           1, DEMI_ZONED,  DEMI_KEPT),
     DEMI_ARRAY(groups,          1, DEMI_GROUPED, DEMI_KEPT),
+    DEMI_ARRAY(born,            1, DEMI_AGED,   DEMI_KEPT),
+    DEMI_ARRAY(means,  DEMI_MEANS, DEMI_AVERAGED, DEMI_KEPT),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
@@ -5412,7 +5510,9 @@ static const demi_field_row demi_outlet_state_rows[] = {
     DEMI_N(last, 'd', DEMI_LARGEST), DEMI_N(back, 'u', DEMI_SUM), DEMI_N(held, 'u', DEMI_SUM),
     DEMI_N(back_total, 'u', DEMI_SUM), DEMI_N(held_total, 'u', DEMI_SUM),
     DEMI_N(back_mass, 'd', DEMI_SUM), DEMI_N(held_mass, 'd', DEMI_SUM),
-    DEMI_N(back_total_mass, 'd', DEMI_SUM), DEMI_N(held_total_mass, 'd', DEMI_SUM), DEMI_ROW_END};
+    DEMI_N(back_total_mass, 'd', DEMI_SUM), DEMI_N(held_total_mass, 'd', DEMI_SUM),
+    DEMI_N(residence, 'd', DEMI_SUM), DEMI_N(residence_square, 'd', DEMI_SUM),
+    DEMI_N(residence_count, 'u', DEMI_SUM), DEMI_ROW_END};
 #undef DEMI_OF
 
 /* --- the desc of a world. It is checked before there is a world that could hold a message, so each
@@ -8644,7 +8744,8 @@ static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
            : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
            : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
-           : a->who == DEMI_ZONED ? w->bodies.zoned
+           : a->who == DEMI_ZONED ? w->bodies.zoned : a->who == DEMI_AGED ? w->bodies.aged
+           : a->who == DEMI_AVERAGED ? w->bodies.averaged
            : a->who == DEMI_GROUPED ? w->bodies.group_count > 0
            : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
 }
@@ -8707,6 +8808,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
         (w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
         (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
+        w->bodies.aged << DEMI_AGED | w->bodies.averaged << DEMI_AVERAGED |
         w->bodies.booked << DEMI_BOOKED | (w->bodies.group_count > 0) << DEMI_GROUPED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
@@ -8754,11 +8856,21 @@ static int demi_orient_begin(dem_world *w) {
     return 1;
 }
 
-/* Gives bodies the array `zones` of counting outlets. Returns 0 if memory ran out. */
-static int demi_zones_begin(dem_world *w) {
-    if (w->bodies.zoned) return 1;
-    if (!demi_bodies_room(w, 1 << DEMI_ZONED, 0, (size_t)w->bodies.capacity)) return 0;
-    w->bodies.zoned = 1;
+/* Gives bodies the arrays of this `who`, set to 0, unless *has, which becomes 1. Returns 0 if
+   memory ran out. */
+static int demi_array_begin(dem_world *w, int who, int *has) {
+    if (*has) return 1;
+    if (!demi_bodies_room(w, 1 << who, 0, (size_t)w->bodies.capacity)) return 0;
+    *has = 1;
+    return 1;
+}
+/* Begins measuring the ages of bodies. The present ones are inserted now. Returns 0 if memory ran
+   out. */
+static int demi_ages_begin(dem_world *w) {
+    const int has = w->bodies.aged;
+    int i;
+    if (!demi_array_begin(w, DEMI_AGED, &w->bodies.aged)) return 0;
+    for (i = 0; i < w->bodies.count && !has; i++) w->bodies.born[i] = w->clock.time;
     return 1;
 }
 
@@ -8803,6 +8915,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.slot[i] = (uint32_t)slot;
     w->bodies.material[i] = material + 1;
     w->bodies.slot_index[slot] = i;
+    if (w->bodies.aged) w->bodies.born[i] = w->clock.time;
     if (w->bodies.orienting) {
         demi_quat_put(w->bodies.orient + 4*i, dem_quat_make(1, 0, 0, 0));
         demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
@@ -26503,7 +26616,9 @@ static const demi_field_row demi_outlet_rows[] = {
     DEMI_LIMITED(dem_outlet_desc, wanted_max, 'r', DEMI_FROM, DBL_MAX, "m"),
     DEMI_LIMITED(dem_outlet_desc, class_count, 'i', DEMI_FROM, DEM_CLASSES, ""),
     DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
-    DEMI_ROW(dem_outlet_desc, keep, 'i'), DEMI_ROW_END};
+    DEMI_ROW(dem_outlet_desc, keep, 'i'),
+    DEMI_LIMITED(dem_outlet_desc, residence_bin, 'd', DEMI_FROM, DEMI_FARTHEST, "s"),
+    DEMI_ROW_END};
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
     const char *call = "dem_outlet_add";
@@ -26531,7 +26646,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
                   kept);
         return id;
     }
-    if ((d->keep && !demi_zones_begin(w)) ||
+    if ((d->keep && !demi_array_begin(w, DEMI_ZONED, &w->bodies.zoned)) ||
+        (d->residence_bin > 0 && !demi_ages_begin(w)) ||
         !DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
         demi_no_memory(w, call);
         return id;
@@ -26565,6 +26681,12 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     *(wanted ? &o->state.sorted : &o->state.gangue) += 1;
     *(wanted ? &o->state.sorted_mass : &o->state.gangue_mass) += m;
     o->state.last = w->clock.time;
+    if (d->residence_bin > 0) {
+        const double stay = w->clock.time - w->bodies.born[i], bin = stay/d->residence_bin;
+        o->state.residence[k] += stay;
+        o->state.residence_square[k] += stay*stay;
+        o->state.residence_count[(int)DEMI_MIN(bin, DEM_RESIDENCE_BINS - 1)]++;
+    }
 }
 /* True if x, in the outlet's frame, is in the box and at least `beyond` from the z axis. */
 static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
@@ -28437,15 +28559,20 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_i
 }
 /* Blocks of a field's sums. The block of constant c begins at c x cells; within it, the numbers of
    one cell are adjacent (3 of momentum; 6 of flux and of stress: xx yy zz xy xz yz). The last
-   constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist. */
+   constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist.
+   desc.variance adds twice as many: squares, and a copy of the first blocks. */
 enum { DEMI_SOLID = 0, DEMI_MASS = 1, DEMI_MOMENTUM = 2, DEMI_GRAINS = 5, DEMI_FLUX = 6,
        DEMI_STRESS = 12, DEMI_CONTACTS = 18, DEMI_FIELD_REALS = 19 };
 static size_t demi_field_cells(const demi_field *f) {
     return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
 }
-/* Returns the length of `sums`. */
-static size_t demi_field_reals(const demi_field *f) {
+/* Returns where the squares of desc.variance begin in `sums`, and the length of `sums`. The blocks
+   of squares are solid^2, mass^2, momentum^2/mass and grains^2 of each sample, summed. */
+static size_t demi_field_squares(const demi_field *f) {
     return demi_field_cells(f)*(f->desc.stress ? DEMI_FIELD_REALS : DEMI_FLUX);
+}
+static size_t demi_field_reals(const demi_field *f) {
+    return demi_field_squares(f) + (f->desc.variance ? 2*DEMI_FLUX*demi_field_cells(f) : 0);
 }
 /* The geometry of a field's grid, computed once per sample. */
 typedef struct demi_grid {
@@ -28620,6 +28747,40 @@ static void demi_field_contacts(const dem_world *w, demi_grid *g) {
         }
     }
 }
+/* Before a sample: copies the sums of grains. After it: adds the squares of what the sample has
+   added to them. Momentum^2 over mass weights the square of a cell's velocity by its mass, as the
+   mean velocity does. */
+static void demi_field_squares_begin(demi_field *f) {
+    const size_t n = DEMI_FLUX*demi_field_cells(f);
+    if (f->desc.variance) memcpy(f->sums + demi_field_squares(f) + n, f->sums, n*sizeof(double));
+}
+static void demi_field_squares_add(demi_field *f) {
+    const size_t n = demi_field_cells(f);
+    double *square = f->sums + demi_field_squares(f);
+    const double *was = square + DEMI_FLUX*n;
+    size_t k;
+    for (k = 0; f->desc.variance && k < DEMI_FLUX*n; k++) {
+        const int moves = k >= DEMI_MOMENTUM*n && k < DEMI_GRAINS*n;
+        const size_t cell = DEMI_MASS*n + (k - DEMI_MOMENTUM*n)/3;
+        const double x = f->sums[k] - was[k], m = moves ? f->sums[cell] - was[cell] : 1;
+        if (m > 0) square[k] += x*x/m;
+    }
+}
+/* Adds a sample to the averages of body i: means[0] counts samples; then come the means of
+   velocity, spin and force, and for each the sum of squares about its mean (recursion of [WEL62],
+   exact also for small variances about a large mean). */
+static void demi_means_add(const dem_world *w, int i) {
+    const demi_bodies *b = &w->bodies;
+    const dem_real *const from[3] = {b->vel + 4*i, b->spin + 4*i, b->force + 4*i};
+    double *means = b->means + DEMI_MEANS*i;
+    int k;
+    means[0]++;
+    for (k = 0; k < 9; k++) {
+        const double x = (double)from[k/3][k%3], off = x - means[1 + k];
+        means[1 + k] += off/means[0];
+        means[10 + k] += off*(x - means[1 + k]);
+    }
+}
 /* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
@@ -28644,8 +28805,13 @@ static void demi_fields_sample(dem_world *w) {
         field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
             : w->clock.time + 100*(double)w->clock.dt;
         if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
-        for (i = 0; i < w->bodies.count; i++)
-            if (!demi_is_ghost(w, i) && demi_field_counts(w, d, i)) demi_field_grain(w, &g, i);
+        demi_field_squares_begin(field);
+        for (i = 0; i < w->bodies.count; i++) {
+            if (demi_is_ghost(w, i) || !demi_field_counts(w, d, i)) continue;
+            demi_field_grain(w, &g, i);
+            if (d->bodies) demi_means_add(w, i);
+        }
+        demi_field_squares_add(field);
         field->samples++;
     }
 }
@@ -28659,7 +28825,8 @@ static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, '
     DEMI_FIELD(interval, 'd', DEMI_FROM, "s", 0), DEMI_ROW(dem_field_desc, material, 'i'),
     DEMI_FIELD(radius_min, 'r', DEMI_FROM, "m", 0), DEMI_FIELD(radius_max, 'r', DEMI_FROM, "m", 1),
     DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0),
-    DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW_END};
+    DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW(dem_field_desc, variance, 'i'),
+    DEMI_ROW(dem_field_desc, bodies, 'i'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
@@ -28677,12 +28844,20 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_group_check(w, "dem_field_add", d->group, 0) != DEM_OK ||
         (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK))
         return id;
+    for (k = 0; k < w->field_count && d->bodies; k++)
+        if (w->fields[k].desc.bodies) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: bodies is %d, but field %d averages "
+                      "bodies already, and each body has room for one average; set bodies to 0, "
+                      "or use that field", d->bodies, k + 1);
+            return id;
+        }
     memset(&field, 0, sizeof field);
     field.used = 1;
     field.desc = *d;
     field.next = d->start;
     field.sums = (double *)demi_hold(w, DEMI_RUN, demi_field_reals(&field), sizeof(double));
-    if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1)) {
+    if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1) ||
+        (d->bodies && !demi_array_begin(w, DEMI_AVERAGED, &w->bodies.averaged))) {
         demi_free(w, field.sums);
         demi_no_memory(w, "dem_field_add");
         return id;
@@ -28722,10 +28897,47 @@ DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
     demi_field *f = demi_field_find(w, "dem_field_reset", id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
+    if (f->desc.bodies && w->bodies.count)
+        memset(w->bodies.means, 0, DEMI_MEANS*(size_t)w->bodies.count*sizeof(double));
     f->samples = 0;
     return DEM_OK;
 }
+DEM_API dem_result dem_body_means_get(const dem_world *w, dem_body body, dem_body_means *out) {
+    int i, k;
+    if (demi_null_look(w, "dem_body_means_get", out, "means")) return DEM_ERROR_ARGUMENT;
+    if (!w->bodies.averaged)
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_body_means_get: no field "
+                         "averages bodies; add one with bodies = 1 (dem_field_desc)");
+    i = demi_body_index((dem_world *)w, "dem_body_means_get", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->samples = (uint64_t)w->bodies.means[DEMI_MEANS*i];
+    for (k = 0; k < 9 && out->samples; k++) {
+        double *const mean[3] = {out->velocity, out->spin, out->force};
+        double *const variance[3] = {out->velocity_variance, out->spin_variance,
+                                     out->force_variance};
+        mean[k/3][k%3] = w->bodies.means[DEMI_MEANS*i + 1 + k];
+        variance[k/3][k%3] = w->bodies.means[DEMI_MEANS*i + 10 + k]/(double)out->samples;
+    }
+    return DEM_OK;
+}
 
+/* Computes the variances over n samples of cell c, of this volume (m3), from the means in `out`. */
+static void demi_cell_variances(const demi_field *f, size_t c, double n, double volume,
+                                dem_field_cell *out) {
+    const size_t cells = demi_field_cells(f);
+    const double *square = f->sums + demi_field_squares(f);
+    const double mass = f->sums[DEMI_MASS*cells + c];
+    int e;
+    if (!f->desc.variance) return;
+    out->solid_variance = DEMI_MAX(square[DEMI_SOLID*cells + c]/n - out->solid*out->solid, 0);
+    out->density_variance = DEMI_MAX(square[DEMI_MASS*cells + c]/(n*volume*volume) -
+                                     out->density*out->density, 0);
+    out->grains_variance = DEMI_MAX(square[DEMI_GRAINS*cells + c]/n - out->grains*out->grains, 0);
+    for (e = 0; e < 3 && mass > 0; e++)
+        out->velocity_variance[e] = DEMI_MAX(square[DEMI_MOMENTUM*cells + 3*c + (size_t)e]/mass -
+                                             out->velocity[e]*out->velocity[e], 0);
+}
 /* Fluctuations about the mean velocity v of the cell give the kinetic stress, <m v v>/volume -
    density v v, which is added to the stress of contacts. The granular temperature is the trace of
    the kinetic stress over density and number of dimensions. */
@@ -28754,6 +28966,7 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     out->density = d.mass[c]/n/volume;
     for (e = 0; e < 3; e++)
         out->velocity[e] = v[e] = d.mass[c] > 0 ? d.momentum[3*c + (size_t)e]/d.mass[c] : 0;
+    demi_cell_variances(&w->fields[id.id - 1], c, n, volume, out);
     if (!d.stress) return DEM_OK;
     for (e = 0; e < 6; e++) {
         const double vv = e < 3 ? v[e]*v[e] : e == 3 ? v[0]*v[1] : e == 4 ? v[0]*v[2] : v[1]*v[2];
@@ -30449,6 +30662,198 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
     if (w->clock.dt > 0) d.dt = w->clock.dt;
     d.skin = (dem_real)w->margin.skin;
     return d;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>mixing
+   Mixing and segregation of two components. All indices compare the present places of the grains
+   with those that a random exchange of all grains would give. Reads bodies and contacts, and
+   changes nothing. Memory is allocated and freed within the call.
+
+   Lacey's index [LAC54] uses cells. p: fraction of the component among the N grains; n_i, phi_i:
+   number of grains and fraction in cell i; K: number of cells with grains.
+       s2 = sum n_i (phi_i - p)^2/N,  s0 = p (1 - p),  sr = p (1 - p) (K - 1)/(N - 1)
+       M  = (s0 - s2)/(s0 - sr): 0 segregated, 1 random
+   s0 is s2 of cells that hold one component each. sr is the mean of s2 over all ways to deal the
+   grains to the places. We differ from the source in two ways. Cells need not have equal numbers of
+   grains, so that n_i weights them. sr is exact for finite K and N; for large ones it is p (1 -
+   p)/n with n = N/K, as in the source. Limits: the index depends on the size of the cells, and
+   components count by number, not by volume.
+
+   The rank measure [MW47] needs no cells. U counts the pairs of a grain of the component and
+   another grain in which the former is ahead (a tie counts 1/2); S = 2 U/(Na Nb) - 1. It is 1 if
+   all grains of the component are ahead of all others, -1 if they are behind, and 0 on average over
+   random mixtures, with the variance (N + 1)/(3 Na Nb).
+
+   The contact measure compares the number of contacts between the two components with its mean over
+   all ways to deal the grains to the places, 2 Na Nb/(N (N - 1)) of all contacts.
+   --------------------------------------------------------------------------------------------- */
+/* A grain and its coordinate; mine: 1 if it is of the component. */
+typedef struct demi_mix_key { double x; int mine; } demi_mix_key;
+static int demi_mix_compare(const void *a, const void *b) {
+    const double x = ((const demi_mix_key *)a)->x, y = ((const demi_mix_key *)b)->x;
+    return (x > y) - (x < y);
+}
+/* Returns the rank measure of n grains, of which `part` are of the component. Sorts `key`. */
+static double demi_mix_rank(demi_mix_key *key, int n, int part) {
+    const double pairs = (double)part*(n - part);
+    double ahead = 0, below = 0;                /* below: other grains with a smaller coordinate */
+    int i, k;
+    qsort(key, (size_t)n, sizeof *key, demi_mix_compare);
+    for (i = 0; i < n; i = k) {
+        int mine = 0;
+        for (k = i; k < n && !(key[k].x > key[i].x); k++) mine += key[k].mine;
+        ahead += mine*(below + (k - i - mine)/2.0);
+        below += k - i - mine;
+    }
+    return pairs > 0 ? 2*ahead/pairs - 1 : (double)NAN;
+}
+/* Returns the cell of body i; -1 if it does not count: outside the box, fixed, or a ghost
+   particle. */
+static int demi_mix_cell(const dem_world *w, const demi_periods *p, const dem_mixing_desc *d,
+                         int i) {
+    const dem_vec3 at = demi_place_of(p, demi_at(w->bodies.pos + 4*i));
+    const double x[3] = {(double)at.x, (double)at.y, (double)at.z};
+    const double lo[3] = {(double)d->box.lo.x, (double)d->box.lo.y, (double)d->box.lo.z};
+    const double hi[3] = {(double)d->box.hi.x, (double)d->box.hi.y, (double)d->box.hi.z};
+    int k, cell = 0;
+    if (demi_is_ghost(w, i) || !(w->bodies.inv_mass[i] > 0)) return -1;
+    for (k = 2; k >= 0; k--) {
+        const double q = hi[k] > lo[k] ? (x[k] - lo[k])/(hi[k] - lo[k])*d->cells[k] : 0;
+        if (!(x[k] >= lo[k] && x[k] <= hi[k])) return -1;
+        cell = cell*d->cells[k] + (int)DEMI_MIN(q, d->cells[k] - 1);
+    }
+    return cell;
+}
+/* True if body i is of the component. */
+static int demi_mix_mine(const dem_world *w, const dem_mixing_desc *d, int i) {
+    const dem_real r = w->bodies.pos[4*i + 3];
+    return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
+        (!(d->radius_max > 0) || r <= d->radius_max);
+}
+/* Computes Lacey's index from the numbers of grains per cell: all, and those of the component. */
+static void demi_mix_cells(const int32_t *all, const int32_t *mine, int cells, dem_mixing *out) {
+    const double n = out->grains, p = out->fraction;
+    double sum = 0, seg, rnd;
+    int i;
+    for (i = 0; i < cells; i++) {
+        const double off = all[i] ? (double)mine[i]/all[i] - p : 0;
+        out->cells += all[i] > 0;
+        sum += all[i]*off*off;
+    }
+    if (!out->grains) return;
+    out->variance = sum/n;
+    seg = out->variance_segregated = p*(1 - p);
+    rnd = out->variance_random = n > 1 ? seg*(out->cells - 1)/(n - 1) : seg;
+    if (!(rnd < seg) || out->cells < 2) return;
+    out->lacey = (seg - out->variance)/(seg - rnd);
+    out->kramer = (sqrt(seg) - sqrt(out->variance))/(sqrt(seg) - sqrt(rnd));
+}
+/* Counts the contacts of grains in the box, and compares those between the components with random
+   ones. kind: by body, 1: of the component, 0: another, -1: not counted. Returns 0 if memory ran
+   out. */
+static int demi_mix_contacts(dem_world *w, const signed char *kind, dem_mixing *out) {
+    const double n = out->grains, even = 2.0*out->part*(n - out->part)/(n*(n - 1));
+    const int all = w->stage.list_valid ? dem_contacts_get(w, 0, 0) : 0;
+    dem_contact_info *c = (dem_contact_info *)demi_alloc(w, (size_t)all + 1, sizeof *c);
+    double unlike = 0;
+    int i;
+    out->contacts = w->stage.list_valid ? 0 : -1;
+    if (!c) return 0;
+    if (all) dem_contacts_get(w, c, all);
+    for (i = 0; i < all; i++) {
+        const int a = kind[w->bodies.slot_index[c[i].a.slot - 1]];
+        const int b = c[i].wall ? -1 : kind[w->bodies.slot_index[c[i].b.slot - 1]];
+        if (a < 0 || b < 0) continue;
+        out->contacts++;
+        unlike += a != b;
+    }
+    demi_free(w, c);
+    if (out->contacts > 0 && even > 0)
+        out->contact_segregation = 1 - unlike/out->contacts/even;
+    return 1;
+}
+/* Computes the rank measures along x, y and z, and of the distance from the axis. */
+static void demi_mix_ranks(const dem_world *w, const demi_periods *p, const dem_mixing_desc *d,
+                           const signed char *kind, demi_mix_key *key, dem_mixing *out) {
+    const dem_vec3 axis = demi_unit(d->axis);
+    int i, k;
+    for (k = 0; k < (demi_dot(d->axis, d->axis) > 0 ? 4 : 3); k++) {
+        int n = 0;
+        for (i = 0; i < w->bodies.count; i++) {
+            const dem_vec3 x = demi_place_of(p, demi_at(w->bodies.pos + 4*i));
+            const dem_vec3 away = demi_cross(axis, demi_sub(x, d->centre));
+            if (kind[i] < 0) continue;
+            key[n].x = (double)(k == 0 ? x.x : k == 1 ? x.y : k == 2 ? x.z : demi_length(away));
+            key[n++].mine = kind[i];
+        }
+        *(k < 3 ? out->segregation + k : &out->segregation_radial) =
+            demi_mix_rank(key, n, out->part);
+    }
+}
+
+#define DEMI_MIX(field, type, how, unit, other) \
+    DEMI_LIMITED_IF(dem_mixing_desc, field, type, how, DBL_MAX, unit, 0, other, 0, 0)
+static const demi_field_row demi_mixing_rows[] = {DEMI_ROW(dem_mixing_desc, box, 'v'),
+    DEMI_LIMITED(dem_mixing_desc, cells, 'i', DEMI_OVER, DEMI_FIELD_MOST, ""),
+    DEMI_ROW(dem_mixing_desc, material, 'i'), DEMI_MIX(radius_min, 'r', DEMI_FROM, "m", 0),
+    DEMI_MIX(radius_max, 'r', DEMI_FROM, "m", 1), DEMI_MIX(centre, 'v', DEMI_ANY, "m", 0),
+    DEMI_MIX(axis, 'v', DEMI_ANY, "", 0), DEMI_ROW_END};
+/* Returns DEM_OK if a mixing desc is possible, otherwise fails in the name of `call`. */
+static dem_result demi_mixing_check(dem_world *w, const char *call, const dem_mixing_desc *d) {
+    int k;
+    if (demi_rows_check(w, call, demi_mixing_rows, d, "",
+                        "start from DEM_MIXING_DESC and set only what differs") ||
+        demi_box_empty(w, call, d->box, w->desc.planar) ||
+        (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK))
+        return DEM_ERROR_ARGUMENT;
+    if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: cells are %d x %d x %d, must be at most 2^28 "
+                         "in all; choose longer cells", call, d->cells[0], d->cells[1],
+                         d->cells[2]);
+    if (d->material.id || d->radius_min > 0 || d->radius_max > 0) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material, radius_min and radius_max are all 0, so "
+                     "that every grain is of the component; give the material or the radii of one "
+                     "of the two", call);
+}
+DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *d,
+                                  dem_mixing *out) {
+    const char *call = "dem_mixing_get";
+    dem_world *w = (dem_world *)world;
+    demi_periods p;
+    demi_mix_key *key;
+    signed char *kind;
+    int32_t *count;
+    int i, cells;
+    if (demi_null_look(w, call, d, "desc") || demi_null_look(w, call, out, "mixing") ||
+        demi_mixing_check(w, call, d) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    p = demi_periods_of(w);
+    cells = d->cells[0]*d->cells[1]*d->cells[2];
+    key = (demi_mix_key *)demi_alloc(w, (size_t)w->bodies.count + 1, sizeof *key);
+    kind = (signed char *)demi_alloc(w, (size_t)w->bodies.count + 1, 1);
+    count = (int32_t *)demi_alloc(w, 2*(size_t)cells, sizeof *count);
+    memset(out, 0, sizeof *out);
+    out->fraction = out->lacey = out->kramer = out->segregation_radial = (double)NAN;
+    out->contact_segregation = (double)NAN;
+    for (i = 0; i < w->bodies.count && key && kind && count; i++) {
+        const int cell = demi_mix_cell(w, &p, d, i);
+        kind[i] = (signed char)(cell < 0 ? -1 : demi_mix_mine(w, d, i));
+        if (cell < 0) continue;
+        out->grains++;
+        out->part += kind[i];
+        count[cell]++;
+        count[cells + cell] += kind[i];
+    }
+    if (key && kind && count) {
+        if (out->grains) out->fraction = (double)out->part/out->grains;
+        demi_mix_cells(count, count + cells, cells, out);
+        demi_mix_ranks(w, &p, d, kind, key, out);
+    }
+    i = key && kind && count && demi_mix_contacts(w, kind, out);
+    demi_free(w, key);
+    demi_free(w, kind);
+    demi_free(w, count);
+    return i ? DEM_OK : demi_no_memory(w, call);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -33724,6 +34129,175 @@ DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, con
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>tables
+   Tables of the present state and of averages, as CSV: a line of names and one line per item.
+   demi_out (>>write) makes the files complete or absent. Reads the world and does not change its
+   state, except that dem_contacts_each computes forces if the scene has changed.
+   --------------------------------------------------------------------------------------------- */
+/* Writes numbers, each after a comma unless it is the first of a line; a whole number. */
+static void demi_table_put(demi_out *o, int first, const double *value, int count) {
+    char text[32];
+    int k;
+    for (k = 0; k < count; k++)
+        fprintf(o->file, "%s%s", first && !k ? "" : ",", demi_format_real(text, value[k], 9));
+}
+static void demi_table_vec(demi_out *o, dem_vec3 v) {
+    const double value[3] = {(double)v.x, (double)v.y, (double)v.z};
+    demi_table_put(o, 0, value, 3);
+}
+DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path) {
+    const char *call = "dem_bodies_csv_write";
+    const dem_world *w = world;
+    demi_periods p;
+    demi_out o;
+    dem_result result;
+    int i, k, length;
+    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_out_open(&o, world, call, path);
+    if (result != DEM_OK) return result;
+    p = demi_periods_of(w);
+    demi_finish(world);
+    fputs("id,material,radius,x,y,z,vx,vy,vz,wx,wy,wz", o.file);
+    for (k = 0; k < w->bodies.real_count; k++) {
+        const char *name = demi_name(w->desc.body_reals, k, &length);
+        fprintf(o.file, ",%.*s", length, name);
+    }
+    if (w->bodies.averaged)
+        fputs(",samples,vx_mean,vy_mean,vz_mean,vx_variance,vy_variance,vz_variance,wx_mean,"
+              "wy_mean,wz_mean,wx_variance,wy_variance,wz_variance,fx_mean,fy_mean,fz_mean,"
+              "fx_variance,fy_variance,fz_variance", o.file);
+    fputc('\n', o.file);
+    for (i = 0; i < w->bodies.count; i++) {
+        const double radius = (double)w->bodies.pos[4*i + 3];
+        dem_body_means m;
+        fprintf(o.file, "%u,%d", (unsigned)w->bodies.slot[i], (int)w->bodies.material[i]);
+        demi_table_put(&o, 0, &radius, 1);
+        demi_table_vec(&o, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
+        demi_table_vec(&o, demi_at(w->bodies.vel + 4*i));
+        demi_table_vec(&o, demi_at(w->bodies.spin + 4*i));
+        for (k = 0; k < w->bodies.real_count; k++) {
+            const double own = (double)w->bodies.reals[w->bodies.real_count*i + k];
+            demi_table_put(&o, 0, &own, 1);
+        }
+        if (w->bodies.averaged && dem_body_means_get(w, dem_body_id_get(w, i), &m) == DEM_OK) {
+            fprintf(o.file, ",%.0f", (double)m.samples);
+            demi_table_put(&o, 0, m.velocity, 3);
+            demi_table_put(&o, 0, m.velocity_variance, 3);
+            demi_table_put(&o, 0, m.spin, 3);
+            demi_table_put(&o, 0, m.spin_variance, 3);
+            demi_table_put(&o, 0, m.force, 3);
+            demi_table_put(&o, 0, m.force_variance, 3);
+        }
+        fputc('\n', o.file);
+    }
+    return demi_out_close(&o);
+}
+static void demi_table_contact(const dem_contact_info *c, dem_real *memory, void *user) {
+    demi_out *o = (demi_out *)user;
+    const double overlap = (double)c->overlap;
+    (void)memory;
+    fprintf(o->file, "%ld,%ld,%d", (long)c->a.slot - 1, c->wall ? -1L : (long)c->b.slot - 1,
+            (int)c->wall);
+    demi_table_vec(o, c->point);
+    demi_table_vec(o, c->normal);
+    demi_table_put(o, 0, &overlap, 1);
+    demi_table_vec(o, c->force);
+    fputc('\n', o->file);
+}
+DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path) {
+    const char *call = "dem_contacts_csv_write";
+    demi_out o;
+    dem_result result;
+    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_contacts_settle(world);
+    if (result == DEM_OK) result = demi_out_open(&o, world, call, path);
+    if (result != DEM_OK) return result;
+    fputs("a,b,wall,x,y,z,nx,ny,nz,overlap,fx,fy,fz\n", o.file);
+    dem_contacts_each(world, demi_table_contact, &o);
+    return demi_out_close(&o);
+}
+DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path) {
+    const char *call = "dem_field_csv_write";
+    const demi_field *f;
+    demi_grid g;
+    demi_out o;
+    dem_result result;
+    int at[3];
+    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    f = demi_field_find(world, call, field);
+    if (!f) return DEM_ERROR_ARGUMENT;
+    result = demi_out_open(&o, world, call, path);
+    if (result != DEM_OK) return result;
+    g = demi_grid_of(world, (demi_field *)f);
+    fprintf(o.file, "x,y,z,grains,solid,density,vx,vy,vz%s%s\n", f->desc.stress ?
+            ",temperature,pxx,pyy,pzz,pxy,pxz,pyz,coordination" : "", f->desc.variance ?
+            ",grains_variance,solid_variance,density_variance,vx_variance,vy_variance,vz_variance"
+            : "");
+    for (at[2] = 0; at[2] < f->desc.cells[2]; at[2]++)
+        for (at[1] = 0; at[1] < f->desc.cells[1]; at[1]++)
+            for (at[0] = 0; at[0] < f->desc.cells[0]; at[0]++) {
+                dem_field_cell c;
+                double x[3];
+                int k;
+                dem_field_cell_get(world, field, at[0], at[1], at[2], &c);
+                for (k = 0; k < 3; k++) x[k] = g.lo[k] + (at[k] + 0.5)*g.size[k];
+                demi_table_put(&o, 1, x, 3);
+                demi_table_put(&o, 0, &c.grains, 1);
+                demi_table_put(&o, 0, &c.solid, 1);
+                demi_table_put(&o, 0, &c.density, 1);
+                demi_table_put(&o, 0, c.velocity, 3);
+                if (f->desc.stress) {
+                    demi_table_put(&o, 0, &c.temperature, 1);
+                    demi_table_put(&o, 0, c.stress, 6);
+                    demi_table_put(&o, 0, &c.coordination, 1);
+                }
+                if (f->desc.variance) {
+                    demi_table_put(&o, 0, &c.grains_variance, 1);
+                    demi_table_put(&o, 0, &c.solid_variance, 1);
+                    demi_table_put(&o, 0, &c.density_variance, 1);
+                    demi_table_put(&o, 0, c.velocity_variance, 3);
+                }
+                fputc('\n', o.file);
+            }
+    return demi_out_close(&o);
+}
+DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
+                                                  const char *path) {
+    const char *call = "dem_outlet_residence_csv_write";
+    const demi_outlet *from;
+    demi_out o;
+    dem_result result;
+    double sum = 0, total = 0;
+    int k, used = 0;
+    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    from = demi_outlet_find(world, call, outlet);
+    if (!from) return DEM_ERROR_ARGUMENT;
+    if (!(from->desc.residence_bin > 0))
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "%s: outlet %d has residence_bin 0 s, must be "
+                         "> 0 to measure residence times; set it in its desc", call,
+                         (int)outlet.id);
+    result = demi_out_open(&o, world, call, path);
+    if (result != DEM_OK) return result;
+    for (k = 0; k < DEM_RESIDENCE_BINS; k++) {
+        total += (double)from->state.residence_count[k];
+        if (from->state.residence_count[k]) used = k + 1;
+    }
+    fputs("time,grains,density,cumulated\n", o.file);
+    for (k = 0; k < used; k++) {
+        const double n = (double)from->state.residence_count[k], bin = from->desc.residence_bin;
+        double value[4];
+        sum += n;
+        value[0] = (k + 0.5)*bin;
+        value[1] = n;
+        value[2] = n/total/bin;
+        value[3] = sum/total;
+        demi_table_put(&o, 1, value, 4);
+        fputc('\n', o.file);
+    }
+    return demi_out_close(&o);
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>checkpoint
    Checkpoints: binary files with the complete state, from which a run continues bit for bit. The
    same functions (demi_visit_...) write and read the state, so that the two cannot differ. This
@@ -34356,6 +34930,8 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
     t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
+    t->bodies.aged = w->bodies.aged;
+    t->bodies.averaged = w->bodies.averaged;
     if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
     for (i = 0; i < w->surface_count; i++) t->surfaces[i] = w->surfaces[i];
     t->surface_count = w->surface_count;
@@ -35243,14 +35819,38 @@ static size_t demi_output_marks(const char *path, size_t *count) {
     *count = end - begin;
     return begin;
 }
+static const char demi_mixing_heading[] = "time,grains,part,cells,variance,lacey,kramer,"
+    "segregation_x,segregation_y,segregation_z,segregation_radial,contact_segregation";
+enum { DEMI_MIXING = 11 };
+/* Writes the DEMI_MIXING values of that heading that follow the time. */
+static dem_result demi_mixing_values(const dem_world *w, const dem_mixing_desc *d, double *value) {
+    dem_mixing m;
+    const dem_result result = dem_mixing_get(w, d, &m);
+    if (result != DEM_OK) return result;
+    value[0] = m.grains;
+    value[1] = m.part;
+    value[2] = m.cells;
+    value[3] = m.variance;
+    value[4] = m.lacey;
+    value[5] = m.kramer;
+    memcpy(value + 6, m.segregation, 3*sizeof *value);
+    value[9] = m.segregation_radial;
+    value[10] = m.contact_segregation;
+    return DEM_OK;
+}
 /* Returns the names of the columns of a CSV file, without the time, separated by spaces. */
 static const char *demi_output_names(const dem_output_desc *d) {
     return d->columns ? d->columns : demi_output_columns;
+}
+/* True if a line of the CSV file is the mixing of two components. */
+static int demi_output_mixes(const dem_output_desc *d) {
+    return d->mixing.cells[0] || d->mixing.cells[1] || d->mixing.cells[2];
 }
 /* Writes the first line of a CSV file to `heading`, of at least DEMI_CSV_LINE bytes. */
 static void demi_output_heading(const dem_output_desc *d, char *heading) {
     char *c;
     if (d->wall.id) { strcpy(heading, demi_loads_heading); return; }
+    if (demi_output_mixes(d)) { strcpy(heading, demi_mixing_heading); return; }
     strcpy(heading, "time ");
     demi_names_copy(demi_output_names(d), heading + 5);
     for (c = heading; *c; c++) if (*c == ' ') *c = ',';
@@ -35311,7 +35911,10 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
                          "wall %d, which was removed; remove the output too (dem_output_remove)",
                          (int)o->id, (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
-    else {
+    else if (demi_output_mixes(d)) {
+        count = DEMI_MIXING;
+        result = demi_mixing_values(w, &d->mixing, value);
+    } else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
         if (d->values) {
             const demi_calling was = demi_calls(w, "an output of values", 0);
@@ -35335,11 +35938,11 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
-/* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the two
-   kinds that demi_output_write handles itself. */
+/* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the kinds
+   that demi_output_write handles itself. */
 static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
     0, dem_vtp_write, dem_xyz_write, dem_contacts_vtp_write, dem_checkpoint_write, 0,
-    dem_surfaces_vtp_write};
+    dem_surfaces_vtp_write, 0, dem_bodies_csv_write, dem_contacts_csv_write, 0};
 enum { DEMI_OUTPUTS = (int)(sizeof demi_output_writers/sizeof *demi_output_writers) };
 /* Writes output `number` of the present state, or calls the output's function. `o` must point to a
    copy, because that function may add outputs and so move the array. */
@@ -35362,7 +35965,9 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
     sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
     result = d->kind == DEM_OUTPUT_CSV ? demi_output_line(w, o, path)
-                                       : demi_output_writers[d->kind](w, path);
+        : d->kind == DEM_OUTPUT_WALLS ? dem_walls_vtp_write(w, path, d->z0, d->z1)
+        : d->kind == DEM_OUTPUT_FIELD_CSV ? dem_field_csv_write(w, d->field, path)
+        : demi_output_writers[d->kind](w, path);
     demi_free(w, path);
     return result;
 }
@@ -35466,13 +36071,19 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
         return d->function ? 0 : "kind is DEM_OUTPUT_CALL, but function is null; give a function";
     if (!d->path || !*d->path) return "path is null or empty; give a file name, with #### in it "
         "if each output goes to a separate file";
+    if (d->kind == DEM_OUTPUT_WALLS && !(d->z1 >= d->z0))
+        return "z1 is below z0 or not a number; give z0 < z1 (m), between which profiles are "
+            "extruded";
+    if (d->kind == DEM_OUTPUT_FIELD_CSV && (d->field.id < 1 || d->field.id > w->field_count))
+        return "field does not exist; give an id that dem_field_add returned";
     if (d->kind != DEM_OUTPUT_CSV) return 0;
     if (strchr(d->path, '#')) return "path of a CSV file has a #, but all its lines go to one "
         "file; leave the # out";
     if (!d->columns != !d->values)
         return "only one of columns and values is given; give both, or neither for the default "
             "columns";
-    if (d->wall.id && d->values) return "both wall and values are given; give only one of them";
+    if ((d->wall.id != 0) + (d->values != 0) + demi_output_mixes(d) > 1)
+        return "more than one of wall, mixing and values is given; give only one of them";
     if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall does not "
         "exist; give an id that adding a wall returned";
     if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "
@@ -35486,6 +36097,8 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     char *path = 0, *columns = 0;
     id.id = 0;
     if (demi_null(w, call, desc, "desc")) return id;
+    if (desc->kind == DEM_OUTPUT_CSV && demi_output_mixes(desc) &&
+        demi_mixing_check(w, call, &desc->mixing) != DEM_OK) return id;
     bad = demi_output_bad(w, desc);
     if (bad) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s", call, bad);
@@ -38824,7 +39437,8 @@ static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     if (from->outlet_count)
         memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
     to->outlet_count = from->outlet_count;
-    return !from->bodies.zoned || demi_zones_begin(to);
+    return (!from->bodies.zoned || demi_array_begin(to, DEMI_ZONED, &to->bodies.zoned)) &&
+        (!from->bodies.aged || demi_ages_begin(to));
 }
 /* Copies the feeds to the head; slabs refer to them there. Returns 0 if memory ran out. */
 static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
@@ -38924,6 +39538,13 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
+    int i;
+    for (i = 0; i < w->field_count; i++)
+        if (w->fields[i].desc.variance)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d has variance %d, must be 0, "
+                             "because a cell may lie in two slabs, and neither knows the squares "
+                             "of the whole; leave variance out, or use threads", call, i + 1,
+                             w->fields[i].desc.variance);
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
                          "cannot be split into slabs; use threads", call);
@@ -39293,7 +39914,8 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
         w->material_count != h->material_count || w->feed_count != h->feed_count ||
         w->field_count != s->slabs[0].world->field_count ||
-        w->outlet_count != s->slabs[0].world->outlet_count)
+        w->outlet_count != s->slabs[0].world->outlet_count ||
+        demi_body_size(w) != demi_body_size(s->slabs[0].world))
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
                          "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
                          "from which they were created, unchanged, or one built like it", call,

@@ -93,6 +93,7 @@
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
+       >>mixing            mixing and segregation of two components
      file/ - reading and writing
        >>outlines          polygons with many corners cut into triangles
        >>read              reading meshes and profiles
@@ -100,6 +101,7 @@
        >>read-tables       reading grains: columns and arrays recognised by name
        >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
        >>write             writing VTP, VTK, XYZ and CSV
+       >>tables            tables of bodies, contacts, fields and residence times (CSV)
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>changed           reading a checkpoint into a world that differs
@@ -249,12 +251,14 @@
 #include "run/step.h"
 #include "run/runs.h"
 #include "run/measure.h"
+#include "run/mixing.h"
 #include "file/outlines.h"
 #include "file/read.h"
 #include "file/decompose.h"
 #include "file/read-tables.h"
 #include "file/read-grains.h"
 #include "file/write.h"
+#include "file/tables.h"
 #include "file/checkpoint.h"
 #include "file/restore.h"
 #include "file/changed.h"

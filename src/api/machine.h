@@ -307,6 +307,7 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *world, dem_body body,
 
 /* ---- feed and outlets ---- */
 enum { DEM_CLASSES = 16 };         /* largest number of size classes */
+enum { DEM_RESIDENCE_BINS = 64 };  /* bins of the distribution of residence times */
 typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */
 typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
 
@@ -371,6 +372,9 @@ typedef struct dem_outlet_desc {
     dem_real radius[DEM_CLASSES];  /* m, ascending; a grain counts in the nearest class */
     dem_material material;         /* only grains of this material; id 0 means all */
     int keep;                      /* 1: grains stay and are only counted; at most 16 such */
+    /* s, >= 0: width of a bin of residence times, which run from the insertion of a grain (grains
+       that were there before: from dem_outlet_add) until the outlet counts it; 0: not measured */
+    double residence_bin;
 } dem_outlet_desc;
 static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
@@ -386,6 +390,11 @@ typedef struct dem_outlet_state {
     uint64_t back[DEM_CLASSES], held[DEM_CLASSES], back_total, held_total;
     double back_mass[DEM_CLASSES], held_mass[DEM_CLASSES];      /* kg */
     double back_total_mass, held_total_mass;                    /* kg */
+    /* residence_bin only: sums over the counted grains, per class, of their residence times, s, and
+       of the squares, s2: the mean of class k is residence[k]/count[k]. Grains per bin; the last
+       bin has all longer times. */
+    double residence[DEM_CLASSES], residence_square[DEM_CLASSES];
+    uint64_t residence_count[DEM_RESIDENCE_BINS];
 } dem_outlet_state;
 /* Adds an outlet. The wall that is its frame cannot be removed. */
 DEM_API dem_outlet dem_outlet_add(dem_world *world, const dem_outlet_desc *desc);

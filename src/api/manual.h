@@ -441,10 +441,12 @@
                gradients for cones
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
+     [LAC54]   Lacey, J. Appl. Chem. 4 (1954) 257: mixing index
      [MAZ11]   Mazhar, Heyn & Negrut, Multibody Syst. Dyn. 26 (2011) 37: collisions by bins
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU (our copy has neither author nor year): laws by
                the step, meshes, segments
+     [MW47]    Mann & Whitney, Ann. Math. Stat. 18 (1947) 50: comparison of ranks
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PAI95]   Painleve, C. R. Acad. Sci. Paris 121 (1895) 112: a rod that friction jams
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
@@ -459,5 +461,6 @@
      [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
      [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025) 109524: law velocities at the full
                step
+     [WEL62]   Welford, Technometrics 4 (1962) 419: variances in one pass
      [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
 */

@@ -163,6 +163,23 @@ DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path);
    power (W), number of contacts. Writes the heading first if the file is new or empty. */
 DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path);
 
+/* The next four write tables (CSV): a line of names, then one line per item. `id` is as above. */
+
+/* Writes the bodies: id, number of the material, (bounding) radius, position, velocity, spin and
+   body_reals. If a field averages bodies (dem_field_desc.bodies), also the samples, and mean and
+   variance of velocity, spin and force. dem_grains_read reads such a table. */
+DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path);
+/* Writes the contacts: ids of a and b (-1: a wall), wall (0: none), point (m), normal (from a to
+   b), overlap (m) and force (N, on a). Computes forces first if the scene has changed. */
+DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path);
+/* Writes the cells of a field: centre (m) and what dem_field_cell_get returns. */
+DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path);
+/* Writes the distribution of the residence times of an outlet with residence_bin: for each bin up
+   to the last one in use its middle (s), its grains, their fraction per s, and the fraction of all
+   grains up to its end. */
+DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
+                                                  const char *path);
+
 /* ---- replay: a run in one HTML file ---- */
 
 /* A replay plays in any browser, without network or other files. It shows grains of every shape,
@@ -257,7 +274,11 @@ typedef enum dem_output_kind {
     DEM_OUTPUT_CONTACTS,     /* dem_contacts_vtp_write */
     DEM_OUTPUT_CHECKPOINT,   /* dem_checkpoint_write */
     DEM_OUTPUT_CSV,          /* appends the time and some values as a line to a CSV file */
-    DEM_OUTPUT_SURFACES      /* dem_surfaces_vtp_write */
+    DEM_OUTPUT_SURFACES,     /* dem_surfaces_vtp_write */
+    DEM_OUTPUT_WALLS,        /* dem_walls_vtp_write, from z0 to z1 */
+    DEM_OUTPUT_BODIES_CSV,   /* dem_bodies_csv_write */
+    DEM_OUTPUT_CONTACTS_CSV, /* dem_contacts_csv_write */
+    DEM_OUTPUT_FIELD_CSV     /* dem_field_csv_write, of `field` */
 } dem_output_kind;
 /* How an output works. Begin with DEM_OUTPUT_DESC. */
 typedef struct dem_output_desc {
@@ -268,11 +289,14 @@ typedef struct dem_output_desc {
     const char *path;
     double interval;         /* s, required, 1e-12 to 1e15 */
     double start, end;       /* s, times of the first and the last; end 0 means no last */
-    /* CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write;
-       or the values that `values` writes, with `columns` as their names (1 to 32 words as in
-       body_reals, copied); or, if all three are zero, steps, bodies, contacts, kinetic and
-       rotational energy (J) and overlap_max */
+    /* CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write;
+       the mixing of two components, if mixing.cells are set; the values that `values` writes, with
+       `columns` as their names (1 to 32 words as in body_reals, copied); or, if all four are zero,
+       steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max */
     dem_wall wall;
+    dem_mixing_desc mixing;
+    dem_field field;         /* FIELD_CSV: required */
+    dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
     /* CALL: may change the world, but not step it. A return value other than 0 stops the run

@@ -357,6 +357,8 @@ typedef struct dem_field_desc {
        the first factor), evaluated at the centres of cells. Keep cells no longer than width. */
     dem_real width;
     dem_group group;          /* only members of this group; id 0 means all grains */
+    int variance;             /* 1: also variances of cells over the samples; not in slabs */
+    int bodies;               /* 1: also averages each grain (dem_body_means); one field may */
 } dem_field_desc;
 static const dem_field_desc DEM_FIELD_DESC_ZERO = DEM_ZERO;
 #define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO
@@ -390,14 +392,64 @@ typedef struct dem_field_cell {
        unless desc.stress is 1 */
     double stress[6];
     double coordination;      /* contacts per grain, with walls; 0 unless desc.stress is 1 */
+    /* Variances over the samples, of the values of the whole cell; 0 unless desc.variance is 1:
+       of grains, solid, density, (kg/m3)^2, and velocity, m2/s2, weighted by mass. The mean of n
+       independent samples has the standard error sqrt(variance/n). */
+    double grains_variance, solid_variance, density_variance, velocity_variance[3];
 } dem_field_cell;
+/* Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The
+   field chooses grains by material and radius only. */
+typedef struct dem_body_means {
+    uint64_t samples;         /* number of samples; 0: all others are 0 */
+    double velocity[3], velocity_variance[3];   /* m/s; m2/s2 */
+    double spin[3], spin_variance[3];           /* rad/s; (rad/s)^2 */
+    double force[3], force_variance[3];         /* N; N2: of contacts and fields, not of gravity */
+} dem_body_means;
 /* Writes pointers to the sums of a field to `data`. */
 DEM_API dem_result dem_field_get(const dem_world *world, dem_field field, dem_field_data *data);
 /* Computes the means of the cell (i, j, k), which count from 0. */
 DEM_API dem_result dem_field_cell_get(const dem_world *world, dem_field field, int i, int j, int k,
                                       dem_field_cell *cell);
-/* Sets the sums of a field and its number of samples to 0; the window of time stays. */
+/* Writes the averages of a grain to means. An error if no field averages bodies. */
+DEM_API dem_result dem_body_means_get(const dem_world *world, dem_body body,
+                                      dem_body_means *means);
+/* Sets the sums of a field, the averages of its bodies and its number of samples to 0; the window
+   of time stays. */
 DEM_API dem_result dem_field_reset(dem_world *world, dem_field field);
+
+/* Two components of a mixture: the grains of one material or of a range of radii, and all others.
+   Only grains in `box` that can move count. Begin with DEM_MIXING_DESC. */
+typedef struct dem_mixing_desc {
+    dem_box box;              /* m, required: what the cells divide */
+    int cells[3];             /* required, >= 1: along each axis; 10 to 30 grains per cell suit */
+    /* the component: a material (id 0: any), and (bounding) radii, m (max 0: any); not both open */
+    dem_material material;
+    dem_real radius_min, radius_max;
+    dem_vec3 centre, axis;    /* m, a point on an axis; its direction, of any length, 0: no axis */
+} dem_mixing_desc;
+static const dem_mixing_desc DEM_MIXING_DESC_ZERO = DEM_ZERO;
+#define DEM_MIXING_DESC DEM_MIXING_DESC_ZERO
+/* Mixing of two components (>>mixing has the formulas). Indices that are not defined are NaN: if
+   one component is absent, if all grains are in one cell, or if no cell has two grains. */
+typedef struct dem_mixing {
+    int grains, part;         /* grains in the box; of these, grains of the component */
+    int cells;                /* cells with at least one grain */
+    double fraction;          /* part/grains */
+    /* variance of the component's fraction over the cells, weighted by their grains; of cells that
+       hold one component each; of a random mixture */
+    double variance, variance_segregated, variance_random;
+    /* [LAC54]: 0 segregated, 1 random, above 1 more regular than random; Kramer's index, the same
+       with standard deviations instead of variances */
+    double lacey, kramer;
+    /* along x, y, z, and of the distance from the axis: 1 if the component is ahead of all others,
+       0 random, -1 if it is behind; random mixtures deviate by sqrt((N + 1)/(3 Na Nb)) */
+    double segregation[3], segregation_radial;
+    int contacts;             /* between grains in the box; -1: no list (dem_contacts_get) */
+    double contact_segregation;   /* 1: no contact between the components, 0 random; needs a list */
+} dem_mixing;
+/* Computes the mixing of two components from the present places of all grains. */
+DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *desc,
+                                  dem_mixing *mixing);
 
 /* The slope of a free surface, against gravity. */
 typedef struct dem_repose {

@@ -105,7 +105,8 @@ static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
            : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
            : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
-           : a->who == DEMI_ZONED ? w->bodies.zoned
+           : a->who == DEMI_ZONED ? w->bodies.zoned : a->who == DEMI_AGED ? w->bodies.aged
+           : a->who == DEMI_AVERAGED ? w->bodies.averaged
            : a->who == DEMI_GROUPED ? w->bodies.group_count > 0
            : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
 }
@@ -168,6 +169,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
         (w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
         (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
+        w->bodies.aged << DEMI_AGED | w->bodies.averaged << DEMI_AVERAGED |
         w->bodies.booked << DEMI_BOOKED | (w->bodies.group_count > 0) << DEMI_GROUPED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
@@ -215,11 +217,21 @@ static int demi_orient_begin(dem_world *w) {
     return 1;
 }
 
-/* Gives bodies the array `zones` of counting outlets. Returns 0 if memory ran out. */
-static int demi_zones_begin(dem_world *w) {
-    if (w->bodies.zoned) return 1;
-    if (!demi_bodies_room(w, 1 << DEMI_ZONED, 0, (size_t)w->bodies.capacity)) return 0;
-    w->bodies.zoned = 1;
+/* Gives bodies the arrays of this `who`, set to 0, unless *has, which becomes 1. Returns 0 if
+   memory ran out. */
+static int demi_array_begin(dem_world *w, int who, int *has) {
+    if (*has) return 1;
+    if (!demi_bodies_room(w, 1 << who, 0, (size_t)w->bodies.capacity)) return 0;
+    *has = 1;
+    return 1;
+}
+/* Begins measuring the ages of bodies. The present ones are inserted now. Returns 0 if memory ran
+   out. */
+static int demi_ages_begin(dem_world *w) {
+    const int has = w->bodies.aged;
+    int i;
+    if (!demi_array_begin(w, DEMI_AGED, &w->bodies.aged)) return 0;
+    for (i = 0; i < w->bodies.count && !has; i++) w->bodies.born[i] = w->clock.time;
     return 1;
 }
 
@@ -264,6 +276,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.slot[i] = (uint32_t)slot;
     w->bodies.material[i] = material + 1;
     w->bodies.slot_index[slot] = i;
+    if (w->bodies.aged) w->bodies.born[i] = w->clock.time;
     if (w->bodies.orienting) {
         demi_quat_put(w->bodies.orient + 4*i, dem_quat_make(1, 0, 0, 0));
         demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));

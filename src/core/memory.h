@@ -109,6 +109,8 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_COUNTED      if bodies have user-defined numbers; one item for each number
          DEMI_ZONED        if there are outlets that only count
          DEMI_GROUPED      if desc.groups names groups
+         DEMI_AGED         if an outlet measures residence times
+         DEMI_AVERAGED     if a field averages bodies
          DEMI_BOOKED       with a ledger and an integrator that predicts velocities
          DEMI_SLOTS        always, with one item for each slot instead of each body
        what: how it is used
@@ -116,8 +118,9 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
          DEMI_REALS        the same, and reals that must be finite
          DEMI_PLACES       the same; x, y, z are a position, which periodic wrapping shifts
          0                 scratch memory --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
-       DEMI_GROUPED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_AGED,
+       DEMI_AVERAGED, DEMI_BOOKED, DEMI_GROUPED, DEMI_SLOTS };
+enum { DEMI_MEANS = 19 };          /* doubles of a body's averages: see demi_means_add */
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     size_t field, item;            /* offset of its pointer in demi_bodies; bytes per body (for
@@ -151,6 +154,8 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(zones,           1, DEMI_ZONED,  DEMI_KEPT),
     DEMI_ARRAY(groups,          1, DEMI_GROUPED, DEMI_KEPT),
+    DEMI_ARRAY(born,            1, DEMI_AGED,   DEMI_KEPT),
+    DEMI_ARRAY(means,  DEMI_MEANS, DEMI_AVERAGED, DEMI_KEPT),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),

@@ -217,7 +217,9 @@ static const demi_field_row demi_outlet_state_rows[] = {
     DEMI_N(last, 'd', DEMI_LARGEST), DEMI_N(back, 'u', DEMI_SUM), DEMI_N(held, 'u', DEMI_SUM),
     DEMI_N(back_total, 'u', DEMI_SUM), DEMI_N(held_total, 'u', DEMI_SUM),
     DEMI_N(back_mass, 'd', DEMI_SUM), DEMI_N(held_mass, 'd', DEMI_SUM),
-    DEMI_N(back_total_mass, 'd', DEMI_SUM), DEMI_N(held_total_mass, 'd', DEMI_SUM), DEMI_ROW_END};
+    DEMI_N(back_total_mass, 'd', DEMI_SUM), DEMI_N(held_total_mass, 'd', DEMI_SUM),
+    DEMI_N(residence, 'd', DEMI_SUM), DEMI_N(residence_square, 'd', DEMI_SUM),
+    DEMI_N(residence_count, 'u', DEMI_SUM), DEMI_ROW_END};
 #undef DEMI_OF
 
 /* --- the desc of a world. It is checked before there is a world that could hold a message, so each

@@ -139,6 +139,9 @@ typedef struct demi_bodies {
     uint32_t *groups;              /* bit k: in group k of desc.groups */
     int zoned;                     /* `zones` exists */
     uint32_t *zones;               /* bit k: in the region of counting outlet k; 16 + k: known */
+    int aged, averaged;            /* `born` exists; `means` exists */
+    double *born;                  /* s: when it was inserted, or measuring began (>>feed) */
+    double *means;                 /* x DEMI_MEANS: averages over samples (>>fields) */
     uint8_t *ghost;              /* by slot; 1: ghost, a copy owned by another slab; null outside
                                     >>slabs */
     dem_real *scratch;             /* x 4, for permuting */

@@ -27,14 +27,38 @@ static size_t demi_output_marks(const char *path, size_t *count) {
     *count = end - begin;
     return begin;
 }
+static const char demi_mixing_heading[] = "time,grains,part,cells,variance,lacey,kramer,"
+    "segregation_x,segregation_y,segregation_z,segregation_radial,contact_segregation";
+enum { DEMI_MIXING = 11 };
+/* Writes the DEMI_MIXING values of that heading that follow the time. */
+static dem_result demi_mixing_values(const dem_world *w, const dem_mixing_desc *d, double *value) {
+    dem_mixing m;
+    const dem_result result = dem_mixing_get(w, d, &m);
+    if (result != DEM_OK) return result;
+    value[0] = m.grains;
+    value[1] = m.part;
+    value[2] = m.cells;
+    value[3] = m.variance;
+    value[4] = m.lacey;
+    value[5] = m.kramer;
+    memcpy(value + 6, m.segregation, 3*sizeof *value);
+    value[9] = m.segregation_radial;
+    value[10] = m.contact_segregation;
+    return DEM_OK;
+}
 /* Returns the names of the columns of a CSV file, without the time, separated by spaces. */
 static const char *demi_output_names(const dem_output_desc *d) {
     return d->columns ? d->columns : demi_output_columns;
+}
+/* True if a line of the CSV file is the mixing of two components. */
+static int demi_output_mixes(const dem_output_desc *d) {
+    return d->mixing.cells[0] || d->mixing.cells[1] || d->mixing.cells[2];
 }
 /* Writes the first line of a CSV file to `heading`, of at least DEMI_CSV_LINE bytes. */
 static void demi_output_heading(const dem_output_desc *d, char *heading) {
     char *c;
     if (d->wall.id) { strcpy(heading, demi_loads_heading); return; }
+    if (demi_output_mixes(d)) { strcpy(heading, demi_mixing_heading); return; }
     strcpy(heading, "time ");
     demi_names_copy(demi_output_names(d), heading + 5);
     for (c = heading; *c; c++) if (*c == ' ') *c = ',';
@@ -95,7 +119,10 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
                          "wall %d, which was removed; remove the output too (dem_output_remove)",
                          (int)o->id, (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
-    else {
+    else if (demi_output_mixes(d)) {
+        count = DEMI_MIXING;
+        result = demi_mixing_values(w, &d->mixing, value);
+    } else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
         if (d->values) {
             const demi_calling was = demi_calls(w, "an output of values", 0);
@@ -119,11 +146,11 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
-/* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the two
-   kinds that demi_output_write handles itself. */
+/* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the kinds
+   that demi_output_write handles itself. */
 static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
     0, dem_vtp_write, dem_xyz_write, dem_contacts_vtp_write, dem_checkpoint_write, 0,
-    dem_surfaces_vtp_write};
+    dem_surfaces_vtp_write, 0, dem_bodies_csv_write, dem_contacts_csv_write, 0};
 enum { DEMI_OUTPUTS = (int)(sizeof demi_output_writers/sizeof *demi_output_writers) };
 /* Writes output `number` of the present state, or calls the output's function. `o` must point to a
    copy, because that function may add outputs and so move the array. */
@@ -146,7 +173,9 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
     sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
     result = d->kind == DEM_OUTPUT_CSV ? demi_output_line(w, o, path)
-                                       : demi_output_writers[d->kind](w, path);
+        : d->kind == DEM_OUTPUT_WALLS ? dem_walls_vtp_write(w, path, d->z0, d->z1)
+        : d->kind == DEM_OUTPUT_FIELD_CSV ? dem_field_csv_write(w, d->field, path)
+        : demi_output_writers[d->kind](w, path);
     demi_free(w, path);
     return result;
 }
@@ -250,13 +279,19 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
         return d->function ? 0 : "kind is DEM_OUTPUT_CALL, but function is null; give a function";
     if (!d->path || !*d->path) return "path is null or empty; give a file name, with #### in it "
         "if each output goes to a separate file";
+    if (d->kind == DEM_OUTPUT_WALLS && !(d->z1 >= d->z0))
+        return "z1 is below z0 or not a number; give z0 < z1 (m), between which profiles are "
+            "extruded";
+    if (d->kind == DEM_OUTPUT_FIELD_CSV && (d->field.id < 1 || d->field.id > w->field_count))
+        return "field does not exist; give an id that dem_field_add returned";
     if (d->kind != DEM_OUTPUT_CSV) return 0;
     if (strchr(d->path, '#')) return "path of a CSV file has a #, but all its lines go to one "
         "file; leave the # out";
     if (!d->columns != !d->values)
         return "only one of columns and values is given; give both, or neither for the default "
             "columns";
-    if (d->wall.id && d->values) return "both wall and values are given; give only one of them";
+    if ((d->wall.id != 0) + (d->values != 0) + demi_output_mixes(d) > 1)
+        return "more than one of wall, mixing and values is given; give only one of them";
     if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall does not "
         "exist; give an id that adding a wall returned";
     if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "
@@ -270,6 +305,8 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     char *path = 0, *columns = 0;
     id.id = 0;
     if (demi_null(w, call, desc, "desc")) return id;
+    if (desc->kind == DEM_OUTPUT_CSV && demi_output_mixes(desc) &&
+        demi_mixing_check(w, call, &desc->mixing) != DEM_OK) return id;
     bad = demi_output_bad(w, desc);
     if (bad) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s", call, bad);

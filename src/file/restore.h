@@ -26,6 +26,8 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
     t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
+    t->bodies.aged = w->bodies.aged;
+    t->bodies.averaged = w->bodies.averaged;
     if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
     for (i = 0; i < w->surface_count; i++) t->surfaces[i] = w->surfaces[i];
     t->surface_count = w->surface_count;

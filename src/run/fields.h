@@ -24,15 +24,20 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_i
 }
 /* Blocks of a field's sums. The block of constant c begins at c x cells; within it, the numbers of
    one cell are adjacent (3 of momentum; 6 of flux and of stress: xx yy zz xy xz yz). The last
-   constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist. */
+   constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist.
+   desc.variance adds twice as many: squares, and a copy of the first blocks. */
 enum { DEMI_SOLID = 0, DEMI_MASS = 1, DEMI_MOMENTUM = 2, DEMI_GRAINS = 5, DEMI_FLUX = 6,
        DEMI_STRESS = 12, DEMI_CONTACTS = 18, DEMI_FIELD_REALS = 19 };
 static size_t demi_field_cells(const demi_field *f) {
     return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
 }
-/* Returns the length of `sums`. */
-static size_t demi_field_reals(const demi_field *f) {
+/* Returns where the squares of desc.variance begin in `sums`, and the length of `sums`. The blocks
+   of squares are solid^2, mass^2, momentum^2/mass and grains^2 of each sample, summed. */
+static size_t demi_field_squares(const demi_field *f) {
     return demi_field_cells(f)*(f->desc.stress ? DEMI_FIELD_REALS : DEMI_FLUX);
+}
+static size_t demi_field_reals(const demi_field *f) {
+    return demi_field_squares(f) + (f->desc.variance ? 2*DEMI_FLUX*demi_field_cells(f) : 0);
 }
 /* The geometry of a field's grid, computed once per sample. */
 typedef struct demi_grid {
@@ -207,6 +212,40 @@ static void demi_field_contacts(const dem_world *w, demi_grid *g) {
         }
     }
 }
+/* Before a sample: copies the sums of grains. After it: adds the squares of what the sample has
+   added to them. Momentum^2 over mass weights the square of a cell's velocity by its mass, as the
+   mean velocity does. */
+static void demi_field_squares_begin(demi_field *f) {
+    const size_t n = DEMI_FLUX*demi_field_cells(f);
+    if (f->desc.variance) memcpy(f->sums + demi_field_squares(f) + n, f->sums, n*sizeof(double));
+}
+static void demi_field_squares_add(demi_field *f) {
+    const size_t n = demi_field_cells(f);
+    double *square = f->sums + demi_field_squares(f);
+    const double *was = square + DEMI_FLUX*n;
+    size_t k;
+    for (k = 0; f->desc.variance && k < DEMI_FLUX*n; k++) {
+        const int moves = k >= DEMI_MOMENTUM*n && k < DEMI_GRAINS*n;
+        const size_t cell = DEMI_MASS*n + (k - DEMI_MOMENTUM*n)/3;
+        const double x = f->sums[k] - was[k], m = moves ? f->sums[cell] - was[cell] : 1;
+        if (m > 0) square[k] += x*x/m;
+    }
+}
+/* Adds a sample to the averages of body i: means[0] counts samples; then come the means of
+   velocity, spin and force, and for each the sum of squares about its mean (recursion of [WEL62],
+   exact also for small variances about a large mean). */
+static void demi_means_add(const dem_world *w, int i) {
+    const demi_bodies *b = &w->bodies;
+    const dem_real *const from[3] = {b->vel + 4*i, b->spin + 4*i, b->force + 4*i};
+    double *means = b->means + DEMI_MEANS*i;
+    int k;
+    means[0]++;
+    for (k = 0; k < 9; k++) {
+        const double x = (double)from[k/3][k%3], off = x - means[1 + k];
+        means[1 + k] += off/means[0];
+        means[10 + k] += off*(x - means[1 + k]);
+    }
+}
 /* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
@@ -231,8 +270,13 @@ static void demi_fields_sample(dem_world *w) {
         field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
             : w->clock.time + 100*(double)w->clock.dt;
         if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
-        for (i = 0; i < w->bodies.count; i++)
-            if (!demi_is_ghost(w, i) && demi_field_counts(w, d, i)) demi_field_grain(w, &g, i);
+        demi_field_squares_begin(field);
+        for (i = 0; i < w->bodies.count; i++) {
+            if (demi_is_ghost(w, i) || !demi_field_counts(w, d, i)) continue;
+            demi_field_grain(w, &g, i);
+            if (d->bodies) demi_means_add(w, i);
+        }
+        demi_field_squares_add(field);
         field->samples++;
     }
 }
@@ -246,7 +290,8 @@ static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, '
     DEMI_FIELD(interval, 'd', DEMI_FROM, "s", 0), DEMI_ROW(dem_field_desc, material, 'i'),
     DEMI_FIELD(radius_min, 'r', DEMI_FROM, "m", 0), DEMI_FIELD(radius_max, 'r', DEMI_FROM, "m", 1),
     DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_FIELD(width, 'r', DEMI_FROM, "m", 0),
-    DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW_END};
+    DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW(dem_field_desc, variance, 'i'),
+    DEMI_ROW(dem_field_desc, bodies, 'i'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
@@ -264,12 +309,20 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_group_check(w, "dem_field_add", d->group, 0) != DEM_OK ||
         (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK))
         return id;
+    for (k = 0; k < w->field_count && d->bodies; k++)
+        if (w->fields[k].desc.bodies) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: bodies is %d, but field %d averages "
+                      "bodies already, and each body has room for one average; set bodies to 0, "
+                      "or use that field", d->bodies, k + 1);
+            return id;
+        }
     memset(&field, 0, sizeof field);
     field.used = 1;
     field.desc = *d;
     field.next = d->start;
     field.sums = (double *)demi_hold(w, DEMI_RUN, demi_field_reals(&field), sizeof(double));
-    if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1)) {
+    if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1) ||
+        (d->bodies && !demi_array_begin(w, DEMI_AVERAGED, &w->bodies.averaged))) {
         demi_free(w, field.sums);
         demi_no_memory(w, "dem_field_add");
         return id;
@@ -309,10 +362,47 @@ DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
     demi_field *f = demi_field_find(w, "dem_field_reset", id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
+    if (f->desc.bodies && w->bodies.count)
+        memset(w->bodies.means, 0, DEMI_MEANS*(size_t)w->bodies.count*sizeof(double));
     f->samples = 0;
     return DEM_OK;
 }
+DEM_API dem_result dem_body_means_get(const dem_world *w, dem_body body, dem_body_means *out) {
+    int i, k;
+    if (demi_null_look(w, "dem_body_means_get", out, "means")) return DEM_ERROR_ARGUMENT;
+    if (!w->bodies.averaged)
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_body_means_get: no field "
+                         "averages bodies; add one with bodies = 1 (dem_field_desc)");
+    i = demi_body_index((dem_world *)w, "dem_body_means_get", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->samples = (uint64_t)w->bodies.means[DEMI_MEANS*i];
+    for (k = 0; k < 9 && out->samples; k++) {
+        double *const mean[3] = {out->velocity, out->spin, out->force};
+        double *const variance[3] = {out->velocity_variance, out->spin_variance,
+                                     out->force_variance};
+        mean[k/3][k%3] = w->bodies.means[DEMI_MEANS*i + 1 + k];
+        variance[k/3][k%3] = w->bodies.means[DEMI_MEANS*i + 10 + k]/(double)out->samples;
+    }
+    return DEM_OK;
+}
 
+/* Computes the variances over n samples of cell c, of this volume (m3), from the means in `out`. */
+static void demi_cell_variances(const demi_field *f, size_t c, double n, double volume,
+                                dem_field_cell *out) {
+    const size_t cells = demi_field_cells(f);
+    const double *square = f->sums + demi_field_squares(f);
+    const double mass = f->sums[DEMI_MASS*cells + c];
+    int e;
+    if (!f->desc.variance) return;
+    out->solid_variance = DEMI_MAX(square[DEMI_SOLID*cells + c]/n - out->solid*out->solid, 0);
+    out->density_variance = DEMI_MAX(square[DEMI_MASS*cells + c]/(n*volume*volume) -
+                                     out->density*out->density, 0);
+    out->grains_variance = DEMI_MAX(square[DEMI_GRAINS*cells + c]/n - out->grains*out->grains, 0);
+    for (e = 0; e < 3 && mass > 0; e++)
+        out->velocity_variance[e] = DEMI_MAX(square[DEMI_MOMENTUM*cells + 3*c + (size_t)e]/mass -
+                                             out->velocity[e]*out->velocity[e], 0);
+}
 /* Fluctuations about the mean velocity v of the cell give the kinetic stress, <m v v>/volume -
    density v v, which is added to the stress of contacts. The granular temperature is the trace of
    the kinetic stress over density and number of dimensions. */
@@ -341,6 +431,7 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     out->density = d.mass[c]/n/volume;
     for (e = 0; e < 3; e++)
         out->velocity[e] = v[e] = d.mass[c] > 0 ? d.momentum[3*c + (size_t)e]/d.mass[c] : 0;
+    demi_cell_variances(&w->fields[id.id - 1], c, n, volume, out);
     if (!d.stress) return DEM_OK;
     for (e = 0; e < 6; e++) {
         const double vv = e < 3 ? v[e]*v[e] : e == 3 ? v[0]*v[1] : e == 4 ? v[0]*v[2] : v[1]*v[2];

@@ -391,7 +391,9 @@ static const demi_field_row demi_outlet_rows[] = {
     DEMI_LIMITED(dem_outlet_desc, wanted_max, 'r', DEMI_FROM, DBL_MAX, "m"),
     DEMI_LIMITED(dem_outlet_desc, class_count, 'i', DEMI_FROM, DEM_CLASSES, ""),
     DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
-    DEMI_ROW(dem_outlet_desc, keep, 'i'), DEMI_ROW_END};
+    DEMI_ROW(dem_outlet_desc, keep, 'i'),
+    DEMI_LIMITED(dem_outlet_desc, residence_bin, 'd', DEMI_FROM, DEMI_FARTHEST, "s"),
+    DEMI_ROW_END};
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
     const char *call = "dem_outlet_add";
@@ -419,7 +421,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
                   kept);
         return id;
     }
-    if ((d->keep && !demi_zones_begin(w)) ||
+    if ((d->keep && !demi_array_begin(w, DEMI_ZONED, &w->bodies.zoned)) ||
+        (d->residence_bin > 0 && !demi_ages_begin(w)) ||
         !DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
         demi_no_memory(w, call);
         return id;
@@ -453,6 +456,12 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     *(wanted ? &o->state.sorted : &o->state.gangue) += 1;
     *(wanted ? &o->state.sorted_mass : &o->state.gangue_mass) += m;
     o->state.last = w->clock.time;
+    if (d->residence_bin > 0) {
+        const double stay = w->clock.time - w->bodies.born[i], bin = stay/d->residence_bin;
+        o->state.residence[k] += stay;
+        o->state.residence_square[k] += stay*stay;
+        o->state.residence_count[(int)DEMI_MIN(bin, DEM_RESIDENCE_BINS - 1)]++;
+    }
 }
 /* True if x, in the outlet's frame, is in the box and at least `beyond` from the z axis. */
 static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {

@@ -84,7 +84,8 @@ static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     if (from->outlet_count)
         memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
     to->outlet_count = from->outlet_count;
-    return !from->bodies.zoned || demi_zones_begin(to);
+    return (!from->bodies.zoned || demi_array_begin(to, DEMI_ZONED, &to->bodies.zoned)) &&
+        (!from->bodies.aged || demi_ages_begin(to));
 }
 /* Copies the feeds to the head; slabs refer to them there. Returns 0 if memory ran out. */
 static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
@@ -184,6 +185,13 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
+    int i;
+    for (i = 0; i < w->field_count; i++)
+        if (w->fields[i].desc.variance)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d has variance %d, must be 0, "
+                             "because a cell may lie in two slabs, and neither knows the squares "
+                             "of the whole; leave variance out, or use threads", call, i + 1,
+                             w->fields[i].desc.variance);
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
                          "cannot be split into slabs; use threads", call);
@@ -553,7 +561,8 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
         w->material_count != h->material_count || w->feed_count != h->feed_count ||
         w->field_count != s->slabs[0].world->field_count ||
-        w->outlet_count != s->slabs[0].world->outlet_count)
+        w->outlet_count != s->slabs[0].world->outlet_count ||
+        demi_body_size(w) != demi_body_size(s->slabs[0].world))
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
                          "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
                          "from which they were created, unchanged, or one built like it", call,

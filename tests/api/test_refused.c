@@ -133,6 +133,7 @@ static dem_joint_desc good_dem_joint_desc(refuser *r) { dem_joint_desc d = DEM_J
 static dem_feed_desc good_dem_feed_desc(refuser *r) { dem_feed_desc d = DEM_FEED_DESC; (void)r; d.material.id = 1; d.class_count = 1; d.radius[0] = DEM_R(1e-3); d.amount[0] = 1; d.rate = 1; d.box = box_of(0.02, 0.02, 0.02, 0.04, 0.04, 0.04); return d; }
 static dem_outlet_desc good_dem_outlet_desc(refuser *r) { dem_outlet_desc d = DEM_OUTLET_DESC; (void)r; d.box = box_of(1, 1, 1, 2, 2, 2); return d; }
 static dem_trials_desc good_dem_trials_desc(refuser *r) { dem_trials_desc d; (void)r; memset(&d, 0, sizeof d); return d; }
+static dem_mixing_desc good_dem_mixing_desc(refuser *r) { dem_mixing_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; d.radius_max = DEM_R(0.01); return d; }
 static dem_field_desc good_dem_field_desc(refuser *r) { dem_field_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; return d; }
 static dem_wall_part good_dem_wall_part(refuser *r) { static const char first[] = "a"; static dem_wall_part two[2]; (void)r; memset(two, 0, sizeof two); two[0].name = two[1].name = first; two[0].material.id = two[1].material.id = 1; return two[0]; }
 static dem_grains good_dem_grains(refuser *r) { static dem_real radii[2] = {0.001f, 0.001f}; static dem_real places[6]; dem_grains g; (void)r; memset(&g, 0, sizeof g); memcpy(places, corner_reals, sizeof places); g.count = 2; g.positions = places; g.radii = radii; return g; }
@@ -198,7 +199,7 @@ static dem_world *refused_world(int impulses) {
     dem_spheres_add(w, stuff, 27, x, 0, 0, DEM_R(1e-3));
     { const dem_feed_desc d = good_dem_feed_desc(&r); dem_feed_add(w, &d); }
     { const dem_outlet_desc d = good_dem_outlet_desc(&r); dem_outlet_add(w, &d); }
-    { const dem_field_desc d = good_dem_field_desc(&r); dem_field_add(w, &d); }
+    { dem_field_desc d = good_dem_field_desc(&r); d.bodies = 1; dem_field_add(w, &d); }
     if (impulses) { const dem_joint_desc d = good_dem_joint_desc(&r); dem_joint_add(w, &d); }
     if (dem_world_step(w, 5) != DEM_OK) printf("        %s\n", dem_world_error_get(w));
     return w;
