@@ -9,6 +9,7 @@
        study_options(argc, argv, "what it does", table, 1);  // --help; exit code 2 on a mistake
        study_begin("build/results");                         // makes folder and summary.txt
        study_progress("mill", 0.1, particle_steps);          // as often as you like; prints on stderr
+       study_sweep_run(&sweep, result);                      // many cases on all cores, into one CSV
        study_result("torque_mean", 0.031, "N m");            // prints on stdout and into summary.txt
        return study_end();                                   // 0, or 1 if something failed
 */
@@ -25,11 +26,15 @@
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/stat.h>
 #include <sys/time.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #define STUDY_POSIX 1
 #define study_terminal() isatty(2)
 #else
 #define study_terminal() 0
+#endif
+#ifdef _OPENMP
+#include <omp.h>
 #endif
 #if defined(__GNUC__)
 #define STUDY_FN static __attribute__((unused))
@@ -273,11 +278,12 @@ STUDY_FN void study_csv(const char *name, const char *heading, int rows, int col
 
 /* ---- progress ---- */
 
-/* Reports the progress of the task `what`: done, 0 to 1; work, grains times steps since it began. The
+/* Reports the progress of the task `what`: done, 0 to 1; work, grains times steps since it began, 0 prints no rate. The
    first call for a new `what` starts its clock; the call with done = 1 ends the line. On a terminal
    one line is rewritten, a file gets a line every 10 %. */
 STUDY_FN void study_progress(const char *what, double done, double work) {
     double now = study_clock(), spent, left;
+    char rate[64] = "";
     int terminal = study_terminal();
     if (study.quiet) return;
     if (strcmp(study.told, what)) {
@@ -292,12 +298,204 @@ STUDY_FN void study_progress(const char *what, double done, double work) {
     study.tenths = (int)(10*done + 1e-9);
     spent = now - study.begun;
     left = done < 1 ? spent*(1 - done)/(done > 0 ? done : 1) : spent;
-    fprintf(stderr, "%s%s %3.0f %%  %6.2f M particle-steps/s  %d:%02d %s%s", terminal ? "\r" : "",
-            what, 100*done, spent > 0 ? 1e-6*work/spent : 0, (int)left/60, (int)left%60,
+    if (work > 0) snprintf(rate, sizeof rate, "  %6.2f M particle-steps/s", spent > 0 ? 1e-6*work/spent : 0);
+    fprintf(stderr, "%s%s %3.0f %%%s  %d:%02d %s%s", terminal ? "\r" : "",
+            what, 100*done, rate, (int)left/60, (int)left%60,
             done < 1 ? "left " : "spent", terminal && done < 1 ? "" : "\n");
     fflush(stderr);
     study.open = terminal && done < 1;
     if (done >= 1) study.told[0] = 0;
+}
+
+/* ---- sweeps: many cases on all cores ---- */
+
+/* A case computes `result` from `parameter`, and returns 0, or another value if it failed. It runs in a process of its
+   own with one thread, where there is fork, so that it can only return its results. Print nothing in it. */
+typedef int (*study_case_fn)(const double *parameter, double *result, void *user);
+/* A sweep. Its CSV has one row per case: the parameters, then the results, under `heading`. A case whose row is in the
+   file is not run again, so that a sweep can be interrupted, extended by further cases, and continued. */
+typedef struct study_sweep {
+    const char *csv, *heading;    /* name of the file in the present folder; "friction,seed,angle_deg" */
+    int cases, parameters, results;
+    const double *parameter;      /* cases x parameters */
+    study_case_fn run;
+    void *user;
+    int jobs;                     /* processes at a time; 0: one per core; 1: no process, one case after the other */
+} study_sweep;
+typedef struct study_job { long id; int at, from; } study_job;      /* process; case; end of the pipe for reading */
+
+/* Writes the row of a case without its results, as it begins in the file. */
+STUDY_FN int study_row(char *row, size_t size, const double *value, int count) {
+    int k, n = 0;
+    for (k = 0; k < count && n < (int)size; k++) n += snprintf(row + n, size - (size_t)n, "%.12g,", value[k]);
+    return n;
+}
+/* Reads the results that the file has. done: by case, 1 if its row is complete. Returns 0 if the file has another
+   heading. A row that was cut short is not complete. */
+STUDY_FN int study_sweep_read(const study_sweep *s, double *result, char *done, char **text) {
+    FILE *file = fopen(study_path(s->csv), "rb");
+    char key[1024], *line, *end;
+    long size = 0;
+    int i, k;
+    *text = 0;
+    if (!file) return 1;
+    fseek(file, 0, SEEK_END);
+    size = ftell(file);
+    rewind(file);
+    *text = (char *)study_alloc((size_t)size + 1, 1);
+    size = (long)fread(*text, 1, (size_t)size, file);
+    fclose(file);
+    (*text)[size] = 0;
+    if (!size) return 1;
+    end = strchr(*text, '\n');
+    if (!end || strlen(s->heading) != (size_t)(end - *text) || strncmp(*text, s->heading, (size_t)(end - *text))) {
+        study_fail("%s has other columns than %s; remove the file, or give another name", study_path(s->csv), s->heading);
+        return 0;
+    }
+    for (line = end + 1; (end = strchr(line, '\n')) != 0; line = end + 1)
+        for (i = 0; i < s->cases; i++) {
+            const int n = study_row(key, sizeof key, s->parameter + i*s->parameters, s->parameters);
+            char *at = line + n;
+            if (end - line < n || strncmp(line, key, (size_t)n)) continue;
+            for (k = 0; k < s->results && at < end; k++) {
+                char *next;
+                result[i*s->results + k] = strtod(at, &next);
+                if (next == at || (*next != ',' && *next != '\n')) break;
+                at = next + 1;
+            }
+            done[i] = (char)(k == s->results && at == end + 1);
+        }
+    return 1;
+}
+STUDY_FN void study_sweep_row(const study_sweep *s, FILE *file, const double *result, int at) {
+    char key[1024];
+    int k;
+    study_row(key, sizeof key, s->parameter + at*s->parameters, s->parameters);
+    fputs(key, file);
+    for (k = 0; k < s->results; k++)
+        fprintf(file, "%.9g%c", result[at*s->results + k], k + 1 < s->results ? ',' : '\n');
+}
+/* Replaces the file by one with all rows in the order of the cases; rows of other cases, which the file had before,
+   come last. */
+STUDY_FN void study_sweep_write(const study_sweep *s, const double *result, const char *done, const char *before) {
+    char key[1024], path[1024], fresh[1040];
+    const char *line = before ? strchr(before, '\n') : 0, *end;
+    FILE *file;
+    int i, bad;
+    snprintf(path, sizeof path, "%s", study_path(s->csv));
+    snprintf(fresh, sizeof fresh, "%s.tmp", path);
+    file = fopen(fresh, "wb");
+    if (!file) { study_fail("cannot write %s: %s", fresh, strerror(errno)); return; }
+    fprintf(file, "%s\n", s->heading);
+    for (i = 0; i < s->cases; i++) if (done[i] == 1) study_sweep_row(s, file, result, i);
+    for (; line && (end = strchr(line + 1, '\n')) != 0; line = end) {
+        for (i = 0; i < s->cases; i++) {
+            const int n = study_row(key, sizeof key, s->parameter + i*s->parameters, s->parameters);
+            if (!strncmp(line + 1, key, (size_t)n)) break;
+        }
+        if (i == s->cases) fwrite(line + 1, 1, (size_t)(end - line), file);
+    }
+    bad = ferror(file);
+    bad |= fclose(file);
+#ifndef STUDY_POSIX
+    remove(path);
+#endif
+    if (bad || rename(fresh, path)) study_fail("%s was not written in full: is the disk full?", path);
+}
+#ifdef STUDY_POSIX
+/* Starts a case in a process of its own. Returns 0 if the system refuses one. */
+STUDY_FN int study_job_start(const study_sweep *s, int at, study_job *job) {
+    int ends[2], bad;
+    double *result;
+    if (pipe(ends)) return 0;
+    fflush(0);
+    job->id = (long)fork();
+    job->at = at;
+    job->from = ends[0];
+    if (job->id < 0) { close(ends[0]); close(ends[1]); return 0; }
+    if (job->id) { close(ends[1]); return 1; }
+#ifdef _OPENMP
+    omp_set_num_threads(1);
+#endif
+    result = (double *)study_alloc((size_t)s->results, sizeof *result);
+    bad = s->run(s->parameter + at*s->parameters, result, s->user) != 0;
+    fflush(0);
+    bad |= write(ends[1], result, (size_t)s->results*sizeof *result) != (long)((size_t)s->results*sizeof *result);
+    _exit(bad);
+}
+/* Waits for the end of any of `count` jobs, reads its results and returns its index; *good: 1 if it has them. */
+STUDY_FN int study_job_end(const study_sweep *s, const study_job *job, int count, double *result, int *good) {
+    int state, k;
+    for (;;) {
+        const long id = (long)wait(&state);
+        for (k = 0; k < count && job[k].id != id; k++) {}
+        if (k < count || (id < 0 && errno != EINTR)) break;
+    }
+    if (k == count) k = 0;        /* no child is left: somebody else has waited for it */
+    *good = read(job[k].from, result + job[k].at*s->results, (size_t)s->results*sizeof *result) ==
+        (long)((size_t)s->results*sizeof *result) && WIFEXITED(state) && !WEXITSTATUS(state);
+    close(job[k].from);
+    return k;
+}
+#endif
+/* Books a case that ended: appends its row to the file. */
+STUDY_FN void study_sweep_book(const study_sweep *s, const double *result, char *done, int at, int good, int ended) {
+    char key[1024];
+    const int n = study_row(key, sizeof key, s->parameter + at*s->parameters, s->parameters);
+    FILE *file = good ? fopen(study_path(s->csv), "ab") : 0;
+    done[at] = (char)(good ? 1 : 2);
+    if (file) study_sweep_row(s, file, result, at);
+    if (!good) study_fail("%s: the case %.*s failed; it is run again next time", s->csv, n - 1, key);
+    else if (!file || fclose(file)) study_fail("cannot write %s", study_path(s->csv));
+    study_progress(s->csv, (double)ended/s->cases, 0);
+}
+/* Runs the cases whose rows are missing, and writes the CSV after each. result: cases x results; the rows of failed
+   cases hold NaN. Returns the number of cases that were run now, -1 if the CSV is that of another sweep. */
+STUDY_FN int study_sweep_run(const study_sweep *s, double *result) {
+    char *done = (char *)study_alloc((size_t)s->cases, 1), *before = 0;
+    int i, k, ran = 0, ended = 0;
+    if (!study_sweep_read(s, result, done, &before)) { free(done); free(before); return -1; }
+    study_sweep_write(s, result, done, before);         /* without rows that were cut short */
+    for (i = 0; i < s->cases; i++) ended += done[i];
+    study_progress(s->csv, (double)ended/s->cases, 0);
+#ifdef STUDY_POSIX
+    if (s->jobs != 1) {
+        const int most = s->jobs > 0 ? s->jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
+        study_job *job = (study_job *)study_alloc((size_t)(most > 0 ? most : 1), sizeof *job);
+        int running = 0, good;
+        for (i = 0; i < s->cases || running;) {
+            if (i < s->cases && done[i]) { i++; continue; }
+            if (i < s->cases && running < most && study_job_start(s, i, &job[running])) { i++; running++; continue; }
+            if (!running) break;  /* the system starts no process: the loop below runs the rest */
+            k = study_job_end(s, job, running, result, &good);
+            study_sweep_book(s, result, done, job[k].at, good, ended + ++ran);
+            job[k] = job[--running];
+        }
+        free(job);
+    }
+#endif
+    for (i = 0; i < s->cases; i++)
+        if (!done[i]) {
+            const int good = !s->run(s->parameter + i*s->parameters, result + i*s->results, s->user);
+            study_sweep_book(s, result, done, i, good, ended + ++ran);
+        }
+    study_sweep_write(s, result, done, before);
+    for (i = 0; i < s->cases; i++)
+        for (k = 0; k < s->results && done[i] == 2; k++) result[i*s->results + k] = NAN;
+    study.files++;
+    free(done);
+    free(before);
+    return ran;
+}
+/* Returns the mean of `count` values, `step` apart, without NaN; *error, unless null: its standard error. */
+STUDY_FN double study_mean(const double *value, int count, int step, double *error) {
+    double sum = 0, square = 0;
+    int i, n = 0;
+    for (i = 0; i < count; i++) if (value[i*step] == value[i*step]) { sum += value[i*step]; n++; }
+    for (i = 0; i < count; i++)
+        if (value[i*step] == value[i*step]) square += (value[i*step] - sum/n)*(value[i*step] - sum/n);
+    if (error) *error = n > 1 ? sqrt(square/(n - 1)/n) : NAN;
+    return n ? sum/n : NAN;
 }
 
 /* ---- pictures ---- */
@@ -336,6 +534,18 @@ STUDY_FN void study_curve(study_figure *f, const char *name, study_style style, 
     study_series s;
     s.name = name; s.style = style; s.count = count; s.x = x; s.y = y;
     if (f->curve_count < STUDY_CURVES) f->curves[f->curve_count++] = s;
+}
+
+/* Adds error bars, from y - error to y + error, which live until the program ends. */
+STUDY_FN void study_bars(study_figure *f, int count, const double *x, const double *y, const double *error) {
+    double *to = (double *)study_alloc(6*(size_t)count, sizeof *to);
+    int i, k;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            to[3*i + k] = k < 2 ? x[i] : NAN;
+            to[3*(count + i) + k] = k < 2 ? y[i] + (k ? error[i] : -error[i]) : NAN;
+        }
+    study_curve(f, 0, STUDY_OUTLINE, 3*count, to, to + 3*count);
 }
 
 /* Returns the colour of a value, 0 to 1, in the scale Viridis: its lightness grows evenly, which the colour-blind see, too.
@@ -476,8 +686,8 @@ STUDY_FN void study_rectangle(FILE *file, double x, double y, double w, double h
 }
 
 STUDY_FN void study_figure_write(const study_figure *f, const char *name) {
-    static const char *const inks[6] = {"#1b6ca8", "#d1495b", "#2a9d5c", "#8e5ea2", "#e08e0b",
-                                        "#5b5b5b"};
+    static const char *const inks[10] = {"#1b6ca8", "#d1495b", "#2a9d5c", "#8e5ea2", "#e08e0b",
+                                         "#5b5b5b", "#17b8c9", "#8a4b1f", "#e377c2", "#a3a500"};
     FILE *file = study_open(name);
     double r[6], at[20], left = 86, top = 52, w = f->size > 0 ? f->size : 620, h = 0.62*w;
     double right = 40, bottom = 64;
@@ -530,7 +740,7 @@ STUDY_FN void study_figure_write(const study_figure *f, const char *name) {
     for (c = 0; c < f->curve_count; c++) {
         const study_series *s = &f->curves[c];
         const char *colour = s->style == STUDY_OUTLINE ? "#222" :
-                             s->style == STUDY_FAINT ? "#b9c4cd" : inks[ink++%6];
+                             s->style == STUDY_FAINT ? "#b9c4cd" : inks[ink++%10];
         double x, y, px = 0, py = 0;
         int down = 0;
         if (s->style != STUDY_DOTS) study_stroke(file, s->style, colour);
