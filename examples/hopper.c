@@ -37,10 +37,13 @@ int main(int argc, char **argv) {
     dem_sizes curve = {DEM_SIZES_SIEVE_CURVE, 0, 0, 0, 0, 0, 0, 0, 3, {1e-3, 1.5e-3, 2e-3}, {0.2, 0.6, 1}, 0}; /* m, - */
     dem_region above = {{{-0.017, -0.017, 0.045}, {0.017, 0.017, 0.1}}, 'z', 0, 0};
     dem_sizes_fill(world, grit, &curve, above, 1200, 1);
-    dem_outlet_desc mouth = {{0}, {{-1, -1, -1}, {1, 1, 0.01}}, 0, 0, 0, 0, {0}, {0}, 0};
+    dem_outlet_desc mouth = DEM_OUTLET_DESC;
+    mouth.box = dem_box_make(-1, -1, -1, 1, 1, 0.01);
     dem_outlet outlet = dem_outlet_add(world, &mouth);
 
-    dem_output_desc lines = {DEM_OUTPUT_CSV, "hopper.csv", 0.02, 0, 0, {0}, "mass grains", discharge, 0, &outlet};
+    dem_output_desc lines = DEM_OUTPUT_DESC;
+    lines.kind = DEM_OUTPUT_CSV; lines.path = "hopper.csv"; lines.interval = 0.02;
+    lines.columns = "mass grains"; lines.values = discharge; lines.user = &outlet;
     dem_output_add(world, &lines);
     dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, "hopper.ckpt", 0.2);
 

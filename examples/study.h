@@ -422,6 +422,7 @@ STUDY_FN int study_job_start(const study_sweep *s, int at, study_job *job) {
     fflush(0);
     bad |= write(ends[1], result, (size_t)s->results*sizeof *result) != (long)((size_t)s->results*sizeof *result);
     _exit(bad);
+    return 0;                     /* never reached */
 }
 /* Waits for the end of any of `count` jobs, reads its results and returns its index; *good: 1 if it has them. */
 STUDY_FN int study_job_end(const study_sweep *s, const study_job *job, int count, double *result, int *good) {

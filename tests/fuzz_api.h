@@ -630,7 +630,7 @@ static void fuzz_wall_motion(fuzz_machine *m) {
     dem_motion d = DEM_MOTION;
     dem_motion_row rows[4];
     int k;
-    d.kind = (dem_motion_kind)fuzz_below(m, 6);
+    d.kind = (dem_motion_kind)fuzz_below(m, 7);
     memset(rows, 0, sizeof rows);
     for (k = 0; k < 4; k++) {
         rows[k].time = 1e-3*k;
@@ -651,6 +651,13 @@ static void fuzz_wall_motion(fuzz_machine *m) {
     d.phase = fuzz_real(m, 0, 6);
     if (!fuzz_below(m, 3)) d.start = dem_world_time_get(m->world) + (double)fuzz_real(m, -1e-3, 1e-3);
     d.function = fuzz_motion;
+    if (d.kind == DEM_MOTION_SERVO) {           /* small and large loads, constant or from the table, as force or stress */
+        for (k = 0; k < 4; k++) rows[k].load = fuzz_real(m, -0.01, 1);
+        d.load = fuzz_real(m, -0.01, 1);
+        if (fuzz_below(m, 2)) d.table = 0, d.table_count = 0;
+        if (fuzz_below(m, 2)) d.area = DEM_R(9e-4);
+        if (fuzz_below(m, 2)) d.travel = fuzz_real(m, 0, 5e-3);
+    }
     fuzz_say(m, "dem_wall_motion_set %d: kind %d, start %.9g", (int)wall.id, (int)d.kind, d.start);
     fuzz_result(m, dem_wall_motion_set(m->world, wall, &d));
 }

@@ -294,15 +294,15 @@ typedef struct dem_output_desc {
        `columns` as their names (1 to 32 words as in body_reals, copied); or, if all four are zero,
        steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max */
     dem_wall wall;
-    dem_mixing_desc mixing;
-    dem_field field;         /* FIELD_CSV: required */
-    dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
     /* CALL: may change the world, but not step it. A return value other than 0 stops the run
        (DEM_ERROR_STOPPED). */
     int (*function)(dem_world *world, int64_t number, void *user);
     void *user;              /* passed to `values` and `function`; or null */
+    dem_mixing_desc mixing;  /* CSV: see above */
+    dem_field field;         /* FIELD_CSV: required */
+    dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
 } dem_output_desc;
 static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
