@@ -77,6 +77,7 @@ int main(int argc, char **argv) {
     }
     study_sweep_run(&sweep, result);
     study_figure figure = {0};
+    figure.x1 = 0.9;
     figure.title = "Angle of repose of discs";
     figure.x_label = "friction between discs";
     figure.y_label = "angle of repose (degrees)";

@@ -394,9 +394,17 @@ static int demi_walls_check(const demi_reader *r) {
     }
     return 1;
 }
-/* Checks fields and feeds. A feed with limits cannot have fed more grains than its desc allows. */
+/* Checks ages, averages, fields and feeds. A feed with limits cannot have fed more grains than its
+   desc allows. */
 static int demi_measured_check(const demi_reader *r) {
+    const demi_bodies *b = &r->t->bodies;
     int i, k;
+    for (i = 0; i < b->count; i++) {
+        double sum = b->aged ? fabs(b->born[i]) : 0;
+        for (k = 0; k < DEMI_MEANS && b->averaged; k++) sum += fabs(b->means[DEMI_MEANS*i + k]);
+        if (!demi_finite_double(sum) || (b->averaged && !(b->means[DEMI_MEANS*i] >= 0 &&
+            b->means[DEMI_MEANS*i] < 9e15))) return demi_lie(r, "age or averages of body", i);
+    }
     for (i = 0; i < r->t->field_count; i++)
         if (!demi_finite_double(r->t->fields[i].next))
             return demi_lie(r, "next sampling time of field", i);

@@ -460,7 +460,7 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
         const double stay = w->clock.time - w->bodies.born[i], bin = stay/d->residence_bin;
         o->state.residence[k] += stay;
         o->state.residence_square[k] += stay*stay;
-        o->state.residence_count[(int)DEMI_MIN(bin, DEM_RESIDENCE_BINS - 1)]++;
+        o->state.residence_count[(int)DEMI_MAX(DEMI_MIN(bin, DEM_RESIDENCE_BINS - 1), 0)]++;
     }
 }
 /* True if x, in the outlet's frame, is in the box and at least `beyond` from the z axis. */

@@ -514,6 +514,7 @@ static dem_world *kept_world(int count) {
     dem_material stuff;
     dem_world *world;
     dem_outlet_desc counting;
+    dem_field_desc averages;
     dem_shape egg;
     int i;
     desc.integrator = DEM_INTEGRATOR_POSITION_VERLET;
@@ -528,7 +529,13 @@ static dem_world *kept_world(int count) {
     memset(&counting, 0, sizeof counting);
     counting.keep = 1;
     counting.box = box_of(0, 0, 7, 1, 1, 8);
+    counting.residence_bin = 1;
     dem_outlet_add(world, &counting);
+    memset(&averages, 0, sizeof averages);
+    averages.box = box_of(0, 0, 0, 1, 1, 1);
+    averages.cells[0] = averages.cells[1] = averages.cells[2] = 1;
+    averages.bodies = 1;
+    dem_field_add(world, &averages);
     for (i = 0; i < count; i++) {
         if (i%3) dem_body_add(world, stuff, egg, at(10*i, 0, 0), dem_quat_make(1, 0, 0, 0));
         else dem_sphere_add(world, stuff, 1, at(10*i, 0, 0));
@@ -549,6 +556,8 @@ static void kept_fill(dem_world *w, uint64_t seed) {
     }
     for (i = 0; i < w->bodies.count; i++) {
         w->bodies.zones[i] = (uint32_t)(65536*scene_random(&seed));
+        w->bodies.born[i] = -scene_random(&seed);
+        for (k = 0; k < DEMI_MEANS; k++) w->bodies.means[DEMI_MEANS*i + k] = scene_random(&seed);
         demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(demi_quat_at(w->bodies.orient + 4*i)));
     }
 }
