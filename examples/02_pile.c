@@ -30,16 +30,16 @@ static dem_world *yard(double friction, double rolling, dem_material *wood) {
 }
 /* Returns the slope (degrees) of the heap that remains of a column when its side walls move up; -1: the run failed. */
 static double slope(double rolling, int seed, int record, double *overlap) {
-    const double R = 0.005, half = 0.03;                            /* m, of a disc; half the width of the column */
-    dem_material wood;
-    dem_world *world = yard(0.5, rolling, &wood);
+    const double R = 0.005, half = 0.03; int placed = 0;            /* m, of a disc; half the width of the column */
+    dem_material wood; dem_world *world = yard(0.5, rolling, &wood);
     dem_real corners[8] = {-half, 0, -half, 0.23, half, 0, half, 0.23}; /* x, y of four corners, m */
     int32_t sides[4] = {0, 1, 2, 3};                                /* two sides, from corner 0 to 1 and from 2 to 3 */
     dem_profile walls = {4, 2, corners, sides};                     /* 4 corners, 2 sides */
     dem_wall column = dem_wall_profile_add(world, wood, &walls, DEM_EDGE_RESOLVED);     /* one surface */
-    for (int i = 0; i < 2; i++)                                     /* 55 discs of each size: no regular packing */
-        dem_spheres_fill(world, wood, i ? 0.8*R : R,
+    for (int i = 0; i < 2; i++)                                     /* two sizes, 100 to 109 discs: no regular packing */
+        placed += dem_spheres_fill(world, wood, i ? 0.8*R : R,
                          dem_region_make(dem_box_make(-half, 0, 0, half, 0.22, 0)), 55, (uint64_t)(2*seed + i));
+    if (placed < 95) { printf("only %d of 110 logs found room; raise the column\n", placed); return -1; }
     dem_motion up = DEM_MOTION;
     up.kind = DEM_MOTION_TRANSLATING; up.velocity.y = 0.4;          /* m/s */
     up.start = 0.25;                                                /* s: when all have fallen */
