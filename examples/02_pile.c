@@ -36,7 +36,7 @@ static double slope(double rolling, int seed, int record, double *overlap) {
     int32_t sides[4] = {0, 1, 2, 3};                                /* two sides, from corner 0 to 1 and from 2 to 3 */
     dem_profile walls = {4, 2, corners, sides};                     /* 4 corners, 2 sides */
     dem_wall column = dem_wall_profile_add(world, wood, &walls, DEM_EDGE_RESOLVED);     /* one surface */
-    for (int i = 0; i < 2; i++)                                     /* two sizes, 100 to 109 discs: no regular packing */
+    for (int i = 0; i < 2; i++)                                     /* two sizes, 100 to 109 discs: no regular order */
         placed += dem_spheres_fill(world, wood, i ? 0.8*R : R,
                          dem_region_make(dem_box_make(-half, 0, 0, half, 0.22, 0)), 55, (uint64_t)(2*seed + i));
     if (placed < 95) { printf("only %d of 110 logs found room; raise the column\n", placed); return -1; }
