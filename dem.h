@@ -60,6 +60,8 @@
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           stages from rows of contacts of spheres to forces and torques
        >>pairs             user-defined laws; the loop over the pruned neighbour list
+       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
+       >>noted             notes of the contacts of a step, for events
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
@@ -90,6 +92,7 @@
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
+       >>events            contacts from beginning to end; spectra of impacts; wear
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
@@ -102,6 +105,7 @@
        >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
        >>write             writing VTP, VTK, XYZ and CSV
        >>tables            tables of bodies, contacts, fields and residence times (CSV)
+       >>impacts           spectra of impact energies and wear, as numbers and CSV
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>changed           reading a checkpoint into a world that differs
@@ -2941,6 +2945,111 @@ DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capaci
 /* Rebuilds the neighbour list now, for tests and analysis. A run does so automatically. */
 DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
+/* ---- contact events: collisions, impact energies, wear ---- */
+
+/* What a function of events is called for. */
+typedef enum dem_event_kind {
+    DEM_EVENT_END = 0,             /* a contact has ended */
+    DEM_EVENT_BEGIN,               /* a contact has begun */
+    DEM_EVENT_OPEN                 /* a contact exists: dem_events_open_each */
+} dem_event_kind;
+/* A contact of two bodies, or of a body and a wall, from its beginning to its end. It exists while
+   any of their contact points has an overlap, or while a law with a range exerts a force beyond
+   contact; with impulses, while its impulse is not 0. Bodies of several spheres and walls of
+   several facets have one contact with each other. */
+typedef struct dem_event {
+    dem_event_kind kind;
+    dem_body a, b;                 /* a has the lower slot; b is null for a contact with a wall */
+    int32_t wall;                  /* dem_wall id; 0: b is a body */
+    dem_material material_a, material_b;
+    /* 1: recording began during the contact; 2: it ended because a body or the wall was removed; 3:
+       both. Else 0. */
+    int cut;
+    dem_vec3 point, normal;        /* m; unit, from a to b: where it began */
+    double begin, end;             /* s; end: the present time unless kind is DEM_EVENT_END */
+    /* m/s, relative velocity at the contact point when it began: along the normal, > 0 if the two
+       approach; across it. They belong to the first step in which the two touch. */
+    double closing_speed, slip_speed;
+    /* kg, effective mass m_a m_b/(m_a + m_b) for a central impact; fixed bodies and walls are
+       infinitely heavy; 0: neither can move */
+    double mass;
+    /* N, the largest normal force, summed over contact points (of impulses the mean over a step);
+       N s, the normal force summed over time */
+    double force, impulse;
+    /* J, energy lost so far as in dem_ledger: by the normal law, by sliding, by tangential dashpots
+       (and springs that held energy at the end), by rolling resistance */
+    double lost_normal, lost_slide, lost_tangent, lost_rolling;
+} dem_event;
+/* Receives one contact. It may only read the world. */
+typedef void (*dem_event_fn)(const dem_event *event, void *user);
+/* How contacts are recorded. Begin with DEM_EVENTS_DESC. */
+typedef struct dem_events_desc {
+    /* called after each step for the contacts that have ended in it; null means no call. The
+       contacts are in the order of their ids, for any number of threads and slabs. */
+    dem_event_fn function;
+    void *user;                    /* passed to `function`; or null */
+    int begins;                    /* 1: also called for contacts that have begun, before those */
+} dem_events_desc;
+static const dem_events_desc DEM_EVENTS_DESC_ZERO = DEM_ZERO;
+#define DEM_EVENTS_DESC DEM_EVENTS_DESC_ZERO
+/* Starts to record contacts; needs desc.ledger. If they are recorded already, replaces the function
+   and keeps the records. Forces and motions have the same bits as without a recording. Checkpoints
+   contain the records, but not the function: call this again after reading one in a new program.
+   Slabs continue the recording of the world from which they are created, if one process holds them
+   all; dem_slabs_collect returns it. A step that has no memory for the records completes, stops the
+   recording and fails with DEM_ERROR_MEMORY. */
+DEM_API dem_result dem_events_record(dem_world *world, const dem_events_desc *desc);
+/* Ends the recording and discards its records. */
+DEM_API dem_result dem_events_stop(dem_world *world);
+/* Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn, user:
+   or null. Returns -1 if contacts are not recorded. */
+DEM_API int dem_events_open_each(dem_world *world, dem_event_fn fn, void *user);
+
+/* Number of bins of impact energies: five per decade from 1e-18 J to 1e6 J. The first and the last
+   bin also count what is outside. */
+enum { DEM_IMPACT_BINS = 120 };
+/* Statistics of the recorded contacts. */
+typedef struct dem_impacts {
+    double seconds;                /* s, recorded so far */
+    double ended;                  /* number of contacts that have ended */
+    int open;                      /* number of contacts that exist */
+    double rate;                   /* 1/s: ended/seconds */
+    /* J, lost in all recorded contacts, those that exist included. For all materials these are what
+       the ledger has booked since recording began, except losses of joints. */
+    double lost_normal, lost_slide, lost_tangent, lost_rolling;
+    double bin[DEM_IMPACT_BINS + 1];           /* J, limits of the bins */
+    /* contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun
+       before the recording are not counted */
+    double impacts[DEM_IMPACT_BINS];
+    /* contacts that have ended, by energy lost in them (the sum of all four losses); and the energy
+       lost in the contacts of each bin, J */
+    double losses[DEM_IMPACT_BINS], energy[DEM_IMPACT_BINS];
+} dem_impacts;
+/* Computes the statistics of contacts between two materials, walls included; material id 0 means
+   any. An error if contacts are not recorded. */
+DEM_API dem_result dem_impacts_get(dem_world *world, dem_material a, dem_material b,
+                                   dem_impacts *impacts);
+/* Writes the spectra of all pairs of materials that have touched to a CSV file. A line per bin that
+   is not empty: material_a, material_b, from, to (J), impacts, losses (both 1/s), power (W). */
+DEM_API dem_result dem_impacts_csv_write(dem_world *world, const char *path);
+
+/* Wear of a wall since recording began. */
+typedef struct dem_wear {
+    double seconds;                /* s, recorded so far */
+    double slide, normal;          /* J, lost on it by sliding; by the normal law */
+    double volume;                 /* m3, coefficient*slide/hardness */
+} dem_wear;
+/* Computes the wear of a wall by Archard's law: the worn volume is the work of sliding times a
+   dimensionless coefficient, over the hardness (Pa, > 0) of the softer side. coefficient: >= 0,
+   that of Archard (per normal force and distance) divided by the coefficient of friction. */
+DEM_API dem_result dem_wall_wear_get(dem_world *world, dem_wall wall, double coefficient,
+                                     double hardness, dem_wear *wear);
+/* Writes the work of sliding on each facet (mesh) or segment (profile) of a wall, J, in the order
+   of its elements, at most `capacity` of them, and returns their number (0: the wall has no
+   facets). The work counts for the facet that is nearest to the contact point. work: or null.
+   Returns -1 if contacts are not recorded. */
+DEM_API int dem_wall_wear_facets_get(dem_world *world, dem_wall wall, double *work, int capacity);
+
 /* ---- measuring ---- */
 
 /* What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of
@@ -4722,6 +4831,56 @@ typedef struct demi_record {
     void (*put)(const dem_world *member, int body, char *to);
     void (*take)(dem_world *member, int body, const char *from);
 } demi_record;
+/* A contact of the present step, as the loops over contacts note it while events are recorded. */
+typedef struct demi_noted {
+    int32_t a, b;                  /* bodies; b -1: a wall */
+    int32_t wall;                  /* index */
+    int32_t old;                   /* 1: it existed before this step */
+    dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
+    dem_vec3 shift;                /* m, from a to its image that touches the wall */
+    dem_real force;                /* N, repulsive force along the normal */
+    double energy[DEMI_E_ROLL + 1];            /* J, of this step */
+} demi_noted;
+/* A pair of bodies, or a body and a wall, that touch. event: as the user sees it, with the losses
+   booked so far. */
+typedef struct demi_ongoing {
+    dem_event event;
+    double force, stored, work;    /* N, of this step; J: of tangential springs now; against
+                                      tangential forces so far */
+    double due[4];                 /* impulses: normal, slide and rolling losses (J) and normal
+                                      impulse (N s) of the coming step, */
+    int32_t facet, none;           /* on this facet of the wall; padding, 0 */
+} demi_ongoing;
+/* Sums over the contacts of two materials that have ended; a <= b, indices. */
+typedef struct demi_impacts {
+    int32_t a, b;
+    double ended, lost[4];         /* number; J: normal, slide, tangent, rolling */
+    double impacts[DEM_IMPACT_BINS], losses[DEM_IMPACT_BINS], energy[DEM_IMPACT_BINS];
+} demi_impacts;
+/* Energies lost on the wall with this id, J. Those of its facets begin at `first` of `facets`. */
+typedef struct demi_worn { int32_t id, first, count, none; double slide, normal; } demi_worn;
+/* Numbers of a recording; saved and copied whole. */
+typedef struct demi_event_counts {
+    int32_t on, fresh;             /* 1: contacts are recorded; 1: no step has been noted yet */
+    int32_t open, pending, pairs, walls, facets, none;     /* entries of the arrays below */
+    double since;                  /* s, when it began */
+} demi_event_counts;
+/* A recording of contacts (>>events). Slabs note contacts; their head holds everything else. */
+typedef struct demi_events {
+    demi_event_counts n;
+    dem_events_desc desc;
+    demi_noted *noted;             /* of work group d: from noted_first[d] on */
+    int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
+    demi_ongoing *open;
+    uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
+    int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
+    int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
+    dem_event *pending;            /* not yet passed to the user's function */
+    demi_impacts *pairs;
+    demi_worn *walls;              /* by index of the wall */
+    double *facets;                /* J, lost by sliding on each facet */
+} demi_events;
+
 /* The worlds that step together (>>team). A single world has no team: it is its own head and its
    only member. Slabs (>>slabs) are the members of a head, a world without bodies that holds the
    numbers they share: time, time step, skin, error. A body near a border is in two members: one
@@ -4872,6 +5031,7 @@ struct dem_world {
     demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
+    demi_events events;            /* >>events; noted: >>noted, >>kept-respond, >>impulses-told */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
@@ -17438,8 +17598,11 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     }
 }
 
-/* Computes all pairs of a work group: those within it, then those with later ones. */
-static void demi_pairs(dem_world *w, int d) {
+/* Computes all pairs of a work group: those within it, then those with later ones. note: called
+   for every tile when its forces are known, or null. */
+DEM_INLINE void demi_pairs_with(dem_world *w, int d,
+                                void (*note)(dem_world *w, int d, demi_tile *t,
+                                             const demi_span *span, const demi_run *r)) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
     demi_run run[2];
@@ -17463,15 +17626,71 @@ static void demi_pairs(dem_world *w, int d) {
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
             else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
             if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
+            if (note) note(w, d, &tile, &span, r);
         }
     }
     domain->contacts = (int)tally.contacts;
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
 }
+static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
+
+/* ---------------------------------------------------------------------------------------------
+   >>noted
+   Notes of the contacts of a step, while events are recorded (>>events). The loops that compute
+   contact forces call these functions for each contact that acts; each work group writes to its own
+   segment, which demi_notes_room has allocated. Writes w->events.noted only.
+   --------------------------------------------------------------------------------------------- */
+
+/* Makes room for all contacts that are possible in this step, and empties the segments. Returns 0
+   if memory ran out. */
+static int demi_notes_room(dem_world *w) {
+    demi_events *e = &w->events;
+    int d;
+    for (d = 0, e->noted_first[0] = 0; d < DEMI_DOMAINS; d++) {
+        const int n = d < w->domain_count ? w->domains[d].near_end + w->domains[d].kept_next : 0;
+        e->noted_first[d + 1] = e->noted_first[d] + n;
+        e->noted_count[d] = 0;
+    }
+    return DEMI_GROW(w, e->noted, (size_t)e->noted_first[DEMI_DOMAINS]);
+}
+/* Notes a contact of work group d. If the two do not overlap, it counts only if a law acts. */
+static void demi_note(dem_world *w, int d, const demi_noted *n, int overlaps) {
+    demi_events *e = &w->events;
+    double most = fabs((double)n->force);
+    int k;
+    for (k = 0; k <= DEMI_E_ROLL; k++) most = DEMI_MAX(most, fabs(n->energy[k]));
+    if (overlaps || most > 0) e->noted[e->noted_first[d] + e->noted_count[d]++] = *n;
+}
+/* Notes the contacts of a tile of work group d: spheres, also those of clusters. */
+static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *span,
+                           const demi_run *r) {
+    int q, k;
+    for (q = 0; q < span->count; q++) {
+        const int a = span->a[q], ball = span->ball ? span->ball[q] : -1;
+        const dem_real radius = ball < 0 ? w->bodies.pos[4*a + 3] : w->bodies.centre[4*ball + 3];
+        demi_noted n;
+        if (!(t->touch[q] > 0)) continue;
+        n.a = a;
+        n.b = span->b[q];
+        n.wall = 0;
+        n.old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
+        n.normal = demi_row(t->normal, q);
+        /* the contact point divides the distance as the radii do */
+        n.arm = demi_scale(n.normal, radius*t->length[q]/(t->length[q] + t->overlap[q]));
+        if (ball >= 0) n.arm = demi_add(n.arm, demi_at(w->bodies.centre + 4*ball));
+        n.shift = demi_v(0, 0, 0);
+        n.force = -demi_dot(demi_row(t->force, q), n.normal);
+        n.energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
+        for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) n.energy[k] = (double)t->part[k][q];
+        demi_note(w, d, &n, t->overlap[q] > 0);
+    }
+}
+/* The force loop of spheres while events are recorded. */
+static void demi_pairs_noted(dem_world *w, int d) { demi_pairs_with(w, d, demi_tile_note); }
 
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra
@@ -22064,22 +22283,38 @@ DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
     const dem_vec3 late = demi_at(w->bodies.late + 4*a);
     return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
 }
-/* Adds the energies of the contact of row q to the ledger. Friction and rolling may have another
-   weight than the rest: see demi_kept_lift. */
-static void demi_kept_book(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
+/* Computes the energies of the contact of row q, J, for the ledger. Friction and rolling may have
+   another weight than the rest: see demi_kept_lift. */
+static void demi_kept_energy(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
     const demi_tile *rows = &t->rows;
     const demi_kept *c = t->contact[q];
     const dem_real share = c->share, grip = c->grip, slope = c->slope;
     const dem_real late = !w->bodies.booked ? 0
         : demi_late_share(demi_late_of(w, c->a, c->b), c->normal, rows->closing[q]);
     /* V = k overlap^2/2; the law was given k slope */
-    energy[DEMI_E_DASHPOT] += (double)(share*(rows->part[0][q]*(1 + late) +
-                                              rows->part[6][q]/slope));
-    energy[DEMI_E_ELASTIC] += (double)(share*(rows->part[1][q]/slope));
-    energy[DEMI_E_SHEAR_WORK] += (double)(grip*rows->part[2][q]);
-    energy[DEMI_E_SLIDE] += (double)(grip*rows->part[3][q]);
-    energy[DEMI_E_SHEAR_STORED] += (double)(grip*rows->part[4][q]);
-    energy[DEMI_E_ROLL] += (double)(grip*rows->part[5][q]);
+    energy[DEMI_E_DASHPOT] = (double)(share*(rows->part[0][q]*(1 + late) +
+                                             rows->part[6][q]/slope));
+    energy[DEMI_E_ELASTIC] = (double)(share*(rows->part[1][q]/slope));
+    energy[DEMI_E_SHEAR_WORK] = (double)(grip*rows->part[2][q]);
+    energy[DEMI_E_SLIDE] = (double)(grip*rows->part[3][q]);
+    energy[DEMI_E_SHEAR_STORED] = (double)(grip*rows->part[4][q]);
+    energy[DEMI_E_ROLL] = (double)(grip*rows->part[5][q]);
+}
+/* Notes the contact of row q for events. */
+static DEMI_APART void demi_kept_note(dem_world *w, int d, const demi_kept_tile *t, int q,
+                                      const double *energy) {
+    const demi_kept *c = t->contact[q];
+    demi_noted n;
+    n.a = c->a;
+    n.b = c->b;
+    n.wall = c->wall;
+    n.old = c->from >= 0;
+    n.normal = c->normal;
+    n.arm = c->arm_a;
+    n.shift = c->shift;
+    n.force = -demi_dot(c->force, c->normal);
+    memcpy(n.energy, energy, sizeof n.energy);
+    demi_note(w, d, &n, c->overlap > 0);
 }
 
 /* Adds the rates that a law returned for user-defined numbers, times the weight of contact c. */
@@ -22177,6 +22412,7 @@ static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_ke
 static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_kept_tile *t) {
     demi_domain *domain = &w->domains[d];
     demi_tile *rows = &t->rows;
+    double energy[DEMI_E_ROLL + 1];
     int q, e;
     demi_kept_tile_answer(w, r, t);
     for (q = 0; q < t->count; q++) {
@@ -22186,7 +22422,10 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
         c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
-        if (r->ledger) demi_kept_book(w, t, q, domain->energy);
+        if (!r->ledger) continue;
+        demi_kept_energy(w, t, q, energy);
+        for (e = 0; e <= DEMI_E_ROLL; e++) domain->energy[e] += energy[e];
+        if (w->events.n.on) demi_kept_note(w, d, t, q, energy);
     }
     t->count = t->lifted = t->shaped = 0;
 }
@@ -22632,6 +22871,7 @@ static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int se
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
     if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
     if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
+    if (w->events.n.on) demi_tile_note(w, d, rows, &m->span, &m->run);
     m->count = m->weighted = 0;
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
@@ -22758,7 +22998,8 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
 
 /* Sets the force loop for the laws in force. Returns its name in reports. */
 static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = w->effects.clustered ? demi_pairs_members : demi_pairs;
+    w->kernel = w->effects.clustered ? demi_pairs_members
+        : w->events.n.on ? demi_pairs_noted : demi_pairs;
     if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
     return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }
@@ -24855,6 +25096,26 @@ static void demi_movers_force(dem_world *w, int d) {
                 torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
 }
+/* Notes a solved contact for events. old: it had an impulse before; energy: J, lost by its normal
+   impulse, slip and rolling. */
+static DEMI_APART void demi_impulse_note(dem_world *w, int d, const demi_meeting *m,
+                                         const demi_spot *o, const demi_kept *k, int old,
+                                         dem_real force, const double *energy) {
+    demi_noted n;
+    n.a = m->a;
+    n.b = k && k->b < 0 ? -1 : m->b;
+    n.wall = k ? k->wall : 0;
+    n.old = old;
+    n.normal = o->normal;
+    n.arm = o->arm_a;
+    n.shift = n.b < 0 ? k->shift : demi_v(0, 0, 0);
+    n.force = force;
+    memset(n.energy, 0, sizeof n.energy);
+    n.energy[DEMI_E_DASHPOT] = energy[0];
+    n.energy[DEMI_E_SLIDE] = n.energy[DEMI_E_SHEAR_WORK] = energy[1];
+    n.energy[DEMI_E_ROLL] = energy[2];
+    demi_note(w, d, &n, 0);
+}
 /* Stores the results of a domain's constraints: contact history, forces on walls, energy losses.
    The work of an impulse is exact with the mean of the velocities before and after the step. */
 static void demi_impulses_tell(dem_world *w, int d) {
@@ -24875,6 +25136,8 @@ static void demi_impulses_tell(dem_world *w, int d) {
         dem_real *memory = k ? k->memory : w->near.memory +
             (size_t)d*DEMI_IMPULSE_REALS*o.stride + m->home;
         const dem_real push = c->push - s->beside[m->at].pull;
+        const int old = o.memory[6*o.stride] > 0 || o.memory[7*o.stride] > 0;
+        double part[3] = {0, 0, 0};             /* J, that it loses */
         const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
@@ -24884,15 +25147,19 @@ static void demi_impulses_tell(dem_world *w, int d) {
             demi_dot(after, c->normal), s->beside[m->at].turns,
             demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride])};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
-        lost[DEMI_E_DASHPOT] -= (double)demi_dot(demi_sub(p, c->slip), u);
-        lost[DEMI_E_SLIDE] -= (double)demi_dot(c->slip, u);
+        part[0] = -(double)demi_dot(demi_sub(p, c->slip), u);
+        part[1] = -(double)demi_dot(c->slip, u);
         if (s->twisted) {
             const dem_vec3 wb = demi_add(demi_at(s->movers[m->b].w), m->b < w->bodies.count
                 ? demi_at(w->bodies.spin + 4*m->b) : demi_at(s->movers[m->b].w));
             const dem_vec3 wa = demi_add(demi_at(s->movers[m->a].w),
                                          demi_at(w->bodies.spin + 4*m->a));
-            lost[DEMI_E_ROLL] -= (double)demi_dot(moment, demi_sub(wb, wa))/2;
+            part[2] = -(double)demi_dot(moment, demi_sub(wb, wa))/2;
         }
+        lost[DEMI_E_DASHPOT] += part[0];
+        lost[DEMI_E_SLIDE] += part[1];
+        lost[DEMI_E_ROLL] += part[2];
+        if (w->events.n.on) demi_impulse_note(w, d, m, &o, k, old, push*per, part);
         if (c->push > 0) {
             const int own = w->bodies.material[m->a] - 1;
             domain->met[DEMI_MIN(own, o.material)] |= UINT64_C(1) << DEMI_MAX(own, o.material);
@@ -28980,6 +29247,490 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>events
+   Contact events: every contact from its beginning to its end, with what it has lost. The loops over
+   contacts note the contacts of a step (>>noted); this part adds them, in the order of work groups,
+   to the open contact of the two bodies, or of the body and its wall, which a hash table finds. A
+   contact that was not noted in a step has ended: it is added to the statistics of its materials and
+   passed to the user's function when the step is complete. The sums of an open contact do not depend
+   on its place in the list, so the bits are the same for any number of threads. Slabs note contacts
+   in their own worlds, and their head does the rest. With impulses a contact loses its energy during
+   the coming step; until then the losses are due (demi_due_book).
+   Owns w->events; w is the head of a team or a single world in all functions.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- the table of open contacts --- */
+static uint32_t demi_event_hash(const dem_event *e) {
+    uint32_t h = e->a.slot*UINT32_C(0x9e3779b1) + e->b.slot*UINT32_C(0x85ebca77) +
+        (uint32_t)e->wall*UINT32_C(0xc2b2ae3d);
+    h ^= h >> 15;
+    h *= UINT32_C(0x2c1b3c6d);
+    return h ^ h >> 13;
+}
+static int demi_event_same(const dem_event *x, const dem_event *y) {
+    return x->a.slot == y->a.slot && x->b.slot == y->b.slot && x->wall == y->wall &&
+        x->a.generation == y->a.generation && x->b.generation == y->b.generation;
+}
+/* Returns the place of an open contact in the table, or the free place where it belongs. */
+static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
+    const uint32_t mask = (uint32_t)e->table_size - 1;
+    uint32_t at = demi_event_hash(key) & mask;
+    while (e->table[at] && !demi_event_same(&e->open[e->table[at] - 1].event, key))
+        at = (at + 1) & mask;
+    return e->table + at;
+}
+/* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
+   out. */
+static int demi_event_widen(dem_world *w) {
+    demi_events *e = &w->events;
+    const size_t n = (size_t)e->n.open + 1;
+    int i, size = e->table_size ? e->table_size : 64;
+    if (!DEMI_GROW(w, e->open, n) || !DEMI_GROW(w, e->seen, n)) return 0;
+    while ((size_t)size < 2*n) size *= 2;
+    if (size == e->table_size) return 1;
+    if (!DEMI_GROW(w, e->table, (size_t)size)) return 0;
+    e->table_size = size;
+    memset(e->table, 0, (size_t)size*sizeof *e->table);
+    for (i = 0; i < e->n.open; i++) *demi_event_place(e, &e->open[i].event) = i + 1;
+    return 1;
+}
+/* Removes open contact i; the last one takes its place. Later entries of the table move to where a
+   search for them would pass. */
+static void demi_event_drop(demi_events *e, int i) {
+    const uint32_t mask = (uint32_t)e->table_size - 1;
+    uint32_t hole = (uint32_t)(demi_event_place(e, &e->open[i].event) - e->table), at = hole;
+    const int last = e->n.open - 1;
+    for (at = (at + 1) & mask; e->table[at]; at = (at + 1) & mask) {
+        const uint32_t home = demi_event_hash(&e->open[e->table[at] - 1].event) & mask;
+        if (((at - home) & mask) < ((at - hole) & mask)) continue;
+        e->table[hole] = e->table[at];
+        hole = at;
+    }
+    e->table[hole] = 0;
+    if (i < last) {
+        *demi_event_place(e, &e->open[last].event) = i + 1;
+        e->open[i] = e->open[last];
+        e->seen[i] = e->seen[last];
+    }
+    e->n.open--;
+}
+
+/* --- wear --- */
+
+/* Returns the element of a wall of facets that is nearest to x, in space. It looks at the cells
+   around the point, farther away until no facet outside can be nearer. */
+static int demi_worn_facet(const demi_wall *wall, dem_vec3 x) {
+    dem_vec3 at = demi_unrotate(wall->pose.rotation, demi_sub(x, wall->pose.position));
+    dem_real best = DEM_R(1e30), reach;
+    int i, y, z, f[3], l[3], nearest = 0;
+    if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
+    for (i = 0; i < wall->element_count && !wall->cell_start; i++) {
+        const dem_real far = demi_wall_distance(wall, i, at, best);
+        if (far < best) { best = far; nearest = i; }
+    }
+    for (reach = wall->cell/4; wall->cell_start && reach < DEM_R(1e30); reach *= 2) {
+        const dem_vec3 out = demi_v(reach, reach, reach);
+        demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
+        for (z = f[2]; z <= l[2]; z++)
+            for (y = f[1]; y <= l[1]; y++) {
+                const int32_t *row = wall->cell_start + wall->cells[0]*(y + wall->cells[1]*z);
+                for (i = row[f[0]]; f[0] <= l[0] && i < row[l[0] + 1]; i++) {
+                    const int element = wall->cell_items[i];
+                    const dem_real far = demi_wall_distance(wall, element, at, best);
+                    if (!(far < best)) continue;
+                    best = far;
+                    nearest = element;
+                }
+            }
+        if (best <= reach) break;
+    }
+    return nearest;
+}
+/* Makes room for the wear of all walls; that of a new wall is 0. Returns 0 if memory ran out. */
+static int demi_events_room(dem_world *w) {
+    demi_events *e = &w->events;
+    int i;
+    if (!DEMI_GROW(w, e->walls, (size_t)w->wall_count)) return 0;
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const int faceted = demi_wall_kinds[wall->kind].corners > 1;
+        const int facets = faceted ? wall->element_count : 0;
+        demi_worn *worn = &e->walls[i];
+        if (i < e->n.walls && worn->id == wall->id) continue;
+        if (!DEMI_GROW(w, e->facets, (size_t)e->n.facets + (size_t)facets)) return 0;
+        memset(worn, 0, sizeof *worn);
+        worn->id = wall->id;
+        worn->first = e->n.facets;
+        worn->count = facets;
+        for (; e->n.facets < worn->first + facets; e->n.facets++) e->facets[e->n.facets] = 0;
+        e->n.walls = DEMI_MAX(e->n.walls, i + 1);
+    }
+    return 1;
+}
+/* Books losses of a contact, J. x: its contact point, m, for the wear of facets. */
+static void demi_event_lose(dem_world *w, demi_ongoing *o, const double *lost, int facet) {
+    dem_event *e = &o->event;
+    demi_worn *worn;
+    e->lost_normal += lost[0];
+    e->lost_slide += lost[1];
+    e->lost_rolling += lost[2];
+    if (!e->wall) return;
+    worn = &w->events.walls[(e->wall - 1)%DEMI_WALLS_MOST];
+    if (worn->id != e->wall) return;            /* removed since */
+    worn->normal += lost[0];
+    worn->slide += lost[1];
+    if (facet < worn->count) w->events.facets[worn->first + facet] += lost[1];
+}
+
+/* --- contacts of a step --- */
+
+/* Fills in who touches. Returns 1 if the two of the note are exchanged, since b has the lower
+   slot. */
+static int demi_event_key(const dem_world *m, const demi_noted *n, dem_event *key) {
+    const dem_body a = dem_body_id_get(m, n->a);
+    const dem_body b = n->b < 0 ? demi_no_body : dem_body_id_get(m, n->b);
+    const int flip = n->b >= 0 && b.slot < a.slot;
+    key->a = flip ? b : a;
+    key->b = flip ? a : b;
+    key->wall = n->b < 0 ? m->walls[n->wall].id : 0;
+    return flip;
+}
+/* Fills in how a contact begins. m: the world that has noted it. */
+static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_noted *n,
+                             dem_event *e) {
+    const demi_bodies *b = &m->bodies;
+    const demi_periods all = demi_periods_of(w), own = demi_periods_of(m);
+    const dem_vec3 at = demi_add(demi_at(b->pos + 4*n->a), n->arm);
+    dem_vec3 v = demi_velocity_at(b->vel, b->spin, n->a, n->arm), slip;
+    dem_real inv = b->inv_mass[n->a];
+    const int flip = demi_event_key(m, n, e);
+    const int32_t material_a = b->material[n->a];
+    const int32_t material_b = n->b < 0 ? m->walls[n->wall].material + 1 : b->material[n->b];
+    if (n->b < 0)
+        v = demi_sub(v, demi_surface_at(&m->walls[n->wall].pose, demi_add(at, n->shift)));
+    else {
+        const dem_vec3 way = demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b),
+                                                         demi_at(b->pos + 4*n->a)));
+        v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(n->arm, way)));
+        inv += b->inv_mass[n->b];
+    }
+    slip = demi_sub(v, demi_scale(n->normal, demi_dot(v, n->normal)));
+    e->kind = DEM_EVENT_BEGIN;
+    e->material_a.id = flip ? material_b : material_a;
+    e->material_b.id = flip ? material_a : material_b;
+    e->cut = w->events.n.fresh && n->old;
+    e->point = demi_place_of(&all, at);
+    e->normal = demi_scale(n->normal, flip ? -1 : 1);
+    e->begin = e->end = w->clock.time;
+    e->closing_speed = (double)demi_dot(v, n->normal);
+    e->slip_speed = (double)demi_length(slip);
+    e->mass = inv > 0 ? 1/(double)inv : 0;
+}
+/* Adds a contact to those that wait for the user's function. Returns 0 if memory ran out. */
+static int demi_event_wait(dem_world *w, const dem_event *event) {
+    demi_events *e = &w->events;
+    if (!e->desc.function || (event->kind == DEM_EVENT_BEGIN && !e->desc.begins)) return 1;
+    if (!DEMI_GROW(w, e->pending, (size_t)e->n.pending + 1)) return 0;
+    e->pending[e->n.pending++] = *event;
+    return 1;
+}
+/* Adds a noted contact to its open contact, which begins if there is none. Returns 0 if memory ran
+   out. */
+static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n) {
+    demi_events *e = &w->events;
+    const int later = !demi_response_is(w, DEMI_LASTING);
+    const double lost[3] = {n->energy[DEMI_E_DASHPOT], n->energy[DEMI_E_SLIDE],
+                            n->energy[DEMI_E_ROLL]};
+    const double dt = later || w->stage.forces_valid ? (double)w->clock.dt : 0;
+    dem_event key;
+    demi_ongoing *o;
+    int i, k, facet = 0;
+    memset(&key, 0, sizeof key);
+    demi_event_key(m, n, &key);
+    i = e->table_size ? *demi_event_place(e, &key) - 1 : -1;
+    if (i < 0) {
+        if (!demi_event_widen(w)) return 0;
+        i = e->n.open;
+        memset(&e->open[i], 0, sizeof e->open[i]);
+        e->seen[i] = e->turn - 1;
+        demi_event_begin(w, m, n, &e->open[i].event);
+        if (!demi_event_wait(w, &e->open[i].event)) return 0;
+        *demi_event_place(e, &key) = ++e->n.open;
+    }
+    o = &e->open[i];
+    if (e->seen[i] != e->turn) {
+        o->event.force = DEMI_MAX(o->event.force, o->force);
+        o->force = o->stored = 0;
+        e->seen[i] = e->turn;
+    }
+    o->force += (double)n->force;
+    o->stored += n->energy[DEMI_E_SHEAR_STORED];
+    if (n->b < 0 && lost[1] > 0 && demi_wall_kinds[m->walls[n->wall].kind].corners > 1)
+        facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
+                                                                demi_at(m->bodies.pos + 4*n->a)));
+    if (!later) {
+        o->work += n->energy[DEMI_E_SHEAR_WORK];
+        o->event.impulse += (double)n->force*dt;
+        demi_event_lose(w, o, lost, facet);
+        return 1;
+    }
+    for (k = 0; k < 3; k++) o->due[k] += lost[k];
+    o->due[3] += (double)n->force*dt;
+    o->facet = facet;
+    return 1;
+}
+/* Impulses: books what was due when bodies have moved, see demi_due_book. */
+static void demi_events_due(dem_world *w) {
+    demi_events *e = &w->events;
+    int i;
+    for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++) {
+        demi_ongoing *o = &e->open[i];
+        demi_event_lose(w, o, o->due, o->facet);
+        o->work += o->due[1];                   /* no springs: all of it slides */
+        o->event.impulse += o->due[3];
+        memset(o->due, 0, sizeof o->due);
+    }
+}
+/* Returns an open contact as users see it. */
+static dem_event demi_event_shown(const dem_world *w, const demi_ongoing *o, dem_event_kind kind) {
+    dem_event e = o->event;
+    e.kind = kind;
+    e.end = w->clock.time;
+    e.force = DEMI_MAX(e.force, o->force);
+    e.lost_tangent = o->work - e.lost_slide - (kind == DEM_EVENT_END ? 0 : o->stored);
+    return e;
+}
+
+/* --- the end of a contact --- */
+
+/* Returns the sums of the contacts of two materials (indices); null if memory ran out. */
+static demi_impacts *demi_impacts_of(dem_world *w, int a, int b) {
+    demi_events *e = &w->events;
+    demi_impacts *p;
+    int i;
+    for (i = 0; i < e->n.pairs; i++)
+        if (e->pairs[i].a == DEMI_MIN(a, b) && e->pairs[i].b == DEMI_MAX(a, b)) return &e->pairs[i];
+    if (!DEMI_GROW(w, e->pairs, (size_t)i + 1)) return 0;
+    p = &e->pairs[e->n.pairs++];
+    memset(p, 0, sizeof *p);
+    p->a = DEMI_MIN(a, b);
+    p->b = DEMI_MAX(a, b);
+    return p;
+}
+/* Returns the bin of an energy, J: five per decade from 1e-18 J on. */
+static int demi_impact_bin(double energy) {
+    const double at = energy > 0 ? 5*(log10(energy) + 18) : 0;
+    return at >= DEM_IMPACT_BINS ? DEM_IMPACT_BINS - 1 : at > 0 ? (int)at : 0;
+}
+/* Adds a contact that has ended to the statistics. Returns 0 if memory ran out. */
+static int demi_impacts_add(dem_world *w, const dem_event *e) {
+    demi_impacts *p = demi_impacts_of(w, (int)e->material_a.id - 1, (int)e->material_b.id - 1);
+    const double lost = e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+    const int bin = demi_impact_bin(lost);
+    const double v = DEMI_MAX(e->closing_speed, 0);
+    if (!p) return 0;
+    p->ended++;
+    p->lost[0] += e->lost_normal;
+    p->lost[1] += e->lost_slide;
+    p->lost[2] += e->lost_tangent;
+    p->lost[3] += e->lost_rolling;
+    p->losses[bin]++;
+    p->energy[bin] += lost;
+    if (!(e->cut & 1)) p->impacts[demi_impact_bin(e->mass*v*v/2)]++;
+    return 1;
+}
+/* True if the body is in the scene. */
+static int demi_event_exists(const dem_world *w, dem_body b) {
+    int k;
+    for (k = 0; k < demi_members(w); k++) {
+        const demi_bodies *m = &demi_member(w, k)->bodies;
+        if ((int)b.slot <= m->slot_count && m->slot_index[b.slot - 1] >= 0 &&
+            m->slot_generation[b.slot - 1] == b.generation) return 1;
+    }
+    return 0;
+}
+/* Ends open contact i. Returns 0 if memory ran out. */
+static int demi_event_end(dem_world *w, int i) {
+    demi_events *e = &w->events;
+    dem_event event = demi_event_shown(w, &e->open[i], DEM_EVENT_END);
+    dem_wall wall;
+    wall.id = event.wall;
+    if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
+                                           : !demi_event_exists(w, event.b))) event.cut |= 2;
+    demi_event_drop(e, i);
+    return demi_impacts_add(w, &event) && demi_event_wait(w, &event);
+}
+/* Empties a recording. */
+static void demi_events_clear(dem_world *w) {
+    demi_events *e = &w->events;
+    memset(&e->n, 0, sizeof e->n);
+    if (e->table) memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
+}
+/* Allocates what a recording of the present counts needs. Returns 0 if memory ran out. */
+static int demi_events_reserve(dem_world *w) {
+    demi_events *e = &w->events;
+    int size = 64;
+    while (size/2 < e->n.open) size *= 2;
+    if (!e->n.on) return 1;
+    if (!DEMI_GROW(w, e->open, (size_t)e->n.open) || !DEMI_GROW(w, e->seen, (size_t)e->n.open) ||
+        !DEMI_GROW(w, e->pending, (size_t)e->n.pending) ||
+        !DEMI_GROW(w, e->pairs, (size_t)e->n.pairs) ||
+        !DEMI_GROW(w, e->walls, (size_t)e->n.walls) ||
+        !DEMI_GROW(w, e->facets, (size_t)e->n.facets) || !DEMI_GROW(w, e->table, (size_t)size))
+        return 0;
+    e->table_size = size;
+    return 1;
+}
+/* Fills the table of a recording that was read or copied. */
+static void demi_events_index(dem_world *w) {
+    demi_events *e = &w->events;
+    int i;
+    if (!e->n.on) return;
+    memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
+    for (i = 0; i < e->n.open; i++) {
+        *demi_event_place(e, &e->open[i].event) = i + 1;
+        e->seen[i] = e->turn;
+    }
+}
+/* Copies the recording of another world. Returns 0 if memory ran out. */
+static int demi_events_copy(dem_world *to, const dem_world *from) {
+    const demi_events *f = &from->events;
+    demi_events *e = &to->events;
+    if (!e->n.on) e->desc = f->desc;
+    e->n = f->n;
+    if (!f->n.on) return 1;
+    if (!demi_events_reserve(to)) { memset(&e->n, 0, sizeof e->n); return 0; }
+    if (e->n.open) memcpy(e->open, f->open, (size_t)e->n.open*sizeof *e->open);
+    if (e->n.pending) memcpy(e->pending, f->pending, (size_t)e->n.pending*sizeof *e->pending);
+    if (e->n.pairs) memcpy(e->pairs, f->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
+    if (e->n.walls) memcpy(e->walls, f->walls, (size_t)e->n.walls*sizeof *e->walls);
+    if (e->n.facets) memcpy(e->facets, f->facets, (size_t)e->n.facets*sizeof *e->facets);
+    demi_events_index(to);
+    return 1;
+}
+/* Sets whether the members of a team note contacts. */
+static void demi_events_switch(dem_world *w, int on) {
+    int k;
+    w->events.n.on = on;
+    for (k = 0; k < demi_members(w); k++) {
+        demi_member(w, k)->events.n.on = on;
+        demi_kernel_choose(demi_member(w, k));
+    }
+}
+/* Begins a recording. */
+static void demi_events_start(dem_world *w) {
+    demi_events_clear(w);
+    w->events.n.fresh = 1;
+    w->events.n.since = w->clock.time;
+    demi_events_switch(w, 1);
+}
+/* Takes over the contacts that all members have noted, and ends those that nobody noted. If memory
+   runs out, recording stops; demi_events_tell reports it. */
+static void demi_events_take(dem_world *w) {
+    demi_events *e = &w->events;
+    int i, k, d, ok = 1;
+    e->turn++;
+    for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++)
+        memset(e->open[i].due, 0, sizeof e->open[i].due);   /* a new solution replaces the last */
+    for (k = 0; k < demi_members(w); k++) {
+        const dem_world *m = demi_member(w, k);
+        const demi_events *own = &m->events;
+        for (d = 0; d < m->domain_count; d++)
+            for (i = 0; i < own->noted_count[d] && ok; i++)
+                ok = demi_event_add(w, m, own->noted + own->noted_first[d] + i);
+    }
+    for (i = e->n.open - 1; i >= 0 && ok; i--)
+        if (e->seen[i] != e->turn) ok = demi_event_end(w, i);
+    e->n.fresh = 0;
+    if (ok) return;
+    demi_events_clear(w);
+    demi_events_switch(w, 0);
+    e->failed = 1;
+}
+/* Order in which contacts are passed on: those that begin, then those that end; by ids. */
+static int demi_event_compare(const void *x, const void *y) {
+    const dem_event *a = (const dem_event *)x, *b = (const dem_event *)y;
+    const uint32_t p[] = {a->kind == DEM_EVENT_END, a->a.slot, a->b.slot, (uint32_t)a->wall,
+                          a->a.generation, a->b.generation};
+    const uint32_t q[] = {b->kind == DEM_EVENT_END, b->a.slot, b->b.slot, (uint32_t)b->wall,
+                          b->a.generation, b->b.generation};
+    int k;
+    for (k = 0; k < 5 && p[k] == q[k];) k++;
+    return (p[k] > q[k]) - (p[k] < q[k]);
+}
+/* Calls the user's function for the contacts that have begun or ended, when a step is complete.
+   call: the public function that runs. */
+static dem_result demi_events_tell(dem_world *w, const char *call) {
+    demi_events *e = &w->events;
+    int i;
+    if (e->failed) {
+        e->failed = 0;
+        return demi_fail(w, DEM_ERROR_MEMORY, "%s: step %llu is complete, but memory ran out for "
+                         "its contact events; they are no longer recorded: free memory, call "
+                         "dem_events_record again and continue", call,
+                         (unsigned long long)w->clock.steps);
+    }
+    if (!e->n.pending) return DEM_OK;
+    qsort(e->pending, (size_t)e->n.pending, sizeof *e->pending, demi_event_compare);
+    for (i = 0; i < e->n.pending && e->desc.function; i++) {
+        const demi_calling was = demi_calls(w, call, 0);
+        e->desc.function(&e->pending[i], e->desc.user);
+        demi_called(w, was);
+    }
+    e->n.pending = 0;
+    return DEM_OK;
+}
+
+/* --- public functions --- */
+
+/* Fails unless contacts are recorded. */
+static dem_result demi_events_needed(dem_world *w, const char *call) {
+    if (w->events.n.on) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts are not recorded; call dem_events_record "
+                     "before the run", call);
+}
+DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) {
+    const char *call = "dem_events_record";
+    if (demi_null(w, call, desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (!w->desc.ledger)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: desc.ledger is 0, must be 1, because contacts "
+                         "only then report what they lose; set it when the world is created", call);
+    if (desc->begins < 0 || desc->begins > 1)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: begins is %d, must be 0 or 1; start from "
+                         "DEM_EVENTS_DESC", call, desc->begins);
+    w->events.desc = *desc;
+    if (!desc->function) w->events.n.pending = 0;
+    if (w->events.n.on) return DEM_OK;
+    demi_events_start(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_events_stop(dem_world *w) {
+    if (demi_null(w, "dem_events_stop", w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_events_clear(w);
+    demi_events_switch(w, 0);
+    memset(&w->events.desc, 0, sizeof w->events.desc);
+    return DEM_OK;
+}
+DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
+    const char *call = "dem_events_open_each";
+    dem_event *all = 0;
+    demi_calling was;
+    int i, n;
+    if (demi_null(w, call, w, "world") || demi_events_needed(w, call) != DEM_OK) return -1;
+    n = w->events.n.open;
+    if (!fn || !n) return n;
+    all = (dem_event *)demi_alloc(w, (size_t)n, sizeof *all);
+    if (!all) { demi_no_memory(w, call); return -1; }
+    for (i = 0; i < n; i++) all[i] = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+    qsort(all, (size_t)n, sizeof *all, demi_event_compare);
+    was = demi_calls(w, call, 0);
+    for (i = 0; i < n; i++) fn(&all[i], user);
+    demi_called(w, was);
+    demi_free(w, all);
+    return n;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>step
    Time integration: one step, in the stages that section 10 of the manual lists, for all members
    of a team together (>>team), that is for a single world or for slabs. A phase runs over the work
@@ -29220,7 +29971,7 @@ static int demi_forces(dem_world *w) {
     const demi_response_row *response = &demi_responses[w->desc.response];
     demi_kept *kept = w->kept_now;
     int d, i, k;
-    if (response->room && !response->room(w)) return 0;
+    if ((response->room && !response->room(w)) || (w->events.n.on && !demi_notes_room(w))) return 0;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
@@ -29422,6 +30173,7 @@ static dem_result demi_step_move(dem_world *w) {
         w->booked.energy[DEMI_E_GRAVITY] += work;
         w->booked.throughput += fabs(work);
         demi_due_book(w);
+        if (w->events.n.on) demi_events_due(w);
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -29650,8 +30402,11 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
     if (result == DEM_OK) result = demi_all(h, demi_member_touch);
     if (result == DEM_OK && demi_member(h, 0)->bodies.orienting) result = demi_agree(h, 0, 0);
+    if (result == DEM_OK && h->events.n.on && !demi_events_room(h))
+        result = demi_no_memory(h, "dem_world_step");
     if (result == DEM_OK) result = demi_all(h, demi_member_forces);
     if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
+    if (result == DEM_OK && h->events.n.on) demi_events_take(h);
     return result;
 }
 /* The part of a step after its move: outflow, outlets, 2 search, 3 to 5 forces. With impulses,
@@ -29805,6 +30560,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
             if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
         }
         demi_called(h, was);
+        if (result == DEM_OK) result = demi_events_tell(h, call);
         if (result == DEM_OK) result = demi_look(h);
     }
     if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */
@@ -34298,6 +35054,138 @@ DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet o
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>impacts
+   Measurements of recorded contacts (>>events): spectra of impact energies, collision rates, wear.
+   Reads w->events only, and writes CSV files.
+   --------------------------------------------------------------------------------------------- */
+
+/* Returns the lower limit of a bin, J. */
+static double demi_impact_limit(int bin) { return pow(10, bin/5.0 - 18); }
+/* True if the materials x and y (indices) are those of ids a and b, of which 0 means any. */
+static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
+    return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||
+        ((!a.id || a.id == y + 1) && (!b.id || b.id == x + 1));
+}
+DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
+                                   dem_impacts *out) {
+    const char *call = "dem_impacts_get";
+    int i, k;
+    if (demi_null_look(w, call, out, "impacts")) return DEM_ERROR_ARGUMENT;
+    if (demi_events_needed(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist; there are %d, and "
+                         "id 0 means any", call,
+                         (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
+                         w->material_count);
+    memset(out, 0, sizeof *out);
+    out->seconds = w->clock.time - w->events.n.since;
+    for (k = 0; k <= DEM_IMPACT_BINS; k++) out->bin[k] = demi_impact_limit(k);
+    for (i = 0; i < w->events.n.pairs; i++) {
+        const demi_impacts *p = &w->events.pairs[i];
+        if (!demi_impacts_fit(p->a, p->b, a, b)) continue;
+        out->ended += p->ended;
+        out->lost_normal += p->lost[0];
+        out->lost_slide += p->lost[1];
+        out->lost_tangent += p->lost[2];
+        out->lost_rolling += p->lost[3];
+        for (k = 0; k < DEM_IMPACT_BINS; k++) {
+            out->impacts[k] += p->impacts[k];
+            out->losses[k] += p->losses[k];
+            out->energy[k] += p->energy[k];
+        }
+    }
+    for (i = 0; i < w->events.n.open; i++) {
+        const dem_event e = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+        if (!demi_impacts_fit((int)e.material_a.id - 1, (int)e.material_b.id - 1, a, b)) continue;
+        out->open++;
+        out->lost_normal += e.lost_normal;
+        out->lost_slide += e.lost_slide;
+        out->lost_tangent += e.lost_tangent;
+        out->lost_rolling += e.lost_rolling;
+    }
+    out->rate = out->seconds > 0 ? out->ended/out->seconds : 0;
+    return DEM_OK;
+}
+DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
+    const char *call = "dem_impacts_csv_write";
+    demi_out out;
+    dem_result result;
+    double seconds;
+    char number[5][40];
+    int a, b, i, k;
+    if (demi_null_write(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_events_needed(w, call);
+    if (result == DEM_OK) result = demi_out_open(&out, w, call, path);
+    if (result != DEM_OK) return result;
+    seconds = w->clock.time - w->events.n.since;
+    fprintf(out.file, "material_a,material_b,from,to,impacts,losses,power\n");
+    for (a = 0; a < w->material_count; a++)
+        for (b = a; b < w->material_count; b++)
+            for (i = 0; i < w->events.n.pairs; i++) {
+                const demi_impacts *p = &w->events.pairs[i];
+                for (k = 0; k < DEM_IMPACT_BINS && p->a == a && p->b == b; k++) {
+                    if (!(p->impacts[k] > 0) && !(p->losses[k] > 0)) continue;
+                    fprintf(out.file, "%d,%d,%s,%s,%s,%s,%s\n", a + 1, b + 1,
+                            demi_format_real(number[0], demi_impact_limit(k), 6),
+                            demi_format_real(number[1], demi_impact_limit(k + 1), 6),
+                            demi_format_real(number[2], p->impacts[k]/seconds, 9),
+                            demi_format_real(number[3], p->losses[k]/seconds, 9),
+                            demi_format_real(number[4], p->energy[k]/seconds, 9));
+                }
+            }
+    return demi_out_close(&out);
+}
+
+/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if there
+   is no such wall or no recording. */
+static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wall,
+                                     dem_result *result) {
+    const int i = demi_wall_place(wall);
+    *result = demi_events_needed(w, call);
+    if (*result != DEM_OK) return 0;
+    if (!demi_wall_there(w, wall)) {
+        *result = demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist; it was removed, or "
+                            "the id belongs to another world", call, (int)wall.id);
+        return 0;
+    }
+    return i < w->events.n.walls && w->events.walls[i].id == wall.id ? &w->events.walls[i] : 0;
+}
+DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coefficient,
+                                     double hardness, dem_wear *wear) {
+    const char *call = "dem_wall_wear_get";
+    const demi_worn *worn;
+    dem_result result;
+    if (demi_null_look(w, call, wear, "wear")) return DEM_ERROR_ARGUMENT;
+    worn = demi_worn_of(w, call, wall, &result);
+    if (result != DEM_OK) return result;
+    if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
+        !(hardness > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: coefficient is %g, must be >= 0, and hardness "
+                         "is %g Pa, must be > 0, both finite; steel has about 1e-4 and 2e9 Pa",
+                         call, coefficient, hardness);
+    memset(wear, 0, sizeof *wear);
+    wear->seconds = w->clock.time - w->events.n.since;
+    wear->slide = worn ? worn->slide : 0;
+    wear->normal = worn ? worn->normal : 0;
+    wear->volume = coefficient*wear->slide/hardness;
+    return DEM_OK;
+}
+DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, int capacity) {
+    const char *call = "dem_wall_wear_facets_get";
+    const demi_worn *worn;
+    dem_result result;
+    int k, count;
+    if (demi_null_look(w, call, w, "world")) return -1;
+    worn = demi_worn_of(w, call, wall, &result);
+    if (result != DEM_OK) return -1;
+    k = demi_wall_place(wall);
+    count = demi_wall_kinds[w->walls[k].kind].corners > 1 ? w->walls[k].element_count : 0;
+    for (k = 0; k < count && k < capacity && work; k++)
+        work[k] = worn ? w->events.facets[worn->first + k] : 0;
+    return count;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>checkpoint
    Checkpoints: binary files with the complete state, from which a run continues bit for bit. The
    same functions (demi_visit_...) write and read the state, so that the two cannot differ. This
@@ -34491,6 +35379,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
+    DEMI_VISIT(s, w->events.n);
 }
 /* Visits the arrays of bodies that demi_body_arrays declares as state. */
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
@@ -34641,6 +35530,15 @@ static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->written_count; i++)
         demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
 }
+/* Visits the recording of contacts. */
+static void demi_visit_events(dem_world *w, demi_stream *s) {
+    demi_events *e = &w->events;
+    demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
+    demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
+    demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
+    demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
+    demi_visit(s, e->facets, (size_t)e->n.facets*sizeof *e->facets);
+}
 /* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_numbers(w, s);
@@ -34653,6 +35551,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_walls(w, s);
     demi_visit_measured(w, s);
     demi_visit_outputs(w, s);
+    demi_visit_events(w, s);
 }
 
 /* --- writing --- */
@@ -34672,8 +35571,9 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
-                            sizeof(demi_rail),
-                            sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
+                            sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
+                            sizeof(demi_ongoing), sizeof(demi_impacts),
+                            (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;
     int k;
@@ -34962,6 +35862,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->normal = (int)w->desc.normal_law;
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
+    t->events.desc = w->events.desc;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -35048,6 +35949,14 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of rails", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
+    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open, sizeof(demi_ongoing)) ||
+        !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
+        !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
+        !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
+        !demi_left(r, t->events.n.facets, sizeof(double)) ||
+        t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
+        !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
+        return demi_lie(r, "number of contact events", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
@@ -35370,6 +36279,37 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
+/* True if the ids of an event are possible. */
+static int demi_event_sane(const dem_world *t, const dem_event *e) {
+    return e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
+        (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
+        (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
+        e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
+        e->material_b.id >= 1 && e->material_b.id <= t->material_count;
+}
+/* Checks the recording of contacts: ids, materials and numbers of facets must be possible. */
+static int demi_events_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const demi_events *e = &t->events;
+    int i;
+    for (i = 0; i < e->n.open; i++)
+        if (!demi_event_sane(t, &e->open[i].event) || e->open[i].facet < 0 ||
+            (e->open[i].event.wall &&
+             (e->open[i].event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
+            return demi_lie(r, "contact event", i);
+    for (i = 0; i < e->n.pending; i++)
+        if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
+    for (i = 0; i < e->n.pairs; i++)
+        if (e->pairs[i].a < 0 || e->pairs[i].b < e->pairs[i].a ||
+            e->pairs[i].b >= t->material_count) return demi_lie(r, "spectrum", i);
+    for (i = 0; i < e->n.walls; i++)
+        if (e->walls[i].first < 0 || e->walls[i].count < 0 ||
+            e->walls[i].count > e->n.facets - e->walls[i].first ||
+            (e->walls[i].id == t->walls[i].id && e->walls[i].count && e->walls[i].count !=
+             t->walls[i].element_count)) return demi_lie(r, "wear of wall", i);
+    return 1;
+}
+
 /* --- reading: memory, and values that follow from the state --- */
 
 /* Allocates the arrays of bodies as if the bodies were added. Returns 0 if memory ran out. */
@@ -35480,7 +36420,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
         !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
         !DEMI_GROW(t, t->rails, (size_t)t->rail_count) ||
-        !DEMI_GROW(t, t->written, (size_t)t->written_count)) return DEM_ERROR_MEMORY;
+        !DEMI_GROW(t, t->written, (size_t)t->written_count) || !demi_events_reserve(t))
+        return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
     demi_visit_joints(t, s);
     demi_visit_rails(t, s);
@@ -35490,10 +36431,12 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
     demi_visit_outputs(t, s);
+    demi_visit_events(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r) || !demi_rails_check(r) ||
-        !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+        !demi_joints_check(r) || !demi_rails_check(r) || !demi_outputs_check(r) ||
+        !demi_events_check(r)) return DEM_ERROR_FORMAT;
+    demi_events_index(t);
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
         return DEM_ERROR_MEMORY;
@@ -35520,7 +36463,9 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK) {
+        const int recording = w->events.n.on;
         demi_twin_adopt(w, r.t);
+        if (recording && !w->events.n.on) demi_events_start(w);
         return DEM_OK;
     }
     demi_twin_free(w, r.t);
@@ -35559,6 +36504,7 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
     if (r.t->pairs)
         memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     r.t->facets_valid = 1;
+    memset(&r.t->events.desc, 0, sizeof r.t->events.desc);  /* events of a copy are nobody's */
     result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
     demi_free(r.t, seen);
     if (result == DEM_OK) return r.t;
@@ -39511,6 +40457,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->clock.last_rebuild = from->clock.steps;
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
+    w->events.n.on = from->events.n.on;
     return w;
 }
 /* True if demi_slab_world has completed this world. */
@@ -39580,6 +40527,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval is %d; "
                          "balance must be 0, >= 1 or < 0 (never), balance_interval >= 0", call,
                          (double)d->balance, d->balance_interval);
+    if (w->events.n.on && local < d->count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
+                         "world records contacts, whose records cannot change processes; hold all "
+                         "slabs, or call dem_events_stop first", call, local, d->count);
     if (w->stage.moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is in the middle of a step that "
                          "ran out of memory; finish the step with dem_world_step first", call);
@@ -39650,7 +40601,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     s->team.feed = demi_slabs_feed;
     s->team.sum = demi_slabs_sum;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
-    return demi_slabs_feeds_copy(h, w);
+    return demi_slabs_feeds_copy(h, w) && demi_events_copy(h, w);
 }
 /* Sets the first borders: about the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
@@ -39966,6 +40917,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                                  "slabs again afterwards", call, (unsigned)slot + 1, k);
         }
     }
+    if (h->events.n.on && !demi_events_copy(w, h)) return demi_no_memory(h, call);
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
     i = w->bodies.slot_count;
     if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
@@ -40015,6 +40967,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         /* counts of the slabs replace those of the world */
         w->bodies.balance.inserted = s->head.bodies.balance.inserted;
         w->bodies.balance.removed = s->head.bodies.balance.removed;
+        if (w->events.n.on && !s->head.events.n.on) demi_events_start(w);
         demi_effects(w);                        /* the world itself may never have been stepped */
         demi_kernel_choose(w);
     }

@@ -60,6 +60,8 @@
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           stages from rows of contacts of spheres to forces and torques
        >>pairs             user-defined laws; the loop over the pruned neighbour list
+       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
+       >>noted             notes of the contacts of a step, for events
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
@@ -90,6 +92,7 @@
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
+       >>events            contacts from beginning to end; spectra of impacts; wear
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
@@ -102,6 +105,7 @@
        >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
        >>write             writing VTP, VTK, XYZ and CSV
        >>tables            tables of bodies, contacts, fields and residence times (CSV)
+       >>impacts           spectra of impact energies and wear, as numbers and CSV
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>changed           reading a checkpoint into a world that differs
@@ -221,6 +225,7 @@
 #include "contact/touch.h"
 #include "contact/respond.h"
 #include "contact/pairs.h"
+#include "contact/noted.h"
 #include "contact/polyhedra.h"
 #include "contact/gaps.h"
 #include "contact/on-walls.h"
@@ -248,6 +253,7 @@
 #include "run/ledger.h"
 #include "run/responses.h"
 #include "run/fields.h"
+#include "run/events.h"
 #include "run/step.h"
 #include "run/runs.h"
 #include "run/measure.h"
@@ -259,6 +265,7 @@
 #include "file/read-grains.h"
 #include "file/write.h"
 #include "file/tables.h"
+#include "file/impacts.h"
 #include "file/checkpoint.h"
 #include "file/restore.h"
 #include "file/changed.h"

@@ -325,6 +325,111 @@ DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capaci
 /* Rebuilds the neighbour list now, for tests and analysis. A run does so automatically. */
 DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
+/* ---- contact events: collisions, impact energies, wear ---- */
+
+/* What a function of events is called for. */
+typedef enum dem_event_kind {
+    DEM_EVENT_END = 0,             /* a contact has ended */
+    DEM_EVENT_BEGIN,               /* a contact has begun */
+    DEM_EVENT_OPEN                 /* a contact exists: dem_events_open_each */
+} dem_event_kind;
+/* A contact of two bodies, or of a body and a wall, from its beginning to its end. It exists while
+   any of their contact points has an overlap, or while a law with a range exerts a force beyond
+   contact; with impulses, while its impulse is not 0. Bodies of several spheres and walls of
+   several facets have one contact with each other. */
+typedef struct dem_event {
+    dem_event_kind kind;
+    dem_body a, b;                 /* a has the lower slot; b is null for a contact with a wall */
+    int32_t wall;                  /* dem_wall id; 0: b is a body */
+    dem_material material_a, material_b;
+    /* 1: recording began during the contact; 2: it ended because a body or the wall was removed; 3:
+       both. Else 0. */
+    int cut;
+    dem_vec3 point, normal;        /* m; unit, from a to b: where it began */
+    double begin, end;             /* s; end: the present time unless kind is DEM_EVENT_END */
+    /* m/s, relative velocity at the contact point when it began: along the normal, > 0 if the two
+       approach; across it. They belong to the first step in which the two touch. */
+    double closing_speed, slip_speed;
+    /* kg, effective mass m_a m_b/(m_a + m_b) for a central impact; fixed bodies and walls are
+       infinitely heavy; 0: neither can move */
+    double mass;
+    /* N, the largest normal force, summed over contact points (of impulses the mean over a step);
+       N s, the normal force summed over time */
+    double force, impulse;
+    /* J, energy lost so far as in dem_ledger: by the normal law, by sliding, by tangential dashpots
+       (and springs that held energy at the end), by rolling resistance */
+    double lost_normal, lost_slide, lost_tangent, lost_rolling;
+} dem_event;
+/* Receives one contact. It may only read the world. */
+typedef void (*dem_event_fn)(const dem_event *event, void *user);
+/* How contacts are recorded. Begin with DEM_EVENTS_DESC. */
+typedef struct dem_events_desc {
+    /* called after each step for the contacts that have ended in it; null means no call. The
+       contacts are in the order of their ids, for any number of threads and slabs. */
+    dem_event_fn function;
+    void *user;                    /* passed to `function`; or null */
+    int begins;                    /* 1: also called for contacts that have begun, before those */
+} dem_events_desc;
+static const dem_events_desc DEM_EVENTS_DESC_ZERO = DEM_ZERO;
+#define DEM_EVENTS_DESC DEM_EVENTS_DESC_ZERO
+/* Starts to record contacts; needs desc.ledger. If they are recorded already, replaces the function
+   and keeps the records. Forces and motions have the same bits as without a recording. Checkpoints
+   contain the records, but not the function: call this again after reading one in a new program.
+   Slabs continue the recording of the world from which they are created, if one process holds them
+   all; dem_slabs_collect returns it. A step that has no memory for the records completes, stops the
+   recording and fails with DEM_ERROR_MEMORY. */
+DEM_API dem_result dem_events_record(dem_world *world, const dem_events_desc *desc);
+/* Ends the recording and discards its records. */
+DEM_API dem_result dem_events_stop(dem_world *world);
+/* Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn, user:
+   or null. Returns -1 if contacts are not recorded. */
+DEM_API int dem_events_open_each(dem_world *world, dem_event_fn fn, void *user);
+
+/* Number of bins of impact energies: five per decade from 1e-18 J to 1e6 J. The first and the last
+   bin also count what is outside. */
+enum { DEM_IMPACT_BINS = 120 };
+/* Statistics of the recorded contacts. */
+typedef struct dem_impacts {
+    double seconds;                /* s, recorded so far */
+    double ended;                  /* number of contacts that have ended */
+    int open;                      /* number of contacts that exist */
+    double rate;                   /* 1/s: ended/seconds */
+    /* J, lost in all recorded contacts, those that exist included. For all materials these are what
+       the ledger has booked since recording began, except losses of joints. */
+    double lost_normal, lost_slide, lost_tangent, lost_rolling;
+    double bin[DEM_IMPACT_BINS + 1];           /* J, limits of the bins */
+    /* contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun
+       before the recording are not counted */
+    double impacts[DEM_IMPACT_BINS];
+    /* contacts that have ended, by energy lost in them (the sum of all four losses); and the energy
+       lost in the contacts of each bin, J */
+    double losses[DEM_IMPACT_BINS], energy[DEM_IMPACT_BINS];
+} dem_impacts;
+/* Computes the statistics of contacts between two materials, walls included; material id 0 means
+   any. An error if contacts are not recorded. */
+DEM_API dem_result dem_impacts_get(dem_world *world, dem_material a, dem_material b,
+                                   dem_impacts *impacts);
+/* Writes the spectra of all pairs of materials that have touched to a CSV file. A line per bin that
+   is not empty: material_a, material_b, from, to (J), impacts, losses (both 1/s), power (W). */
+DEM_API dem_result dem_impacts_csv_write(dem_world *world, const char *path);
+
+/* Wear of a wall since recording began. */
+typedef struct dem_wear {
+    double seconds;                /* s, recorded so far */
+    double slide, normal;          /* J, lost on it by sliding; by the normal law */
+    double volume;                 /* m3, coefficient*slide/hardness */
+} dem_wear;
+/* Computes the wear of a wall by Archard's law: the worn volume is the work of sliding times a
+   dimensionless coefficient, over the hardness (Pa, > 0) of the softer side. coefficient: >= 0,
+   that of Archard (per normal force and distance) divided by the coefficient of friction. */
+DEM_API dem_result dem_wall_wear_get(dem_world *world, dem_wall wall, double coefficient,
+                                     double hardness, dem_wear *wear);
+/* Writes the work of sliding on each facet (mesh) or segment (profile) of a wall, J, in the order
+   of its elements, at most `capacity` of them, and returns their number (0: the wall has no
+   facets). The work counts for the facet that is nearest to the contact point. work: or null.
+   Returns -1 if contacts are not recorded. */
+DEM_API int dem_wall_wear_facets_get(dem_world *world, dem_wall wall, double *work, int capacity);
+
 /* ---- measuring ---- */
 
 /* What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of

@@ -405,22 +405,38 @@ DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
     const dem_vec3 late = demi_at(w->bodies.late + 4*a);
     return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
 }
-/* Adds the energies of the contact of row q to the ledger. Friction and rolling may have another
-   weight than the rest: see demi_kept_lift. */
-static void demi_kept_book(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
+/* Computes the energies of the contact of row q, J, for the ledger. Friction and rolling may have
+   another weight than the rest: see demi_kept_lift. */
+static void demi_kept_energy(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
     const demi_tile *rows = &t->rows;
     const demi_kept *c = t->contact[q];
     const dem_real share = c->share, grip = c->grip, slope = c->slope;
     const dem_real late = !w->bodies.booked ? 0
         : demi_late_share(demi_late_of(w, c->a, c->b), c->normal, rows->closing[q]);
     /* V = k overlap^2/2; the law was given k slope */
-    energy[DEMI_E_DASHPOT] += (double)(share*(rows->part[0][q]*(1 + late) +
-                                              rows->part[6][q]/slope));
-    energy[DEMI_E_ELASTIC] += (double)(share*(rows->part[1][q]/slope));
-    energy[DEMI_E_SHEAR_WORK] += (double)(grip*rows->part[2][q]);
-    energy[DEMI_E_SLIDE] += (double)(grip*rows->part[3][q]);
-    energy[DEMI_E_SHEAR_STORED] += (double)(grip*rows->part[4][q]);
-    energy[DEMI_E_ROLL] += (double)(grip*rows->part[5][q]);
+    energy[DEMI_E_DASHPOT] = (double)(share*(rows->part[0][q]*(1 + late) +
+                                             rows->part[6][q]/slope));
+    energy[DEMI_E_ELASTIC] = (double)(share*(rows->part[1][q]/slope));
+    energy[DEMI_E_SHEAR_WORK] = (double)(grip*rows->part[2][q]);
+    energy[DEMI_E_SLIDE] = (double)(grip*rows->part[3][q]);
+    energy[DEMI_E_SHEAR_STORED] = (double)(grip*rows->part[4][q]);
+    energy[DEMI_E_ROLL] = (double)(grip*rows->part[5][q]);
+}
+/* Notes the contact of row q for events. */
+static DEMI_APART void demi_kept_note(dem_world *w, int d, const demi_kept_tile *t, int q,
+                                      const double *energy) {
+    const demi_kept *c = t->contact[q];
+    demi_noted n;
+    n.a = c->a;
+    n.b = c->b;
+    n.wall = c->wall;
+    n.old = c->from >= 0;
+    n.normal = c->normal;
+    n.arm = c->arm_a;
+    n.shift = c->shift;
+    n.force = -demi_dot(c->force, c->normal);
+    memcpy(n.energy, energy, sizeof n.energy);
+    demi_note(w, d, &n, c->overlap > 0);
 }
 
 /* Adds the rates that a law returned for user-defined numbers, times the weight of contact c. */
@@ -518,6 +534,7 @@ static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_ke
 static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_kept_tile *t) {
     demi_domain *domain = &w->domains[d];
     demi_tile *rows = &t->rows;
+    double energy[DEMI_E_ROLL + 1];
     int q, e;
     demi_kept_tile_answer(w, r, t);
     for (q = 0; q < t->count; q++) {
@@ -527,7 +544,10 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
         c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
-        if (r->ledger) demi_kept_book(w, t, q, domain->energy);
+        if (!r->ledger) continue;
+        demi_kept_energy(w, t, q, energy);
+        for (e = 0; e <= DEMI_E_ROLL; e++) domain->energy[e] += energy[e];
+        if (w->events.n.on) demi_kept_note(w, d, t, q, energy);
     }
     t->count = t->lifted = t->shaped = 0;
 }

@@ -339,6 +339,7 @@ static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int se
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
     if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
     if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
+    if (w->events.n.on) demi_tile_note(w, d, rows, &m->span, &m->run);
     m->count = m->weighted = 0;
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
@@ -465,7 +466,8 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
 
 /* Sets the force loop for the laws in force. Returns its name in reports. */
 static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = w->effects.clustered ? demi_pairs_members : demi_pairs;
+    w->kernel = w->effects.clustered ? demi_pairs_members
+        : w->events.n.on ? demi_pairs_noted : demi_pairs;
     if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
     return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }

@@ -415,8 +415,11 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     }
 }
 
-/* Computes all pairs of a work group: those within it, then those with later ones. */
-static void demi_pairs(dem_world *w, int d) {
+/* Computes all pairs of a work group: those within it, then those with later ones. note: called
+   for every tile when its forces are known, or null. */
+DEM_INLINE void demi_pairs_with(dem_world *w, int d,
+                                void (*note)(dem_world *w, int d, demi_tile *t,
+                                             const demi_span *span, const demi_run *r)) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
     demi_run run[2];
@@ -440,11 +443,13 @@ static void demi_pairs(dem_world *w, int d) {
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
             else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
             if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
+            if (note) note(w, d, &tile, &span, r);
         }
     }
     domain->contacts = (int)tally.contacts;
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
 }
+static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options

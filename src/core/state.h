@@ -268,6 +268,56 @@ typedef struct demi_record {
     void (*put)(const dem_world *member, int body, char *to);
     void (*take)(dem_world *member, int body, const char *from);
 } demi_record;
+/* A contact of the present step, as the loops over contacts note it while events are recorded. */
+typedef struct demi_noted {
+    int32_t a, b;                  /* bodies; b -1: a wall */
+    int32_t wall;                  /* index */
+    int32_t old;                   /* 1: it existed before this step */
+    dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
+    dem_vec3 shift;                /* m, from a to its image that touches the wall */
+    dem_real force;                /* N, repulsive force along the normal */
+    double energy[DEMI_E_ROLL + 1];            /* J, of this step */
+} demi_noted;
+/* A pair of bodies, or a body and a wall, that touch. event: as the user sees it, with the losses
+   booked so far. */
+typedef struct demi_ongoing {
+    dem_event event;
+    double force, stored, work;    /* N, of this step; J: of tangential springs now; against
+                                      tangential forces so far */
+    double due[4];                 /* impulses: normal, slide and rolling losses (J) and normal
+                                      impulse (N s) of the coming step, */
+    int32_t facet, none;           /* on this facet of the wall; padding, 0 */
+} demi_ongoing;
+/* Sums over the contacts of two materials that have ended; a <= b, indices. */
+typedef struct demi_impacts {
+    int32_t a, b;
+    double ended, lost[4];         /* number; J: normal, slide, tangent, rolling */
+    double impacts[DEM_IMPACT_BINS], losses[DEM_IMPACT_BINS], energy[DEM_IMPACT_BINS];
+} demi_impacts;
+/* Energies lost on the wall with this id, J. Those of its facets begin at `first` of `facets`. */
+typedef struct demi_worn { int32_t id, first, count, none; double slide, normal; } demi_worn;
+/* Numbers of a recording; saved and copied whole. */
+typedef struct demi_event_counts {
+    int32_t on, fresh;             /* 1: contacts are recorded; 1: no step has been noted yet */
+    int32_t open, pending, pairs, walls, facets, none;     /* entries of the arrays below */
+    double since;                  /* s, when it began */
+} demi_event_counts;
+/* A recording of contacts (>>events). Slabs note contacts; their head holds everything else. */
+typedef struct demi_events {
+    demi_event_counts n;
+    dem_events_desc desc;
+    demi_noted *noted;             /* of work group d: from noted_first[d] on */
+    int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
+    demi_ongoing *open;
+    uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
+    int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
+    int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
+    dem_event *pending;            /* not yet passed to the user's function */
+    demi_impacts *pairs;
+    demi_worn *walls;              /* by index of the wall */
+    double *facets;                /* J, lost by sliding on each facet */
+} demi_events;
+
 /* The worlds that step together (>>team). A single world has no team: it is its own head and its
    only member. Slabs (>>slabs) are the members of a head, a world without bodies that holds the
    numbers they share: time, time step, skin, error. A body near a border is in two members: one
@@ -418,6 +468,7 @@ struct dem_world {
     demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
+    demi_events events;            /* >>events; noted: >>noted, >>kept-respond, >>impulses-told */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */

@@ -192,6 +192,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
+    DEMI_VISIT(s, w->events.n);
 }
 /* Visits the arrays of bodies that demi_body_arrays declares as state. */
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
@@ -342,6 +343,15 @@ static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->written_count; i++)
         demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
 }
+/* Visits the recording of contacts. */
+static void demi_visit_events(dem_world *w, demi_stream *s) {
+    demi_events *e = &w->events;
+    demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
+    demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
+    demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
+    demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
+    demi_visit(s, e->facets, (size_t)e->n.facets*sizeof *e->facets);
+}
 /* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_numbers(w, s);
@@ -354,6 +364,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_walls(w, s);
     demi_visit_measured(w, s);
     demi_visit_outputs(w, s);
+    demi_visit_events(w, s);
 }
 
 /* --- writing --- */
@@ -373,8 +384,9 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
-                            sizeof(demi_rail),
-                            sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
+                            sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
+                            sizeof(demi_ongoing), sizeof(demi_impacts),
+                            (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;
     int k;

@@ -58,6 +58,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->normal = (int)w->desc.normal_law;
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
+    t->events.desc = w->events.desc;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -144,6 +145,14 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of rails", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
+    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open, sizeof(demi_ongoing)) ||
+        !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
+        !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
+        !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
+        !demi_left(r, t->events.n.facets, sizeof(double)) ||
+        t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
+        !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
+        return demi_lie(r, "number of contact events", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
@@ -466,6 +475,37 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
+/* True if the ids of an event are possible. */
+static int demi_event_sane(const dem_world *t, const dem_event *e) {
+    return e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
+        (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
+        (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
+        e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
+        e->material_b.id >= 1 && e->material_b.id <= t->material_count;
+}
+/* Checks the recording of contacts: ids, materials and numbers of facets must be possible. */
+static int demi_events_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const demi_events *e = &t->events;
+    int i;
+    for (i = 0; i < e->n.open; i++)
+        if (!demi_event_sane(t, &e->open[i].event) || e->open[i].facet < 0 ||
+            (e->open[i].event.wall &&
+             (e->open[i].event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
+            return demi_lie(r, "contact event", i);
+    for (i = 0; i < e->n.pending; i++)
+        if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
+    for (i = 0; i < e->n.pairs; i++)
+        if (e->pairs[i].a < 0 || e->pairs[i].b < e->pairs[i].a ||
+            e->pairs[i].b >= t->material_count) return demi_lie(r, "spectrum", i);
+    for (i = 0; i < e->n.walls; i++)
+        if (e->walls[i].first < 0 || e->walls[i].count < 0 ||
+            e->walls[i].count > e->n.facets - e->walls[i].first ||
+            (e->walls[i].id == t->walls[i].id && e->walls[i].count && e->walls[i].count !=
+             t->walls[i].element_count)) return demi_lie(r, "wear of wall", i);
+    return 1;
+}
+
 /* --- reading: memory, and values that follow from the state --- */
 
 /* Allocates the arrays of bodies as if the bodies were added. Returns 0 if memory ran out. */
@@ -576,7 +616,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
         !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
         !DEMI_GROW(t, t->rails, (size_t)t->rail_count) ||
-        !DEMI_GROW(t, t->written, (size_t)t->written_count)) return DEM_ERROR_MEMORY;
+        !DEMI_GROW(t, t->written, (size_t)t->written_count) || !demi_events_reserve(t))
+        return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
     demi_visit_joints(t, s);
     demi_visit_rails(t, s);
@@ -586,10 +627,12 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
     demi_visit_outputs(t, s);
+    demi_visit_events(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r) || !demi_rails_check(r) ||
-        !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+        !demi_joints_check(r) || !demi_rails_check(r) || !demi_outputs_check(r) ||
+        !demi_events_check(r)) return DEM_ERROR_FORMAT;
+    demi_events_index(t);
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
         return DEM_ERROR_MEMORY;
@@ -616,7 +659,9 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK) {
+        const int recording = w->events.n.on;
         demi_twin_adopt(w, r.t);
+        if (recording && !w->events.n.on) demi_events_start(w);
         return DEM_OK;
     }
     demi_twin_free(w, r.t);
@@ -655,6 +700,7 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
     if (r.t->pairs)
         memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     r.t->facets_valid = 1;
+    memset(&r.t->events.desc, 0, sizeof r.t->events.desc);  /* events of a copy are nobody's */
     result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
     demi_free(r.t, seen);
     if (result == DEM_OK) return r.t;

@@ -94,6 +94,26 @@ static void demi_movers_force(dem_world *w, int d) {
                 torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
 }
+/* Notes a solved contact for events. old: it had an impulse before; energy: J, lost by its normal
+   impulse, slip and rolling. */
+static DEMI_APART void demi_impulse_note(dem_world *w, int d, const demi_meeting *m,
+                                         const demi_spot *o, const demi_kept *k, int old,
+                                         dem_real force, const double *energy) {
+    demi_noted n;
+    n.a = m->a;
+    n.b = k && k->b < 0 ? -1 : m->b;
+    n.wall = k ? k->wall : 0;
+    n.old = old;
+    n.normal = o->normal;
+    n.arm = o->arm_a;
+    n.shift = n.b < 0 ? k->shift : demi_v(0, 0, 0);
+    n.force = force;
+    memset(n.energy, 0, sizeof n.energy);
+    n.energy[DEMI_E_DASHPOT] = energy[0];
+    n.energy[DEMI_E_SLIDE] = n.energy[DEMI_E_SHEAR_WORK] = energy[1];
+    n.energy[DEMI_E_ROLL] = energy[2];
+    demi_note(w, d, &n, 0);
+}
 /* Stores the results of a domain's constraints: contact history, forces on walls, energy losses.
    The work of an impulse is exact with the mean of the velocities before and after the step. */
 static void demi_impulses_tell(dem_world *w, int d) {
@@ -114,6 +134,8 @@ static void demi_impulses_tell(dem_world *w, int d) {
         dem_real *memory = k ? k->memory : w->near.memory +
             (size_t)d*DEMI_IMPULSE_REALS*o.stride + m->home;
         const dem_real push = c->push - s->beside[m->at].pull;
+        const int old = o.memory[6*o.stride] > 0 || o.memory[7*o.stride] > 0;
+        double part[3] = {0, 0, 0};             /* J, that it loses */
         const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
@@ -123,15 +145,19 @@ static void demi_impulses_tell(dem_world *w, int d) {
             demi_dot(after, c->normal), s->beside[m->at].turns,
             demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride])};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
-        lost[DEMI_E_DASHPOT] -= (double)demi_dot(demi_sub(p, c->slip), u);
-        lost[DEMI_E_SLIDE] -= (double)demi_dot(c->slip, u);
+        part[0] = -(double)demi_dot(demi_sub(p, c->slip), u);
+        part[1] = -(double)demi_dot(c->slip, u);
         if (s->twisted) {
             const dem_vec3 wb = demi_add(demi_at(s->movers[m->b].w), m->b < w->bodies.count
                 ? demi_at(w->bodies.spin + 4*m->b) : demi_at(s->movers[m->b].w));
             const dem_vec3 wa = demi_add(demi_at(s->movers[m->a].w),
                                          demi_at(w->bodies.spin + 4*m->a));
-            lost[DEMI_E_ROLL] -= (double)demi_dot(moment, demi_sub(wb, wa))/2;
+            part[2] = -(double)demi_dot(moment, demi_sub(wb, wa))/2;
         }
+        lost[DEMI_E_DASHPOT] += part[0];
+        lost[DEMI_E_SLIDE] += part[1];
+        lost[DEMI_E_ROLL] += part[2];
+        if (w->events.n.on) demi_impulse_note(w, d, m, &o, k, old, push*per, part);
         if (c->push > 0) {
             const int own = w->bodies.material[m->a] - 1;
             domain->met[DEMI_MIN(own, o.material)] |= UINT64_C(1) << DEMI_MAX(own, o.material);

@@ -239,7 +239,7 @@ static int demi_forces(dem_world *w) {
     const demi_response_row *response = &demi_responses[w->desc.response];
     demi_kept *kept = w->kept_now;
     int d, i, k;
-    if (response->room && !response->room(w)) return 0;
+    if ((response->room && !response->room(w)) || (w->events.n.on && !demi_notes_room(w))) return 0;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
@@ -441,6 +441,7 @@ static dem_result demi_step_move(dem_world *w) {
         w->booked.energy[DEMI_E_GRAVITY] += work;
         w->booked.throughput += fabs(work);
         demi_due_book(w);
+        if (w->events.n.on) demi_events_due(w);
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -669,8 +670,11 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
     if (result == DEM_OK) result = demi_all(h, demi_member_touch);
     if (result == DEM_OK && demi_member(h, 0)->bodies.orienting) result = demi_agree(h, 0, 0);
+    if (result == DEM_OK && h->events.n.on && !demi_events_room(h))
+        result = demi_no_memory(h, "dem_world_step");
     if (result == DEM_OK) result = demi_all(h, demi_member_forces);
     if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
+    if (result == DEM_OK && h->events.n.on) demi_events_take(h);
     return result;
 }
 /* The part of a step after its move: outflow, outlets, 2 search, 3 to 5 forces. With impulses,
@@ -824,6 +828,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
             if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
         }
         demi_called(h, was);
+        if (result == DEM_OK) result = demi_events_tell(h, call);
         if (result == DEM_OK) result = demi_look(h);
     }
     if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */

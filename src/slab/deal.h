@@ -150,6 +150,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->clock.last_rebuild = from->clock.steps;
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
+    w->events.n.on = from->events.n.on;
     return w;
 }
 /* True if demi_slab_world has completed this world. */
@@ -219,6 +220,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval is %d; "
                          "balance must be 0, >= 1 or < 0 (never), balance_interval >= 0", call,
                          (double)d->balance, d->balance_interval);
+    if (w->events.n.on && local < d->count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
+                         "world records contacts, whose records cannot change processes; hold all "
+                         "slabs, or call dem_events_stop first", call, local, d->count);
     if (w->stage.moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is in the middle of a step that "
                          "ran out of memory; finish the step with dem_world_step first", call);
@@ -289,7 +294,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     s->team.feed = demi_slabs_feed;
     s->team.sum = demi_slabs_sum;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
-    return demi_slabs_feeds_copy(h, w);
+    return demi_slabs_feeds_copy(h, w) && demi_events_copy(h, w);
 }
 /* Sets the first borders: about the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
@@ -605,6 +610,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                                  "slabs again afterwards", call, (unsigned)slot + 1, k);
         }
     }
+    if (h->events.n.on && !demi_events_copy(w, h)) return demi_no_memory(h, call);
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
     i = w->bodies.slot_count;
     if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
@@ -654,6 +660,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         /* counts of the slabs replace those of the world */
         w->bodies.balance.inserted = s->head.bodies.balance.inserted;
         w->bodies.balance.removed = s->head.bodies.balance.removed;
+        if (w->events.n.on && !s->head.events.n.on) demi_events_start(w);
         demi_effects(w);                        /* the world itself may never have been stepped */
         demi_kernel_choose(w);
     }

@@ -1,0 +1,483 @@
+/* ---------------------------------------------------------------------------------------------
+   >>events
+   Contact events: every contact from its beginning to its end, with what it has lost. The loops over
+   contacts note the contacts of a step (>>noted); this part adds them, in the order of work groups,
+   to the open contact of the two bodies, or of the body and its wall, which a hash table finds. A
+   contact that was not noted in a step has ended: it is added to the statistics of its materials and
+   passed to the user's function when the step is complete. The sums of an open contact do not depend
+   on its place in the list, so the bits are the same for any number of threads. Slabs note contacts
+   in their own worlds, and their head does the rest. With impulses a contact loses its energy during
+   the coming step; until then the losses are due (demi_due_book).
+   Owns w->events; w is the head of a team or a single world in all functions.
+   --------------------------------------------------------------------------------------------- */
+
+/* --- the table of open contacts --- */
+static uint32_t demi_event_hash(const dem_event *e) {
+    uint32_t h = e->a.slot*UINT32_C(0x9e3779b1) + e->b.slot*UINT32_C(0x85ebca77) +
+        (uint32_t)e->wall*UINT32_C(0xc2b2ae3d);
+    h ^= h >> 15;
+    h *= UINT32_C(0x2c1b3c6d);
+    return h ^ h >> 13;
+}
+static int demi_event_same(const dem_event *x, const dem_event *y) {
+    return x->a.slot == y->a.slot && x->b.slot == y->b.slot && x->wall == y->wall &&
+        x->a.generation == y->a.generation && x->b.generation == y->b.generation;
+}
+/* Returns the place of an open contact in the table, or the free place where it belongs. */
+static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
+    const uint32_t mask = (uint32_t)e->table_size - 1;
+    uint32_t at = demi_event_hash(key) & mask;
+    while (e->table[at] && !demi_event_same(&e->open[e->table[at] - 1].event, key))
+        at = (at + 1) & mask;
+    return e->table + at;
+}
+/* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
+   out. */
+static int demi_event_widen(dem_world *w) {
+    demi_events *e = &w->events;
+    const size_t n = (size_t)e->n.open + 1;
+    int i, size = e->table_size ? e->table_size : 64;
+    if (!DEMI_GROW(w, e->open, n) || !DEMI_GROW(w, e->seen, n)) return 0;
+    while ((size_t)size < 2*n) size *= 2;
+    if (size == e->table_size) return 1;
+    if (!DEMI_GROW(w, e->table, (size_t)size)) return 0;
+    e->table_size = size;
+    memset(e->table, 0, (size_t)size*sizeof *e->table);
+    for (i = 0; i < e->n.open; i++) *demi_event_place(e, &e->open[i].event) = i + 1;
+    return 1;
+}
+/* Removes open contact i; the last one takes its place. Later entries of the table move to where a
+   search for them would pass. */
+static void demi_event_drop(demi_events *e, int i) {
+    const uint32_t mask = (uint32_t)e->table_size - 1;
+    uint32_t hole = (uint32_t)(demi_event_place(e, &e->open[i].event) - e->table), at = hole;
+    const int last = e->n.open - 1;
+    for (at = (at + 1) & mask; e->table[at]; at = (at + 1) & mask) {
+        const uint32_t home = demi_event_hash(&e->open[e->table[at] - 1].event) & mask;
+        if (((at - home) & mask) < ((at - hole) & mask)) continue;
+        e->table[hole] = e->table[at];
+        hole = at;
+    }
+    e->table[hole] = 0;
+    if (i < last) {
+        *demi_event_place(e, &e->open[last].event) = i + 1;
+        e->open[i] = e->open[last];
+        e->seen[i] = e->seen[last];
+    }
+    e->n.open--;
+}
+
+/* --- wear --- */
+
+/* Returns the element of a wall of facets that is nearest to x, in space. It looks at the cells
+   around the point, farther away until no facet outside can be nearer. */
+static int demi_worn_facet(const demi_wall *wall, dem_vec3 x) {
+    dem_vec3 at = demi_unrotate(wall->pose.rotation, demi_sub(x, wall->pose.position));
+    dem_real best = DEM_R(1e30), reach;
+    int i, y, z, f[3], l[3], nearest = 0;
+    if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
+    for (i = 0; i < wall->element_count && !wall->cell_start; i++) {
+        const dem_real far = demi_wall_distance(wall, i, at, best);
+        if (far < best) { best = far; nearest = i; }
+    }
+    for (reach = wall->cell/4; wall->cell_start && reach < DEM_R(1e30); reach *= 2) {
+        const dem_vec3 out = demi_v(reach, reach, reach);
+        demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
+        for (z = f[2]; z <= l[2]; z++)
+            for (y = f[1]; y <= l[1]; y++) {
+                const int32_t *row = wall->cell_start + wall->cells[0]*(y + wall->cells[1]*z);
+                for (i = row[f[0]]; f[0] <= l[0] && i < row[l[0] + 1]; i++) {
+                    const int element = wall->cell_items[i];
+                    const dem_real far = demi_wall_distance(wall, element, at, best);
+                    if (!(far < best)) continue;
+                    best = far;
+                    nearest = element;
+                }
+            }
+        if (best <= reach) break;
+    }
+    return nearest;
+}
+/* Makes room for the wear of all walls; that of a new wall is 0. Returns 0 if memory ran out. */
+static int demi_events_room(dem_world *w) {
+    demi_events *e = &w->events;
+    int i;
+    if (!DEMI_GROW(w, e->walls, (size_t)w->wall_count)) return 0;
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const int faceted = demi_wall_kinds[wall->kind].corners > 1;
+        const int facets = faceted ? wall->element_count : 0;
+        demi_worn *worn = &e->walls[i];
+        if (i < e->n.walls && worn->id == wall->id) continue;
+        if (!DEMI_GROW(w, e->facets, (size_t)e->n.facets + (size_t)facets)) return 0;
+        memset(worn, 0, sizeof *worn);
+        worn->id = wall->id;
+        worn->first = e->n.facets;
+        worn->count = facets;
+        for (; e->n.facets < worn->first + facets; e->n.facets++) e->facets[e->n.facets] = 0;
+        e->n.walls = DEMI_MAX(e->n.walls, i + 1);
+    }
+    return 1;
+}
+/* Books losses of a contact, J. x: its contact point, m, for the wear of facets. */
+static void demi_event_lose(dem_world *w, demi_ongoing *o, const double *lost, int facet) {
+    dem_event *e = &o->event;
+    demi_worn *worn;
+    e->lost_normal += lost[0];
+    e->lost_slide += lost[1];
+    e->lost_rolling += lost[2];
+    if (!e->wall) return;
+    worn = &w->events.walls[(e->wall - 1)%DEMI_WALLS_MOST];
+    if (worn->id != e->wall) return;            /* removed since */
+    worn->normal += lost[0];
+    worn->slide += lost[1];
+    if (facet < worn->count) w->events.facets[worn->first + facet] += lost[1];
+}
+
+/* --- contacts of a step --- */
+
+/* Fills in who touches. Returns 1 if the two of the note are exchanged, since b has the lower
+   slot. */
+static int demi_event_key(const dem_world *m, const demi_noted *n, dem_event *key) {
+    const dem_body a = dem_body_id_get(m, n->a);
+    const dem_body b = n->b < 0 ? demi_no_body : dem_body_id_get(m, n->b);
+    const int flip = n->b >= 0 && b.slot < a.slot;
+    key->a = flip ? b : a;
+    key->b = flip ? a : b;
+    key->wall = n->b < 0 ? m->walls[n->wall].id : 0;
+    return flip;
+}
+/* Fills in how a contact begins. m: the world that has noted it. */
+static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_noted *n,
+                             dem_event *e) {
+    const demi_bodies *b = &m->bodies;
+    const demi_periods all = demi_periods_of(w), own = demi_periods_of(m);
+    const dem_vec3 at = demi_add(demi_at(b->pos + 4*n->a), n->arm);
+    dem_vec3 v = demi_velocity_at(b->vel, b->spin, n->a, n->arm), slip;
+    dem_real inv = b->inv_mass[n->a];
+    const int flip = demi_event_key(m, n, e);
+    const int32_t material_a = b->material[n->a];
+    const int32_t material_b = n->b < 0 ? m->walls[n->wall].material + 1 : b->material[n->b];
+    if (n->b < 0)
+        v = demi_sub(v, demi_surface_at(&m->walls[n->wall].pose, demi_add(at, n->shift)));
+    else {
+        const dem_vec3 way = demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b),
+                                                         demi_at(b->pos + 4*n->a)));
+        v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(n->arm, way)));
+        inv += b->inv_mass[n->b];
+    }
+    slip = demi_sub(v, demi_scale(n->normal, demi_dot(v, n->normal)));
+    e->kind = DEM_EVENT_BEGIN;
+    e->material_a.id = flip ? material_b : material_a;
+    e->material_b.id = flip ? material_a : material_b;
+    e->cut = w->events.n.fresh && n->old;
+    e->point = demi_place_of(&all, at);
+    e->normal = demi_scale(n->normal, flip ? -1 : 1);
+    e->begin = e->end = w->clock.time;
+    e->closing_speed = (double)demi_dot(v, n->normal);
+    e->slip_speed = (double)demi_length(slip);
+    e->mass = inv > 0 ? 1/(double)inv : 0;
+}
+/* Adds a contact to those that wait for the user's function. Returns 0 if memory ran out. */
+static int demi_event_wait(dem_world *w, const dem_event *event) {
+    demi_events *e = &w->events;
+    if (!e->desc.function || (event->kind == DEM_EVENT_BEGIN && !e->desc.begins)) return 1;
+    if (!DEMI_GROW(w, e->pending, (size_t)e->n.pending + 1)) return 0;
+    e->pending[e->n.pending++] = *event;
+    return 1;
+}
+/* Adds a noted contact to its open contact, which begins if there is none. Returns 0 if memory ran
+   out. */
+static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n) {
+    demi_events *e = &w->events;
+    const int later = !demi_response_is(w, DEMI_LASTING);
+    const double lost[3] = {n->energy[DEMI_E_DASHPOT], n->energy[DEMI_E_SLIDE],
+                            n->energy[DEMI_E_ROLL]};
+    const double dt = later || w->stage.forces_valid ? (double)w->clock.dt : 0;
+    dem_event key;
+    demi_ongoing *o;
+    int i, k, facet = 0;
+    memset(&key, 0, sizeof key);
+    demi_event_key(m, n, &key);
+    i = e->table_size ? *demi_event_place(e, &key) - 1 : -1;
+    if (i < 0) {
+        if (!demi_event_widen(w)) return 0;
+        i = e->n.open;
+        memset(&e->open[i], 0, sizeof e->open[i]);
+        e->seen[i] = e->turn - 1;
+        demi_event_begin(w, m, n, &e->open[i].event);
+        if (!demi_event_wait(w, &e->open[i].event)) return 0;
+        *demi_event_place(e, &key) = ++e->n.open;
+    }
+    o = &e->open[i];
+    if (e->seen[i] != e->turn) {
+        o->event.force = DEMI_MAX(o->event.force, o->force);
+        o->force = o->stored = 0;
+        e->seen[i] = e->turn;
+    }
+    o->force += (double)n->force;
+    o->stored += n->energy[DEMI_E_SHEAR_STORED];
+    if (n->b < 0 && lost[1] > 0 && demi_wall_kinds[m->walls[n->wall].kind].corners > 1)
+        facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
+                                                                demi_at(m->bodies.pos + 4*n->a)));
+    if (!later) {
+        o->work += n->energy[DEMI_E_SHEAR_WORK];
+        o->event.impulse += (double)n->force*dt;
+        demi_event_lose(w, o, lost, facet);
+        return 1;
+    }
+    for (k = 0; k < 3; k++) o->due[k] += lost[k];
+    o->due[3] += (double)n->force*dt;
+    o->facet = facet;
+    return 1;
+}
+/* Impulses: books what was due when bodies have moved, see demi_due_book. */
+static void demi_events_due(dem_world *w) {
+    demi_events *e = &w->events;
+    int i;
+    for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++) {
+        demi_ongoing *o = &e->open[i];
+        demi_event_lose(w, o, o->due, o->facet);
+        o->work += o->due[1];                   /* no springs: all of it slides */
+        o->event.impulse += o->due[3];
+        memset(o->due, 0, sizeof o->due);
+    }
+}
+/* Returns an open contact as users see it. */
+static dem_event demi_event_shown(const dem_world *w, const demi_ongoing *o, dem_event_kind kind) {
+    dem_event e = o->event;
+    e.kind = kind;
+    e.end = w->clock.time;
+    e.force = DEMI_MAX(e.force, o->force);
+    e.lost_tangent = o->work - e.lost_slide - (kind == DEM_EVENT_END ? 0 : o->stored);
+    return e;
+}
+
+/* --- the end of a contact --- */
+
+/* Returns the sums of the contacts of two materials (indices); null if memory ran out. */
+static demi_impacts *demi_impacts_of(dem_world *w, int a, int b) {
+    demi_events *e = &w->events;
+    demi_impacts *p;
+    int i;
+    for (i = 0; i < e->n.pairs; i++)
+        if (e->pairs[i].a == DEMI_MIN(a, b) && e->pairs[i].b == DEMI_MAX(a, b)) return &e->pairs[i];
+    if (!DEMI_GROW(w, e->pairs, (size_t)i + 1)) return 0;
+    p = &e->pairs[e->n.pairs++];
+    memset(p, 0, sizeof *p);
+    p->a = DEMI_MIN(a, b);
+    p->b = DEMI_MAX(a, b);
+    return p;
+}
+/* Returns the bin of an energy, J: five per decade from 1e-18 J on. */
+static int demi_impact_bin(double energy) {
+    const double at = energy > 0 ? 5*(log10(energy) + 18) : 0;
+    return at >= DEM_IMPACT_BINS ? DEM_IMPACT_BINS - 1 : at > 0 ? (int)at : 0;
+}
+/* Adds a contact that has ended to the statistics. Returns 0 if memory ran out. */
+static int demi_impacts_add(dem_world *w, const dem_event *e) {
+    demi_impacts *p = demi_impacts_of(w, (int)e->material_a.id - 1, (int)e->material_b.id - 1);
+    const double lost = e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+    const int bin = demi_impact_bin(lost);
+    const double v = DEMI_MAX(e->closing_speed, 0);
+    if (!p) return 0;
+    p->ended++;
+    p->lost[0] += e->lost_normal;
+    p->lost[1] += e->lost_slide;
+    p->lost[2] += e->lost_tangent;
+    p->lost[3] += e->lost_rolling;
+    p->losses[bin]++;
+    p->energy[bin] += lost;
+    if (!(e->cut & 1)) p->impacts[demi_impact_bin(e->mass*v*v/2)]++;
+    return 1;
+}
+/* True if the body is in the scene. */
+static int demi_event_exists(const dem_world *w, dem_body b) {
+    int k;
+    for (k = 0; k < demi_members(w); k++) {
+        const demi_bodies *m = &demi_member(w, k)->bodies;
+        if ((int)b.slot <= m->slot_count && m->slot_index[b.slot - 1] >= 0 &&
+            m->slot_generation[b.slot - 1] == b.generation) return 1;
+    }
+    return 0;
+}
+/* Ends open contact i. Returns 0 if memory ran out. */
+static int demi_event_end(dem_world *w, int i) {
+    demi_events *e = &w->events;
+    dem_event event = demi_event_shown(w, &e->open[i], DEM_EVENT_END);
+    dem_wall wall;
+    wall.id = event.wall;
+    if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
+                                           : !demi_event_exists(w, event.b))) event.cut |= 2;
+    demi_event_drop(e, i);
+    return demi_impacts_add(w, &event) && demi_event_wait(w, &event);
+}
+/* Empties a recording. */
+static void demi_events_clear(dem_world *w) {
+    demi_events *e = &w->events;
+    memset(&e->n, 0, sizeof e->n);
+    if (e->table) memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
+}
+/* Allocates what a recording of the present counts needs. Returns 0 if memory ran out. */
+static int demi_events_reserve(dem_world *w) {
+    demi_events *e = &w->events;
+    int size = 64;
+    while (size/2 < e->n.open) size *= 2;
+    if (!e->n.on) return 1;
+    if (!DEMI_GROW(w, e->open, (size_t)e->n.open) || !DEMI_GROW(w, e->seen, (size_t)e->n.open) ||
+        !DEMI_GROW(w, e->pending, (size_t)e->n.pending) ||
+        !DEMI_GROW(w, e->pairs, (size_t)e->n.pairs) ||
+        !DEMI_GROW(w, e->walls, (size_t)e->n.walls) ||
+        !DEMI_GROW(w, e->facets, (size_t)e->n.facets) || !DEMI_GROW(w, e->table, (size_t)size))
+        return 0;
+    e->table_size = size;
+    return 1;
+}
+/* Fills the table of a recording that was read or copied. */
+static void demi_events_index(dem_world *w) {
+    demi_events *e = &w->events;
+    int i;
+    if (!e->n.on) return;
+    memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
+    for (i = 0; i < e->n.open; i++) {
+        *demi_event_place(e, &e->open[i].event) = i + 1;
+        e->seen[i] = e->turn;
+    }
+}
+/* Copies the recording of another world. Returns 0 if memory ran out. */
+static int demi_events_copy(dem_world *to, const dem_world *from) {
+    const demi_events *f = &from->events;
+    demi_events *e = &to->events;
+    if (!e->n.on) e->desc = f->desc;
+    e->n = f->n;
+    if (!f->n.on) return 1;
+    if (!demi_events_reserve(to)) { memset(&e->n, 0, sizeof e->n); return 0; }
+    if (e->n.open) memcpy(e->open, f->open, (size_t)e->n.open*sizeof *e->open);
+    if (e->n.pending) memcpy(e->pending, f->pending, (size_t)e->n.pending*sizeof *e->pending);
+    if (e->n.pairs) memcpy(e->pairs, f->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
+    if (e->n.walls) memcpy(e->walls, f->walls, (size_t)e->n.walls*sizeof *e->walls);
+    if (e->n.facets) memcpy(e->facets, f->facets, (size_t)e->n.facets*sizeof *e->facets);
+    demi_events_index(to);
+    return 1;
+}
+/* Sets whether the members of a team note contacts. */
+static void demi_events_switch(dem_world *w, int on) {
+    int k;
+    w->events.n.on = on;
+    for (k = 0; k < demi_members(w); k++) {
+        demi_member(w, k)->events.n.on = on;
+        demi_kernel_choose(demi_member(w, k));
+    }
+}
+/* Begins a recording. */
+static void demi_events_start(dem_world *w) {
+    demi_events_clear(w);
+    w->events.n.fresh = 1;
+    w->events.n.since = w->clock.time;
+    demi_events_switch(w, 1);
+}
+/* Takes over the contacts that all members have noted, and ends those that nobody noted. If memory
+   runs out, recording stops; demi_events_tell reports it. */
+static void demi_events_take(dem_world *w) {
+    demi_events *e = &w->events;
+    int i, k, d, ok = 1;
+    e->turn++;
+    for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++)
+        memset(e->open[i].due, 0, sizeof e->open[i].due);   /* a new solution replaces the last */
+    for (k = 0; k < demi_members(w); k++) {
+        const dem_world *m = demi_member(w, k);
+        const demi_events *own = &m->events;
+        for (d = 0; d < m->domain_count; d++)
+            for (i = 0; i < own->noted_count[d] && ok; i++)
+                ok = demi_event_add(w, m, own->noted + own->noted_first[d] + i);
+    }
+    for (i = e->n.open - 1; i >= 0 && ok; i--)
+        if (e->seen[i] != e->turn) ok = demi_event_end(w, i);
+    e->n.fresh = 0;
+    if (ok) return;
+    demi_events_clear(w);
+    demi_events_switch(w, 0);
+    e->failed = 1;
+}
+/* Order in which contacts are passed on: those that begin, then those that end; by ids. */
+static int demi_event_compare(const void *x, const void *y) {
+    const dem_event *a = (const dem_event *)x, *b = (const dem_event *)y;
+    const uint32_t p[] = {a->kind == DEM_EVENT_END, a->a.slot, a->b.slot, (uint32_t)a->wall,
+                          a->a.generation, a->b.generation};
+    const uint32_t q[] = {b->kind == DEM_EVENT_END, b->a.slot, b->b.slot, (uint32_t)b->wall,
+                          b->a.generation, b->b.generation};
+    int k;
+    for (k = 0; k < 5 && p[k] == q[k];) k++;
+    return (p[k] > q[k]) - (p[k] < q[k]);
+}
+/* Calls the user's function for the contacts that have begun or ended, when a step is complete.
+   call: the public function that runs. */
+static dem_result demi_events_tell(dem_world *w, const char *call) {
+    demi_events *e = &w->events;
+    int i;
+    if (e->failed) {
+        e->failed = 0;
+        return demi_fail(w, DEM_ERROR_MEMORY, "%s: step %llu is complete, but memory ran out for "
+                         "its contact events; they are no longer recorded: free memory, call "
+                         "dem_events_record again and continue", call,
+                         (unsigned long long)w->clock.steps);
+    }
+    if (!e->n.pending) return DEM_OK;
+    qsort(e->pending, (size_t)e->n.pending, sizeof *e->pending, demi_event_compare);
+    for (i = 0; i < e->n.pending && e->desc.function; i++) {
+        const demi_calling was = demi_calls(w, call, 0);
+        e->desc.function(&e->pending[i], e->desc.user);
+        demi_called(w, was);
+    }
+    e->n.pending = 0;
+    return DEM_OK;
+}
+
+/* --- public functions --- */
+
+/* Fails unless contacts are recorded. */
+static dem_result demi_events_needed(dem_world *w, const char *call) {
+    if (w->events.n.on) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts are not recorded; call dem_events_record "
+                     "before the run", call);
+}
+DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) {
+    const char *call = "dem_events_record";
+    if (demi_null(w, call, desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (!w->desc.ledger)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: desc.ledger is 0, must be 1, because contacts "
+                         "only then report what they lose; set it when the world is created", call);
+    if (desc->begins < 0 || desc->begins > 1)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: begins is %d, must be 0 or 1; start from "
+                         "DEM_EVENTS_DESC", call, desc->begins);
+    w->events.desc = *desc;
+    if (!desc->function) w->events.n.pending = 0;
+    if (w->events.n.on) return DEM_OK;
+    demi_events_start(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_events_stop(dem_world *w) {
+    if (demi_null(w, "dem_events_stop", w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_events_clear(w);
+    demi_events_switch(w, 0);
+    memset(&w->events.desc, 0, sizeof w->events.desc);
+    return DEM_OK;
+}
+DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
+    const char *call = "dem_events_open_each";
+    dem_event *all = 0;
+    demi_calling was;
+    int i, n;
+    if (demi_null(w, call, w, "world") || demi_events_needed(w, call) != DEM_OK) return -1;
+    n = w->events.n.open;
+    if (!fn || !n) return n;
+    all = (dem_event *)demi_alloc(w, (size_t)n, sizeof *all);
+    if (!all) { demi_no_memory(w, call); return -1; }
+    for (i = 0; i < n; i++) all[i] = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+    qsort(all, (size_t)n, sizeof *all, demi_event_compare);
+    was = demi_calls(w, call, 0);
+    for (i = 0; i < n; i++) fn(&all[i], user);
+    demi_called(w, was);
+    demi_free(w, all);
+    return n;
+}
