@@ -29647,14 +29647,18 @@ static void demi_events_take(dem_world *w) {
     demi_events_switch(w, 0);
     e->failed = 1;
 }
-/* Order in which contacts are passed on: those that begin, then those that end; by ids. */
+/* Order in which contacts are passed on: those that begin, then those that end; by time, which
+   differs only after a call that computes forces between two steps; by ids. */
 static int demi_event_compare(const void *x, const void *y) {
     const dem_event *a = (const dem_event *)x, *b = (const dem_event *)y;
+    const double s = a->kind == DEM_EVENT_BEGIN ? a->begin : a->end;
+    const double t = b->kind == DEM_EVENT_BEGIN ? b->begin : b->end;
     const uint32_t p[] = {a->kind == DEM_EVENT_END, a->a.slot, a->b.slot, (uint32_t)a->wall,
                           a->a.generation, a->b.generation};
     const uint32_t q[] = {b->kind == DEM_EVENT_END, b->a.slot, b->b.slot, (uint32_t)b->wall,
                           b->a.generation, b->b.generation};
     int k;
+    if (a->kind == b->kind && (s < t || s > t)) return s < t ? -1 : 1;
     for (k = 0; k < 5 && p[k] == q[k];) k++;
     return (p[k] > q[k]) - (p[k] < q[k]);
 }
@@ -35117,7 +35121,7 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
     result = demi_events_needed(w, call);
     if (result == DEM_OK) result = demi_out_open(&out, w, call, path);
     if (result != DEM_OK) return result;
-    seconds = w->clock.time - w->events.n.since;
+    seconds = DEMI_MAX(w->clock.time - w->events.n.since, 1e-300);
     fprintf(out.file, "material_a,material_b,from,to,impacts,losses,power\n");
     for (a = 0; a < w->material_count; a++)
         for (b = a; b < w->material_count; b++)

@@ -62,7 +62,7 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
     result = demi_events_needed(w, call);
     if (result == DEM_OK) result = demi_out_open(&out, w, call, path);
     if (result != DEM_OK) return result;
-    seconds = w->clock.time - w->events.n.since;
+    seconds = DEMI_MAX(w->clock.time - w->events.n.since, 1e-300);
     fprintf(out.file, "material_a,material_b,from,to,impacts,losses,power\n");
     for (a = 0; a < w->material_count; a++)
         for (b = a; b < w->material_count; b++)

@@ -399,14 +399,18 @@ static void demi_events_take(dem_world *w) {
     demi_events_switch(w, 0);
     e->failed = 1;
 }
-/* Order in which contacts are passed on: those that begin, then those that end; by ids. */
+/* Order in which contacts are passed on: those that begin, then those that end; by time, which
+   differs only after a call that computes forces between two steps; by ids. */
 static int demi_event_compare(const void *x, const void *y) {
     const dem_event *a = (const dem_event *)x, *b = (const dem_event *)y;
+    const double s = a->kind == DEM_EVENT_BEGIN ? a->begin : a->end;
+    const double t = b->kind == DEM_EVENT_BEGIN ? b->begin : b->end;
     const uint32_t p[] = {a->kind == DEM_EVENT_END, a->a.slot, a->b.slot, (uint32_t)a->wall,
                           a->a.generation, a->b.generation};
     const uint32_t q[] = {b->kind == DEM_EVENT_END, b->a.slot, b->b.slot, (uint32_t)b->wall,
                           b->a.generation, b->b.generation};
     int k;
+    if (a->kind == b->kind && (s < t || s > t)) return s < t ? -1 : 1;
     for (k = 0; k < 5 && p[k] == q[k];) k++;
     return (p[k] > q[k]) - (p[k] < q[k]);
 }
