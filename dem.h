@@ -3001,13 +3001,13 @@ static const dem_events_desc DEM_EVENTS_DESC_ZERO = DEM_ZERO;
 DEM_API dem_result dem_events_record(dem_world *world, const dem_events_desc *desc);
 /* Ends the recording and discards its records. */
 DEM_API dem_result dem_events_stop(dem_world *world);
-/* Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn, user:
-   or null. Returns -1 if contacts are not recorded. */
+/* Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn and
+   user: or null. Returns -1 if contacts are not recorded. */
 DEM_API int dem_events_open_each(dem_world *world, dem_event_fn fn, void *user);
 
 /* Number of bins of impact energies: five per decade from 1e-18 J to 1e6 J. The first and the last
    bin also count what is outside. */
-enum { DEM_IMPACT_BINS = 120 };
+enum { DEM_IMPACT_BINS = 120, DEM_IMPACT_LIMITS = 121 };
 /* Statistics of the recorded contacts. */
 typedef struct dem_impacts {
     double seconds;                /* s, recorded so far */
@@ -3017,7 +3017,7 @@ typedef struct dem_impacts {
     /* J, lost in all recorded contacts, those that exist included. For all materials these are what
        the ledger has booked since recording began, except losses of joints. */
     double lost_normal, lost_slide, lost_tangent, lost_rolling;
-    double bin[DEM_IMPACT_BINS + 1];           /* J, limits of the bins */
+    double bin[DEM_IMPACT_LIMITS];             /* J, limits of the bins */
     /* contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun
        before the recording are not counted */
     double impacts[DEM_IMPACT_BINS];
@@ -29248,15 +29248,15 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
 
 /* ---------------------------------------------------------------------------------------------
    >>events
-   Contact events: every contact from its beginning to its end, with what it has lost. The loops over
-   contacts note the contacts of a step (>>noted); this part adds them, in the order of work groups,
-   to the open contact of the two bodies, or of the body and its wall, which a hash table finds. A
-   contact that was not noted in a step has ended: it is added to the statistics of its materials and
-   passed to the user's function when the step is complete. The sums of an open contact do not depend
-   on its place in the list, so the bits are the same for any number of threads. Slabs note contacts
-   in their own worlds, and their head does the rest. With impulses a contact loses its energy during
-   the coming step; until then the losses are due (demi_due_book).
-   Owns w->events; w is the head of a team or a single world in all functions.
+   Contact events: every contact from its beginning to its end, with what it has lost. The loops
+   over contacts note the contacts of a step (>>noted). This part adds them, in the order of work
+   groups, to the open contact of the two bodies, or of the body and its wall. A hash table finds
+   it. A contact that was not noted in a step has ended: it is added to the statistics of its
+   materials, and passed to the user's function when the step is complete. The sums of an open
+   contact do not depend on its place in the list, so the bits are the same for any number of
+   threads. Slabs note contacts in their own worlds, and their head does the rest. With impulses a
+   contact loses its energy during the coming step; until then the losses are due (demi_due_book).
+   Owns w->events. In all functions w is the head of a team or a single world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- the table of open contacts --- */
@@ -35140,8 +35140,8 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
     return demi_out_close(&out);
 }
 
-/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if there
-   is no such wall or no recording. */
+/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if
+   there is no such wall or no recording. */
 static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wall,
                                      dem_result *result) {
     const int i = demi_wall_place(wall);

@@ -381,13 +381,13 @@ static const dem_events_desc DEM_EVENTS_DESC_ZERO = DEM_ZERO;
 DEM_API dem_result dem_events_record(dem_world *world, const dem_events_desc *desc);
 /* Ends the recording and discards its records. */
 DEM_API dem_result dem_events_stop(dem_world *world);
-/* Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn, user:
-   or null. Returns -1 if contacts are not recorded. */
+/* Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn and
+   user: or null. Returns -1 if contacts are not recorded. */
 DEM_API int dem_events_open_each(dem_world *world, dem_event_fn fn, void *user);
 
 /* Number of bins of impact energies: five per decade from 1e-18 J to 1e6 J. The first and the last
    bin also count what is outside. */
-enum { DEM_IMPACT_BINS = 120 };
+enum { DEM_IMPACT_BINS = 120, DEM_IMPACT_LIMITS = 121 };
 /* Statistics of the recorded contacts. */
 typedef struct dem_impacts {
     double seconds;                /* s, recorded so far */
@@ -397,7 +397,7 @@ typedef struct dem_impacts {
     /* J, lost in all recorded contacts, those that exist included. For all materials these are what
        the ledger has booked since recording began, except losses of joints. */
     double lost_normal, lost_slide, lost_tangent, lost_rolling;
-    double bin[DEM_IMPACT_BINS + 1];           /* J, limits of the bins */
+    double bin[DEM_IMPACT_LIMITS];             /* J, limits of the bins */
     /* contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun
        before the recording are not counted */
     double impacts[DEM_IMPACT_BINS];

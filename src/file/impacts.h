@@ -81,8 +81,8 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
     return demi_out_close(&out);
 }
 
-/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if there
-   is no such wall or no recording. */
+/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if
+   there is no such wall or no recording. */
 static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wall,
                                      dem_result *result) {
     const int i = demi_wall_place(wall);

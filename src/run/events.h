@@ -1,14 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>events
-   Contact events: every contact from its beginning to its end, with what it has lost. The loops over
-   contacts note the contacts of a step (>>noted); this part adds them, in the order of work groups,
-   to the open contact of the two bodies, or of the body and its wall, which a hash table finds. A
-   contact that was not noted in a step has ended: it is added to the statistics of its materials and
-   passed to the user's function when the step is complete. The sums of an open contact do not depend
-   on its place in the list, so the bits are the same for any number of threads. Slabs note contacts
-   in their own worlds, and their head does the rest. With impulses a contact loses its energy during
-   the coming step; until then the losses are due (demi_due_book).
-   Owns w->events; w is the head of a team or a single world in all functions.
+   Contact events: every contact from its beginning to its end, with what it has lost. The loops
+   over contacts note the contacts of a step (>>noted). This part adds them, in the order of work
+   groups, to the open contact of the two bodies, or of the body and its wall. A hash table finds
+   it. A contact that was not noted in a step has ended: it is added to the statistics of its
+   materials, and passed to the user's function when the step is complete. The sums of an open
+   contact do not depend on its place in the list, so the bits are the same for any number of
+   threads. Slabs note contacts in their own worlds, and their head does the rest. With impulses a
+   contact loses its energy during the coming step; until then the losses are due (demi_due_book).
+   Owns w->events. In all functions w is the head of a team or a single world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- the table of open contacts --- */

@@ -186,7 +186,7 @@ static dem_world *ball_world(dem_body *ball, dem_wall *wall, double speed, doubl
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
-    TEST("an impact tells its speed, duration, impulse and loss as the linear law gives them") {
+    TEST("an impact reports the speed, duration, impulse and loss of the linear law") {
         const double v = 0.2, e = 0.6, m = 2500*4/3.0*3.14159265358979*1e-9, pi = 3.14159265358979;
         int impulses;
         for (impulses = 0; impulses < 2; impulses++) {
@@ -280,7 +280,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(without);
         }
     }
-    TEST("a run from a checkpoint tells the same events, bit for bit") {
+    TEST("a run from a checkpoint reports the same events, bit for bit") {
         static const int kinds[] = {SPHERES | SHAPES, SPHERES | IMPULSES};
         int k;
         for (k = 0; k < 2; k++) {
@@ -315,7 +315,7 @@ int main(int argc, char **argv) {
             remove(path);
         }
     }
-    TEST("slabs tell the events of the single world and return the recording") {
+    TEST("slabs report the events of the single world and return the recording") {
         dem_world *world = soup(SPHERES | SHAPES, 1, 0), *whole = soup(SPHERES | SHAPES, 1, 0);
         dem_slabs_desc desc = DEM_SLABS_DESC;
         dem_slabs *slabs;
@@ -485,7 +485,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(memory.blocks, 0);
         CHECK_EQ(memory.wrong, 0);
     }
-    TEST("events are refused where they cannot be right") {
+    TEST("recording fails without a ledger, and measuring without a recording") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_events_desc events = DEM_EVENTS_DESC;
         dem_world *world = dem_world_create(&desc);
