@@ -60,7 +60,6 @@
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           stages from rows of contacts of spheres to forces and torques
        >>pairs             user-defined laws; the loop over the pruned neighbour list
-       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
        >>noted             notes of the contacts of a step, for events
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
@@ -2977,7 +2976,8 @@ typedef struct dem_event {
        N s, the normal force summed over time */
     double force, impulse;
     /* J, energy lost so far as in dem_ledger: by the normal law, by sliding, by tangential dashpots
-       (and springs that held energy at the end), by rolling resistance */
+       (and springs that held energy at the end; what they stored when recording began counts as
+       supplied), by rolling resistance */
     double lost_normal, lost_slide, lost_tangent, lost_rolling;
 } dem_event;
 /* Receives one contact. It may only read the world. */
@@ -29469,7 +29469,9 @@ static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n)
         facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
                                                                 demi_at(m->bodies.pos + 4*n->a)));
     if (!later) {
-        o->work += n->energy[DEMI_E_SHEAR_WORK];
+        /* a spring that exists already: what it stored before is unknown, but not lost */
+        o->work += e->n.fresh && n->old ? lost[1] + n->energy[DEMI_E_SHEAR_STORED]
+            : n->energy[DEMI_E_SHEAR_WORK];
         o->event.impulse += (double)n->force*dt;
         demi_event_lose(w, o, lost, facet);
         return 1;
@@ -38567,6 +38569,15 @@ static dem_effect_state demi_look_outlets(const dem_world *w, dem_effect *e) {
     demi_say(e, "%d; %llu grains so far", w->outlet_count, (unsigned long long)went);
     return went ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
+    const demi_event_counts *n = &w->events.n;
+    double ended = 0;
+    int i;
+    if (!n->on) return demi_look_off(e, "contacts are not recorded (dem_events_record)");
+    for (i = 0; i < n->pairs; i++) ended += w->events.pairs[i].ended;
+    demi_say(e, "%.0f contacts have ended, %d exist", ended, n->open);
+    return ended > 0 || n->open ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
 
 /* --- copies without an effect --- */
 
@@ -38590,9 +38601,14 @@ static void demi_leave_growth(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.growth = 0;
 }
-static void demi_leave_ledger(dem_world *t, demi_again *own) {
+static void demi_leave_events(dem_world *t, demi_again *own) {
     (void)own;
+    demi_events_clear(t);
+    demi_events_switch(t, 0);
+}
+static void demi_leave_ledger(dem_world *t, demi_again *own) {
     t->desc.ledger = 0;
+    demi_leave_events(t, own);                  /* they need it */
 }
 static void demi_leave_orientations(dem_world *t, demi_again *own) {
     (void)own;
@@ -38705,7 +38721,8 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"orientations",     demi_look_orientations, demi_leave_orientations, 0},
     {"ledger",           demi_look_ledger,       demi_leave_ledger,       0},
     {"feeds",            demi_look_feeds,        0,                       0},
-    {"outlets",          demi_look_outlets,      0,                       0}};
+    {"outlets",          demi_look_outlets,      0,                       0},
+    {"events",           demi_look_events,       demi_leave_events,       0}};
 
 /* --- costs of effects --- */
 

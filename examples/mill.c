@@ -44,6 +44,12 @@
                           within 5 % of its mean
      grains_missing       grains inserted less grains present, plus grains outside the shell
      hash                 of the final state: the same for any number of threads
+   --spectrum also records every contact that ends while the mill is measured:
+     contact_rate         contacts that end per second, in the slice
+     event_balance_error  |E - D|/D, E: energy lost in all contacts, D: that of the ledger
+     wear_on_lifters      part of the work of sliding on the shell that is done on the lifters
+     files: spectrum.svg (rates over the energy of impact), losses.svg (power over the energy lost in
+     a contact), impacts.csv (both, for each pair of materials)
    --replay: a replay of the run, from --replay-from on. Files: solidicity and velocity at 64, 128 and 256
    cells, torque, power, grains (SVG); torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
 #include "../dem.h"
@@ -63,10 +69,10 @@ static struct mill_options {
     const char *grains, *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study;
     const char *out;
     const char *checkpoint, *resume, *write_profile;
-    int seed, repeats, threads, slabs, frames, first, quick, brief, replay;
+    int seed, repeats, threads, slabs, frames, first, quick, brief, replay, spectrum;
 } options = {0.3, 0.0068, 0.0015, 0.7, 0.37426, 0.154, 0.32, 500, 0, 20, 0.5, 0.5, 0, 1.5,
              "sphere", "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill",
-             "build/out/mill", 0, 0, 0, 1, 3, 0, 0, 4, 0, 0, 0, 0};
+             "build/out/mill", 0, 0, 0, 1, 3, 0, 0, 4, 0, 0, 0, 0, 0};
 
 /* in the order of dem_integrator and dem_tangent_law */
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
@@ -113,6 +119,8 @@ static const study_option table[] = {
     {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"replay-from", STUDY_REAL, &options.replay_from, 0, 1000, "", "revolutions before its first frame"},
+    {"spectrum", STUDY_FLAG, &options.spectrum, 0, 0, "",
+        "record contacts while measuring: impact energies, collision rates, wear"},
     {"frames", STUDY_INT, &options.frames, 0, 100000, "",
         "VTP files of grains and mill over the run"},
     {"checkpoint", STUDY_TEXT, &options.checkpoint, 0, 0, "",
@@ -138,6 +146,7 @@ typedef struct mill {
     dem_profile profile;
     dem_field field;
     int wall_count, grains, sample_count, sample_steps, settled;
+    int recorded;          /* 1: contacts are recorded */
     double shell, critical, omega, period, dt, mass;
     sample *samples;
     double torque, power, toe, shoulder, solidicity, bend;
@@ -536,6 +545,16 @@ static void mill_replay(const mill *m, study_replay *f, int k, int *since) {
     study_replay_frame(f);
     *since = k;
 }
+/* Records contacts from the first step on that is measured. */
+static int spectrum_begin(mill *m, int k, int slabs) {
+    if (!m->o.spectrum || k < m->settled || m->recorded) return 0;
+    if (slabs) {
+        study_fail("--spectrum with --slabs needs --settle 0: slabs record what their world records");
+        return 1;
+    }
+    m->recorded = 1;
+    return refused(m->world, dem_events_record(m->world, &DEM_EVENTS_DESC));
+}
 static int mill_turn(mill *m) { /* runs the mill */
     dem_slabs *slabs;
     study_replay f;
@@ -551,6 +570,7 @@ static int mill_turn(mill *m) { /* runs the mill */
         if (samples_file(m, m->o.resume, 0, &count)) return 1;
         k = count - 1;
     }
+    if (spectrum_begin(m, k, 0)) return 1;
     slabs = slabs_begin(m);
     if (m->o.slabs && !slabs) return 1;
     total = m->sample_count;
@@ -567,7 +587,7 @@ static int mill_turn(mill *m) { /* runs the mill */
         }
         if (frames && (int64_t)k*frames%total < frames)
             frame_write(m, (int)((int64_t)k*frames/total));
-        bad = mill_step(m, slabs);
+        bad = spectrum_begin(m, k, m->o.slabs) || mill_step(m, slabs);
         if (bad) break;
         sample_take(m, &m->samples[k + 1]);
         mill_replay(m, &f, k + 1, &since);
@@ -873,6 +893,71 @@ static void torque_write(mill *m) {
     for (c = 0; c < COLUMNS; c++) free(column[c]);
 }
 
+/* ---- contacts ---- */
+
+/* Returns the part of the work of sliding on the shell that is done on the lifters: on segments whose
+   middle is inside the circle of the shell by more than a hundredth of its radius. */
+static double wear_on_lifters(const mill *m) {
+    const dem_profile *p = &m->profile;
+    double *work = (double *)study_alloc((size_t)p->segment_count + 1, sizeof *work), on = 0, all = 0;
+    int i;
+    dem_wall_wear_facets_get(m->world, m->walls[0], work, p->segment_count);
+    for (i = 0; i < p->segment_count; i++) {
+        const dem_real *a = p->vertices + 2*p->segments[2*i], *b = p->vertices + 2*p->segments[2*i + 1];
+        all += work[i];
+        if (hypot(a[0] + b[0], a[1] + b[1])/2 < 0.99*m->shell) on += work[i];
+    }
+    free(work);
+    return on/fmax(all, 1e-300);
+}
+/* Spectra of the contacts between beads, and of beads with the shell. */
+static void spectrum_write(mill *m) {
+    static const char *const names[2] = {"bead on bead", "bead on shell"};
+    const dem_material any = {0}, *other[2];
+    const sample *last = &m->samples[m->sample_count];
+    double lost;
+    study_figure f = line_figure("Impacts in the mill", "energy of impact (J)", "impacts per second in a bin (1/s)");
+    study_figure h = line_figure("Where the energy is lost", "energy lost in a contact (J)", "power in a bin (W)");
+    static double x[DEM_IMPACT_BINS], y[2][2][DEM_IMPACT_BINS];
+    dem_impacts s;
+    int i, k;
+    other[0] = &m->glass;
+    other[1] = &m->lining;
+    if (refused(m->world, dem_impacts_get(m->world, any, any, &s))) return;
+    /* a run that was resumed began to record earlier */
+    lost = dissipated(last) - dissipated(last - (int)(s.seconds/m->period*SAMPLES + 0.5));
+    study_result("contact_rate", s.rate, "1/s");
+    study_result("event_balance_error",
+                 fabs(s.lost_normal + s.lost_slide + s.lost_tangent + s.lost_rolling - lost)/lost, "");
+    f.log_x = f.log_y = h.log_x = 1;
+    f.x0 = 1e300;
+    for (k = 0; k < (m->glass.id == m->lining.id ? 1 : 2); k++) {
+        if (refused(m->world, dem_impacts_get(m->world, m->glass, *other[k], &s))) return;
+        for (i = 0; i < DEM_IMPACT_BINS; i++) {
+            x[i] = sqrt(s.bin[i]*s.bin[i + 1]);
+            y[0][k][i] = s.impacts[i] > 0 ? s.impacts[i]/s.seconds : (double)NAN;
+            y[1][k][i] = s.energy[i]/s.seconds;
+            if (s.impacts[i] > 0) { f.x0 = fmin(f.x0, s.bin[i]); f.x1 = fmax(f.x1, s.bin[i + 1]); }
+            if (s.energy[i] > 0) h.x1 = fmax(h.x1, s.bin[i + 1]);
+            if (y[0][k][i] > 0) f.y1 = fmax(f.y1, 2*y[0][k][i]);
+            h.y1 = fmax(h.y1, 1.1*y[1][k][i]);
+        }
+        study_curve(&f, names[k], k ? STUDY_DASHED : STUDY_LINE, DEM_IMPACT_BINS, x, y[0][k]);
+        study_curve(&h, names[k], k ? STUDY_DASHED : STUDY_LINE, DEM_IMPACT_BINS, x, y[1][k]);
+    }
+    /* ranges of logarithmic axes are logarithms; rarer and weaker impacts are left out */
+    f.x1 = log10(f.x1);
+    f.x0 = fmax(log10(f.x0), f.x1 - 9);
+    f.y1 = log10(f.y1);
+    f.y0 = f.y1 - 4;
+    h.x1 = log10(h.x1);
+    h.x0 = h.x1 - 7;
+    study_figure_write(&f, "spectrum.svg");
+    study_figure_write(&h, "losses.svg");
+    if (!study.quiet) study.files += !refused(m->world, dem_impacts_csv_write(m->world, study_path("impacts.csv")));
+    if (m->profile.segment_count) study_result("wear_on_lifters", wear_on_lifters(m), "");
+}
+
 static void state_write(mill *m) { /* results of the whole run */
     dem_ledger ledger = dem_ledger_get(m->world);
     dem_body_counts balance = dem_body_counts_get(m->world);
@@ -904,6 +989,7 @@ static int mill_run(mill *m) {
         bad = mill_turn(m);
     }
     if (!bad) { maps_write(m); torque_write(m); grains_draw(m); state_write(m); }
+    if (!bad && m->recorded) spectrum_write(m);
     free(m->samples);
     mill_destroy(m);
     return bad;

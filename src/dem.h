@@ -60,7 +60,6 @@
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           stages from rows of contacts of spheres to forces and torques
        >>pairs             user-defined laws; the loop over the pruned neighbour list
-       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
        >>noted             notes of the contacts of a step, for events
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points

@@ -357,7 +357,8 @@ typedef struct dem_event {
        N s, the normal force summed over time */
     double force, impulse;
     /* J, energy lost so far as in dem_ledger: by the normal law, by sliding, by tangential dashpots
-       (and springs that held energy at the end), by rolling resistance */
+       (and springs that held energy at the end; what they stored when recording began counts as
+       supplied), by rolling resistance */
     double lost_normal, lost_slide, lost_tangent, lost_rolling;
 } dem_event;
 /* Receives one contact. It may only read the world. */

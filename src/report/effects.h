@@ -255,6 +255,15 @@ static dem_effect_state demi_look_outlets(const dem_world *w, dem_effect *e) {
     demi_say(e, "%d; %llu grains so far", w->outlet_count, (unsigned long long)went);
     return went ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
+    const demi_event_counts *n = &w->events.n;
+    double ended = 0;
+    int i;
+    if (!n->on) return demi_look_off(e, "contacts are not recorded (dem_events_record)");
+    for (i = 0; i < n->pairs; i++) ended += w->events.pairs[i].ended;
+    demi_say(e, "%.0f contacts have ended, %d exist", ended, n->open);
+    return ended > 0 || n->open ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
 
 /* --- copies without an effect --- */
 
@@ -278,9 +287,14 @@ static void demi_leave_growth(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.growth = 0;
 }
-static void demi_leave_ledger(dem_world *t, demi_again *own) {
+static void demi_leave_events(dem_world *t, demi_again *own) {
     (void)own;
+    demi_events_clear(t);
+    demi_events_switch(t, 0);
+}
+static void demi_leave_ledger(dem_world *t, demi_again *own) {
     t->desc.ledger = 0;
+    demi_leave_events(t, own);                  /* they need it */
 }
 static void demi_leave_orientations(dem_world *t, demi_again *own) {
     (void)own;
@@ -393,7 +407,8 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"orientations",     demi_look_orientations, demi_leave_orientations, 0},
     {"ledger",           demi_look_ledger,       demi_leave_ledger,       0},
     {"feeds",            demi_look_feeds,        0,                       0},
-    {"outlets",          demi_look_outlets,      0,                       0}};
+    {"outlets",          demi_look_outlets,      0,                       0},
+    {"events",           demi_look_events,       demi_leave_events,       0}};
 
 /* --- costs of effects --- */
 

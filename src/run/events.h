@@ -221,7 +221,9 @@ static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n)
         facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
                                                                 demi_at(m->bodies.pos + 4*n->a)));
     if (!later) {
-        o->work += n->energy[DEMI_E_SHEAR_WORK];
+        /* a spring that exists already: what it stored before is unknown, but not lost */
+        o->work += e->n.fresh && n->old ? lost[1] + n->energy[DEMI_E_SHEAR_STORED]
+            : n->energy[DEMI_E_SHEAR_WORK];
         o->event.impulse += (double)n->force*dt;
         demi_event_lose(w, o, lost, facet);
         return 1;
