@@ -197,6 +197,8 @@ static const effect_row effect_rows[] = {
      {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
     {"ledger", "bed", "energy balance, checked at every step", "no ledger",
      {.ledger = 1}, {0}, {0}},
+    {"events", "bed", "every contact recorded from its beginning to its end", "ledger",
+     {.ledger = 2}, {.ledger = 1}, {0}},
     {"one_unlike", "bed", "one grain unlike the others", "equal grains",
      {.mixed = 1}, {0}, {0}},
     {"two_species", "bed", "two sizes (or materials), half of the grains each", "equal grains",

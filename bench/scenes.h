@@ -55,7 +55,7 @@ typedef struct bench_scene {
 typedef struct bench_choice {
     int threads;                /* 0: one                                                      */
     double skin;                /* as in dem_world_desc                                        */
-    int ledger;
+    int ledger;                 /* 1: energy balance; 2: contacts are recorded, too             */
     dem_normal_law normal;
     dem_tangent_law tangent;
     dem_rolling_law rolling;
@@ -350,7 +350,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     int i, c, ok = 1;
     desc.threads = o->threads > 0 ? o->threads : 1;
     desc.skin = (dem_real)o->skin;
-    desc.ledger = o->ledger;
+    desc.ledger = o->ledger > 0;
     desc.integrator = o->integrator;
     desc.search = o->search;
     desc.normal_law = gas ? DEM_NORMAL_LINEAR : o->adhesion ? DEM_NORMAL_HYSTERETIC : o->normal;
@@ -402,6 +402,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     if (bed) ok = ok && dem_wall_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
     if (drum) ok = ok && bench_drum_walls(world, material, degrees, o->cuts) && bench_drum_flow(world, material, o);
     ok = ok && bench_field(world, s, o);
+    if (o->ledger > 1) ok = ok && dem_events_record(world, &DEM_EVENTS_DESC) == DEM_OK;
 
     x = (dem_real *)study_alloc((size_t)count*3, sizeof *x);
     v = (dem_real *)study_alloc((size_t)count*3, sizeof *v);

@@ -136,7 +136,7 @@ static dem_world *soup(int kind, int threads, scene_memory *memory) {
             if (k ? dem_bodies_fill(world, n & 1 ? soft : hard, shape[k], in, 1, random++) != 1
                 : dem_spheres_fill(world, n & 1 ? soft : hard, DEM_R(1e-3), in, 1, random++) != 1)
                 continue;
-            b = dem_body_id_get(world, dem_body_counts_get(world).present - 1);
+            b = dem_body_id_get(world, (int)dem_body_counts_get(world).present - 1);
             s = scene_state(world, b);
             s.velocity = scene_at(&random, 3, -1.5, 3, -1.5, 1, -1.5);
             s.spin = scene_at(&random, 400, -200, 400, -200, 400, -200);
@@ -251,8 +251,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
     TEST("contacts of discs and polygons in a plane add up to the ledger") {
-        static const dem_real corners[] = {-1e-3, -1e-3, DEM_R(1.2e-3), -1e-3, DEM_R(0.8e-3), 1e-3,
-                                           -1e-3, DEM_R(0.9e-3)};
+        static const dem_real corners[] = {DEM_R(-1e-3), DEM_R(-1e-3), DEM_R(1.2e-3), DEM_R(-1e-3),
+                                           DEM_R(0.8e-3), DEM_R(1e-3), DEM_R(-1e-3), DEM_R(0.9e-3)};
         int impulses;
         for (impulses = 0; impulses < 2; impulses++) {
             dem_world_desc desc = DEM_WORLD_DESC;
