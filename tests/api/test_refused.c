@@ -87,6 +87,7 @@ static dem_output_kind take_dem_output_kind(refuser *r, int at_, const char *nam
 static void no_change(const dem_contact_info *c, dem_real *memory, void *user) { (void)c; (void)memory; (void)user; }
 static dem_contact_fn take_dem_contact_fn(refuser *r, int at_, const char *name) { return is_bad(r, at_, 1, name) ? (dem_contact_fn)0 : no_change; }
 static dem_inside_fn take_dem_inside_fn(refuser *r, int at_, const char *name) { (void)is_bad(r, at_, 0, name); return 0; }
+static dem_event_fn take_dem_event_fn(refuser *r, int at_, const char *name) { (void)is_bad(r, at_, 0, name); return 0; }
 static dem_progress_fn take_dem_progress_fn(refuser *r, int at_, const char *name) { (void)is_bad(r, at_, 0, name); return 0; }
 static void *take_out_void(refuser *r, int at_, const char *name) { (void)is_bad(r, at_, 0, name); return 0; }
 static const void *take_const_void(refuser *r, int at_, const char *name) { return is_bad(r, at_, 1, name) ? 0 : "v 0"; }
@@ -134,6 +135,7 @@ static dem_feed_desc good_dem_feed_desc(refuser *r) { dem_feed_desc d = DEM_FEED
 static dem_outlet_desc good_dem_outlet_desc(refuser *r) { dem_outlet_desc d = DEM_OUTLET_DESC; (void)r; d.box = box_of(1, 1, 1, 2, 2, 2); return d; }
 static dem_trials_desc good_dem_trials_desc(refuser *r) { dem_trials_desc d; (void)r; memset(&d, 0, sizeof d); return d; }
 static dem_mixing_desc good_dem_mixing_desc(refuser *r) { dem_mixing_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; d.radius_max = DEM_R(0.01); return d; }
+static dem_events_desc good_dem_events_desc(refuser *r) { (void)r; return DEM_EVENTS_DESC; }
 static dem_field_desc good_dem_field_desc(refuser *r) { dem_field_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; return d; }
 static dem_wall_part good_dem_wall_part(refuser *r) { static const char first[] = "a"; static dem_wall_part two[2]; (void)r; memset(two, 0, sizeof two); two[0].name = two[1].name = first; two[0].material.id = two[1].material.id = 1; return two[0]; }
 static dem_grains good_dem_grains(refuser *r) { static dem_real radii[2] = {0.001f, 0.001f}; static dem_real places[6]; dem_grains g; (void)r; memset(&g, 0, sizeof g); memcpy(places, corner_reals, sizeof places); g.count = 2; g.positions = places; g.radii = radii; return g; }
@@ -185,6 +187,7 @@ static dem_world *refused_world(int impulses) {
     desc.body_reals = "charge";
     desc.groups = "one";
     desc.orientations = 1;                      /* of spheres: a joint asks for them */
+    desc.ledger = 1;                            /* events ask for it */
     desc.dt = impulses ? DEM_R(1e-4) : DEM_R(1e-5);
     if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
     r.world = w = dem_world_create(&desc);
@@ -201,6 +204,7 @@ static dem_world *refused_world(int impulses) {
     { const dem_outlet_desc d = good_dem_outlet_desc(&r); dem_outlet_add(w, &d); }
     { dem_field_desc d = good_dem_field_desc(&r); d.bodies = 1; dem_field_add(w, &d); }
     if (impulses) { const dem_joint_desc d = good_dem_joint_desc(&r); dem_joint_add(w, &d); }
+    dem_events_record(w, &DEM_EVENTS_DESC);
     if (dem_world_step(w, 5) != DEM_OK) printf("        %s\n", dem_world_error_get(w));
     return w;
 }
