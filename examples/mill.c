@@ -915,7 +915,7 @@ static void spectrum_write(mill *m) {
     static const char *const names[2] = {"bead on bead", "bead on shell"};
     const dem_material any = {0}, *other[2];
     const sample *last = &m->samples[m->sample_count];
-    double lost;
+    double lost, error;
     study_figure f = line_figure("Impacts in the mill", "energy of impact (J)", "impacts per second in a bin (1/s)");
     study_figure h = line_figure("Where the energy is lost", "energy lost in a contact (J)", "power in a bin (W)");
     static double x[DEM_IMPACT_BINS], y[2][2][DEM_IMPACT_BINS];
@@ -927,8 +927,9 @@ static void spectrum_write(mill *m) {
     /* a run that was resumed began to record earlier */
     lost = dissipated(last) - dissipated(last - (int)(s.seconds/m->period*SAMPLES + 0.5));
     study_result("contact_rate", s.rate, "1/s");
-    study_result("event_balance_error",
-                 fabs(s.lost_normal + s.lost_slide + s.lost_tangent + s.lost_rolling - lost)/lost, "");
+    error = fabs(s.lost_normal + s.lost_slide + s.lost_tangent + s.lost_rolling - lost)/lost;
+    study_result("event_balance_error", error, "");
+    if (!(error <= 1e-3)) study_fail("the contacts lost %g of the energy more or less than the ledger says", error);
     f.log_x = f.log_y = h.log_x = 1;
     f.x0 = 1e300;
     for (k = 0; k < (m->glass.id == m->lining.id ? 1 : 2); k++) {

@@ -276,6 +276,8 @@
 
        dem_body_get, dem_bodies_get          one body; arrays of all bodies
        dem_contacts_get, dem_contacts_each   contacts with forces; with their contact history
+       dem_events_record                     each contact from beginning to end, with its losses
+       dem_impacts_get, dem_wall_wear_get    spectra of impacts, rates of collisions; wear of a wall
        dem_wall_loads_get                    force, torque, power, work on a wall
        dem_totals_get, dem_temperature_get   mass, momentum, energy; granular temperature
        dem_bodies_select,                    bodies by group, material, size or region: their ids;
@@ -345,10 +347,10 @@
 
    Laws, force fields, motions, regions, progress functions and observers may call every function
    that takes the world as const. Calls that change the world fail there and leave it as it is; make
-   them between runs. Progress functions, functions given to dem_contacts_each and functions that
-   compute a value of a CSV output may also write files and replay frames. The function of an output
-   of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it. Laws, force fields and
-   body_reals_fn are called from several threads.
+   them between runs. Progress functions, functions given to dem_contacts_each or dem_events_record
+   and functions that compute a value of a CSV output may also write files and replay frames. The
+   function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
+   Laws, force fields and body_reals_fn are called from several threads.
 
    The same program and input give the same bits for any number of threads: bodies are divided into
    work groups by their number only, and every sum has a fixed order. Compile with -ffp-contract=off
