@@ -2969,7 +2969,7 @@ typedef struct dem_event {
     dem_vec3 point, normal;        /* m; unit, from a to b: where it began */
     double begin, end;             /* s; end: the present time unless kind is DEM_EVENT_END */
     /* m/s, relative velocity at the contact point when it began: along the normal, > 0 if the two
-       approach; across it. They belong to the first step in which the two touch. */
+       approach; across it. They belong to the first step of the contact. */
     double closing_speed, slip_speed;
     /* kg, effective mass m_a m_b/(m_a + m_b) for a central impact; fixed bodies and walls are
        infinitely heavy; 0: neither can move */
@@ -35962,6 +35962,8 @@ static int demi_numbers_check(const demi_reader *r) {
         !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
         !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
         !demi_left(r, t->events.n.facets, sizeof(double)) ||
+        (!t->events.n.on && (t->events.n.open || t->events.n.pending || t->events.n.pairs ||
+                             t->events.n.walls || t->events.n.facets)) ||
         t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
         !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
         return demi_lie(r, "number of contact events", -1);

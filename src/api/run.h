@@ -348,7 +348,7 @@ typedef struct dem_event {
     dem_vec3 point, normal;        /* m; unit, from a to b: where it began */
     double begin, end;             /* s; end: the present time unless kind is DEM_EVENT_END */
     /* m/s, relative velocity at the contact point when it began: along the normal, > 0 if the two
-       approach; across it. They belong to the first step in which the two touch. */
+       approach; across it. They belong to the first step of the contact. */
     double closing_speed, slip_speed;
     /* kg, effective mass m_a m_b/(m_a + m_b) for a central impact; fixed bodies and walls are
        infinitely heavy; 0: neither can move */

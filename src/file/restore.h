@@ -150,6 +150,8 @@ static int demi_numbers_check(const demi_reader *r) {
         !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
         !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
         !demi_left(r, t->events.n.facets, sizeof(double)) ||
+        (!t->events.n.on && (t->events.n.open || t->events.n.pending || t->events.n.pairs ||
+                             t->events.n.walls || t->events.n.facets)) ||
         t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
         !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
         return demi_lie(r, "number of contact events", -1);
