@@ -112,7 +112,7 @@ examples: lessons $(SHOWS) snippets ## run the lessons, the other examples that 
 
 studies: $(STUDIES) ## build the studies into build/; each has an option --help
 
-studies-check: build/mill build/screener build/ellipsoids build/separator ## run every command of the four studies in README.md and docs/ in a short form; LONG=1: as written, in two hours
+studies-check: build/mill build/screener build/ellipsoids build/separator build/shear build/triaxial ## run every command of the four studies and of two tests of materials in README.md and docs/ in a short form; LONG=1: as written, in two hours
 	@JOBS=$(JOBS) sh tests/studies.sh $(if $(LONG),long)
 
 mpi: build/dem.o ## build the programs in examples/mpi and run them on 1, 2 and 3 processes, if mpicc is installed

@@ -40,6 +40,7 @@
        >>filed             contact histories between two lists, by slot
        >>bodies            grains: slots, arrays, insertion, removal
        >>integrators       kick, drift and prediction; rotation
+       >>cell              periodic cells that deform: images, flow, motion
      surface/ - walls
        >>facets            weights of the faces, edges and corners of a surface
        >>sheets            connected facets of a surface, their orientation and open edges
@@ -92,6 +93,7 @@
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>events            contacts from beginning to end; spectra of impacts; wear
+       >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
@@ -558,6 +560,8 @@
      [DUF17]   Duff et al., J. Comput. Graph. Tech. 6 (2017) 1: a frame from one vector
      [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [ELA19]   Elandt, Drumwright, Sherman & Ruina, IEEE/RSJ IROS (2019) 8238: pressure fields
+     [EVA08]   Evans & Morriss, Statistical Mechanics of Nonequilibrium Liquids (2008): motion
+               relative to the flow of a cell
      [FEN12]   Feng, Han & Owen, Comput. Methods Appl. Mech. Eng. 205 (2012) 169: a potential of
                the overlap's volume
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
@@ -570,6 +574,7 @@
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
      [LAC54]   Lacey, J. Appl. Chem. 4 (1954) 257: mixing index
+     [LEE72]   Lees & Edwards, J. Phys. C 5 (1972) 1921: images that move with the shear
      [MAZ11]   Mazhar, Heyn & Negrut, Multibody Syst. Dyn. 26 (2011) 37: collisions by bins
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU (our copy has neither author nor year): laws by
@@ -2748,6 +2753,41 @@ DEM_API int dem_progress_print(const dem_world *world, double done, double secon
    created. */
 DEM_API dem_result dem_world_gravity_set(dem_world *world, dem_vec3 gravity);
 
+/* How the sides of a periodic domain, the cell, move. Begin with DEM_CELL_DESC: they do not. */
+typedef struct dem_cell_desc {
+    dem_vec3 rate;            /* 1/s, strain rate of each axis; positive: the cell becomes longer */
+    dem_real shear;           /* 1/s, shear rate: change of the velocity along x with y */
+    dem_vec3 stress;          /* Pa, pressure positive: target of axes that have a rate_most */
+    /* 1/s, >= 0: largest strain rate by which the cell is led to `stress` along this axis, whose
+       `rate` must be 0; 0: the axis follows `rate` */
+    dem_vec3 rate_most;
+} dem_cell_desc;
+static const dem_cell_desc DEM_CELL_DESC_ZERO = DEM_ZERO;
+#define DEM_CELL_DESC DEM_CELL_DESC_ZERO
+/* Deforms the cell from now on, for tests of materials without walls. The centre of the domain
+   stays in place. All positions, those of fixed bodies too, follow the strain affinely: the flow of
+   the cell is rate (x - centre), plus shear (y - centre) along x. Velocities of bodies are relative
+   to this flow, here and in user-defined functions, and their kinetic energy is that of these
+   velocities. Contacts see the difference of the flow between both bodies, so no place of the cell
+   differs from another [EVA08], and images across the y faces move with the shear [LEE72]. Along
+   axes with a rate_most the rate is chosen before each step; its gain follows from the contacts
+   (>>stress). Further calls may change everything at any time; contact histories stay. Axes that
+   move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
+   Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with
+   walls, joints, feeds and outlets. Fields and fills are an error while a cell is sheared. */
+DEM_API dem_result dem_cell_set(dem_world *world, const dem_cell_desc *desc);
+/* What the cell does. */
+typedef struct dem_cell_state {
+    dem_box box;              /* m, the domain now */
+    dem_real offset;          /* m, along x: displacement of images across the upper y face */
+    /* since the beginning: logarithmic strain of each axis, > 0: longer; shear strain */
+    double strain[3], shear;
+    double rate[3], shear_rate;    /* 1/s, of the last step */
+    double stress[3];         /* Pa, along each axis, before the last step; at first 0 */
+} dem_cell_state;
+/* Writes the state of the cell to state. */
+DEM_API dem_result dem_cell_state_get(const dem_world *world, dem_cell_state *state);
+
 /* Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with desc.dt; an
    error with DEM_RESPONSE_IMPULSES. Contact history stays. Checkpoints store the step. If it is too
    large, the next dem_world_step returns DEM_ERROR_TIME_STEP. */
@@ -2788,17 +2828,17 @@ DEM_API dem_counters dem_counters_get(const dem_world *world);
 DEM_API void dem_overlap_max_reset(dem_world *world);
 
 /* The account of energy, J, since the world was created; zeros unless desc.ledger is 1.
-       residual = kinetic + rotational + elastic - gravity - walls - force - inserted - growth
-                  + removed + normal + slide + tangent + rolling
+       residual = kinetic + rotational + elastic - gravity - walls - force - cell - inserted
+                  - growth + removed + normal + slide + tangent + rolling
    The residual is the error of the time integration; compare it with `throughput`. Potential energy
    is not stored energy here: `gravity` is the work of gravity. If a user-defined law never fills
    force->energy, the ledger cannot separate what the law stores from what it dissipates: `unknown`
    then holds the residual, and `residual` is 0. */
 typedef struct dem_ledger {
     double kinetic, rotational, elastic;    /* stored now */
-    /* supplied: work of gravity; of moving walls and motors; of force fields; kinetic energy of
-       inserted bodies */
-    double gravity, walls, force, inserted;
+    /* supplied: work of gravity; of moving walls and motors; of force fields; of a cell that
+       deforms; kinetic energy of inserted bodies */
+    double gravity, walls, force, cell, inserted;
     /* dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential
        dashpots; by rolling resistance */
     double normal, slide, tangent, rolling;
@@ -3066,6 +3106,22 @@ typedef struct dem_servo {
 } dem_servo;
 /* Writes the state of a servo wall to servo. */
 DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall wall, dem_servo *servo);
+
+/* Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz. */
+typedef struct dem_stress {
+    double volume, solid;     /* m3, of the domain; fraction that bodies fill */
+    /* Pa, pressure positive: of contacts, the sum of force x branch over the volume, where a
+       contact with a wall acts from the centre to the contact; of motion, the sum of m v v over the
+       volume, about the mean velocity; both together */
+    double contact[6], kinetic[6], total[6];
+    double fabric[6];         /* mean of n n over the contacts of two bodies; its trace is 1 */
+    int contacts;             /* of two bodies */
+    double coordination;      /* contacts per body, with walls */
+} dem_stress;
+/* Computes stress and fabric of the present state in one pass over bodies and contacts. The domain
+   must have an extent along all axes (planar: along x and y; its depth is desc.thickness). An error
+   if bodies or walls have changed since the last step; then call dem_candidates_rebuild first. */
+DEM_API dem_result dem_stress_get(const dem_world *world, dem_stress *stress);
 
 /* A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress
    over a window of time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller
@@ -3626,7 +3682,7 @@ typedef struct dem_effect {
     char text[200];                /* what acts; why nothing acts; what has not happened */
 } dem_effect;
 /* Number of effects. */
-enum { DEM_EFFECTS = 18 };
+enum { DEM_EFFECTS = 19 };
 /* Writes for every effect whether it is off, idle or active, and returns their number. It finds a
    material with rolling friction on which nothing has rolled, or a wall that nothing has touched.
    It can miss contacts of spheres that begin and end between two neighbour lists. If `budget` (s of
@@ -4148,7 +4204,15 @@ typedef struct demi_species {
    DEMI_E_TOLD: what user-defined laws report. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
       DEMI_E_ROLL,
-       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_TOLD, DEMI_E_GROWTH, DEMI_ENERGIES };
+       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_CELL, DEMI_E_TOLD, DEMI_E_GROWTH,
+       DEMI_ENERGIES };
+
+/* What each work group sums over its contacts and bodies in a cell that deforms. DEMI_CELL_VIRIAL:
+   9 products of the force on a and the vector from a to b, N m, row by row; DEMI_CELL_FLUX: m v v,
+   N m, xx yy zz xy xz yz; DEMI_CELL_STIFF, DEMI_CELL_DAMP: 3 each, of contacts, for a strain along
+   each axis, N m and N m s. */
+enum { DEMI_CELL_VIRIAL = 0, DEMI_CELL_FLUX = 9, DEMI_CELL_STIFF = 15, DEMI_CELL_DAMP = 18,
+       DEMI_CELL_SUMS = 21 };
 
 /* A contact point of a body and a wall as >>touch finds it: geometry, before any law is called. */
 typedef struct demi_touching {
@@ -4284,7 +4348,7 @@ typedef struct demi_domain {
     double turn;                   /* m/s, max change of |spin| times moment_arm in the step */
     double turn_speed;             /* m/s, max |spin| times moment_arm */
     double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
-    double energy[DEMI_ENERGIES];
+    double energy[DEMI_ENERGIES], cell[DEMI_CELL_SUMS];
     uint64_t met[DEMI_MATERIALS];  /* as in demi_booked, since the last rebuild */
 } demi_domain;
 
@@ -4658,6 +4722,18 @@ typedef struct demi_booked {       /* >>ledger: totals and maxima since the begi
     int sweeps, none;              /* of the last solve; padding, 0 */
 } demi_booked;
 
+/* A periodic cell that deforms. rate: of the last step; `stress` is that at which it was chosen. */
+typedef struct demi_strained {       /* >>cell, >>stress */
+    dem_cell_desc desc;
+    double mid[3], side[3];        /* m: its centre, which does not move, and its sides */
+    double offset;                 /* m, along x, of the image across the upper y face */
+    double rate[3], shear;         /* 1/s */
+    double strain[3], sheared;     /* logarithmic strains, and shear strain, since the beginning */
+    double stress[3], stiffness[3], damping[3];        /* Pa; Pa; Pa s */
+    double squeeze;                /* m, bound on the approach of a candidate pair in a step */
+    int on, none;                  /* 1: it moves, or is sheared; padding, 0 */
+} demi_strained;
+
 /* Bodies. A slot identifies a body and never changes; its index in the arrays changes with every
    rebuild. Part >>bodies owns them, integrators move them, contacts add forces. demi_body_arrays
    says how each array is used. "x 4": four reals per body. */
@@ -4933,6 +5009,7 @@ struct dem_world {
     demi_in_force effects;         /* >>rebuild */
     demi_levels levels;            /* >>search */
     demi_booked booked;            /* >>ledger; added, removed: >>bodies, >>feed, >>step */
+    demi_strained cell;               /* >>stress; box: >>cell */
     /* >>materials */
     int material_count;
     dem_material_desc materials[DEMI_MATERIALS];
@@ -5645,7 +5722,15 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(margin.slack, 'd', DEMI_FROM | DEMI_TO_SLAB),
     DEMI_N(margin.last_change, 'd', DEMI_FROM), DEMI_N(wall_fastest, 'd', DEMI_TO_SLAB),
     DEMI_N(effects.radius_min, 'r', DEMI_FROM), DEMI_N(effects.radius_max, 'r', DEMI_FROM),
-    DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD), DEMI_ROW_END};
+    DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD),
+    DEMI_N(desc.domain, 'v', DEMI_ANY), DEMI_N(cell.desc, 'r', DEMI_ANY),
+    DEMI_N(cell.mid, 'd', DEMI_ANY), DEMI_N(cell.side, 'd', DEMI_FROM),
+    DEMI_N(cell.offset, 'd', DEMI_ANY), DEMI_N(cell.rate, 'd', DEMI_ANY),
+    DEMI_N(cell.shear, 'd', DEMI_ANY), DEMI_N(cell.strain, 'd', DEMI_ANY),
+    DEMI_N(cell.sheared, 'd', DEMI_ANY), DEMI_N(cell.stress, 'd', DEMI_ANY),
+    DEMI_N(cell.stiffness, 'd', DEMI_FROM), DEMI_N(cell.damping, 'd', DEMI_FROM),
+    DEMI_N(cell.squeeze, 'd', DEMI_FROM), DEMI_N(cell.on, 'i', 0), DEMI_N(cell.none, 'i', 0),
+    DEMI_ROW_END};
 #undef DEMI_OF
 #define DEMI_OF demi_booked
 static const demi_field_row demi_booked_rows[] = {
@@ -8815,8 +8900,8 @@ static int demi_list_drop(dem_world *w) {
        getters, writers. Tests: tests/search/test_periodic.c. --- */
 /* Periods of the axes, m: begin of the box, half the period, period. An axis that is not periodic
    has the period 0 and a huge half, so that loops need no case for it. any: 1 if some axis is
-   periodic. */
-typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
+   periodic. offset: m, along x, of the image across the upper y face of a sheared cell, else 0. */
+typedef struct demi_periods { dem_real lo[3], half[3], period[3], offset; int any; } demi_periods;
 /* Returns the periods of a world. */
 static demi_periods demi_periods_of(const dem_world *w) {
     const dem_vec3 lo = w->desc.domain.lo, size = demi_sub(w->desc.domain.hi, lo);
@@ -8824,6 +8909,7 @@ static demi_periods demi_periods_of(const dem_world *w) {
     int k;
     demi_put(p.lo, lo);
     demi_put(p.period, size);
+    p.offset = (dem_real)w->cell.offset;
     for (k = 0, p.any = 0; k < 3; k++) {
         const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
         p.any |= periodic;
@@ -8847,28 +8933,48 @@ DEM_INLINE dem_real demi_into(dem_real x, dem_real from, dem_real period) {
     if (x >= from + period) x -= period;
     return x < from ? from : x;
 }
+/* A sheared cell: moves x along with the move of y by whole periods into from <= y < from + period.
+   */
+DEM_INLINE void demi_slide(const demi_periods *p, dem_real from, dem_vec3 *x) {
+    if (!(p->offset < 0 || p->offset > 0)) return;
+    x->x += p->offset*(dem_real)floor((double)((demi_into(x->y, from, p->period[1]) - x->y)/
+                                               p->period[1]) + 0.5);
+}
 /* Returns the image of a position in the periodic box. */
 static dem_vec3 demi_place_of(const demi_periods *p, dem_vec3 x) {
     if (!p->any) return x;
+    demi_slide(p, p->lo[1], &x);
     return demi_v(demi_into(x.x, p->lo[0], p->period[0]), demi_into(x.y, p->lo[1], p->period[1]),
                   demi_into(x.z, p->lo[2], p->period[2]));
 }
 /* Returns the distance between the nearest images of two positions, for a distance of any size. */
 static dem_vec3 demi_nearest(const demi_periods *p, dem_vec3 d) {
     if (!p->any) return d;
+    demi_slide(p, -p->half[1], &d);
     return demi_v(demi_into(d.x, -p->half[0], p->period[0]),
                   demi_into(d.y, -p->half[1], p->period[1]),
                   demi_into(d.z, -p->half[2], p->period[2]));
+}
+/* In a sheared cell the images of a body are on a lattice whose y axis is inclined. Searches use
+   the coordinate x - offset (y - lo)/period, in which the lattice is rectangular: returns that, or
+   x[0]. Two bodies that differ by at most r along x and y differ in it by at most
+   r demi_slant. */
+DEM_INLINE double demi_upright(const demi_periods *p, const dem_real *x) {
+    if (!(p->offset < 0 || p->offset > 0)) return (double)x[0];
+    return (double)demi_into(x[0] - p->offset*(x[1] - p->lo[1])/p->period[1], p->lo[0],
+                             p->period[0]);
+}
+static double demi_slant(const demi_periods *p) {
+    return p->offset < 0 || p->offset > 0 ? 1 + fabs((double)(p->offset/p->period[1])) : 1;
 }
 /* Returns the positions of all bodies in the periodic box: count x 4, as bodies.pos. They are valid
    until bodies move or are sorted. */
 static const dem_real *demi_wrapped(const dem_world *w) {
     const demi_periods p = demi_periods_of(w);
-    int i, k;
+    int i;
     if (!p.any) return w->bodies.pos;
     for (i = 0; i < w->bodies.count; i++) {
-        for (k = 0; k < 3; k++)
-            w->bodies.scratch[4*i + k] = demi_into(w->bodies.pos[4*i + k], p.lo[k], p.period[k]);
+        demi_put(w->bodies.scratch + 4*i, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
         w->bodies.scratch[4*i + 3] = w->bodies.pos[4*i + 3];
     }
     return w->bodies.scratch;
@@ -8884,12 +8990,13 @@ static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
 static void demi_wrap(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
-    for (k = 0; k < 3 && p.any; k++) {
-        for (i = 0; i < w->bodies.count && p.period[k] > 0; i++) {
-            const dem_real from = w->bodies.pos[4*i + k];
-            const dem_real to = demi_into(from, p.lo[k], p.period[k]);
-            if (w->bodies.backward) w->bodies.last_pos[4*i + k] += to - from;
-            w->bodies.pos[4*i + k] = to;
+    for (i = 0; i < w->bodies.count && p.any; i++) {
+        dem_real to[3];
+        demi_put(to, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
+        for (k = 0; k < 3; k++) {
+            if (p.period[k] > 0 && w->bodies.backward)
+                w->bodies.last_pos[4*i + k] += to[k] - w->bodies.pos[4*i + k];
+            w->bodies.pos[4*i + k] = to[k];
         }
     }
 }
@@ -10160,6 +10267,128 @@ static void demi_finish(dem_world *w) {
     if (w->stage.synced) return;
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_finish);
     w->stage.synced = 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>cell
+   Periodic cells that deform (dem_cell_set): the flow of the cell, how it moves bodies and changes
+   their velocities relative to it, and what contacts see of it. >>stress chooses the rates and
+   moves the sides; demi_periods has the images. Owns no data.
+
+   The flow. Let L be the velocity gradient, with the strain rates on its diagonal and the shear
+   rate in its first row and second column, and c the velocity of a body relative to the flow
+   L (x - mid):
+       dx/dt = c + L (x - mid),     m dc/dt = force - m L c                      (SLLOD, [EVA08])
+   which is Newton's law for the whole velocity if L is constant and L L = 0 (shear), and otherwise
+   contains the force that a homogeneous acceleration of the flow needs. Two bodies whose centres
+   are `branch` apart, from a to b, have the relative velocity c_a - c_b - L branch. Neither depends
+   on the place, so no face of the cell is special, and c does not change if a body is wrapped.
+   Every step moves all positions by L (x - mid) dt and the sides by the same map, so an image stays
+   an image exactly.
+   Energy. The kinetic energy is that of c. The cell supplies the power
+       sum over contacts of force on a . L branch - sum over bodies of m c . L c.
+   --------------------------------------------------------------------------------------------- */
+/* Returns L branch, m/s. */
+DEM_INLINE dem_vec3 demi_cell_flow(const dem_world *w, dem_vec3 branch) {
+    const demi_strained *c = &w->cell;
+    return demi_v((dem_real)c->rate[0]*branch.x + (dem_real)c->shear*branch.y,
+                  (dem_real)c->rate[1]*branch.y, (dem_real)c->rate[2]*branch.z);
+}
+/* Returns the largest speed, m/s, at which the flow can close two bodies that touch. */
+static double demi_cell_speed(const dem_world *w) {
+    const dem_vec3 rate = w->cell.desc.rate, most = w->cell.desc.rate_most;
+    const double norm = (double)DEMI_MAX(demi_size(rate), demi_size(most)) +
+        fabs((double)w->cell.desc.shear);
+    double radius = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++)
+        radius = DEMI_MAX(radius, (double)w->bodies.pos[4*i + 3]);
+    return 2*radius*norm;
+}
+/* Adds a contact to the virial. force: N, on a. */
+DEM_INLINE void demi_virial_add(double *sum, dem_vec3 force, dem_vec3 branch) {
+    const double x = (double)branch.x, y = (double)branch.y, z = (double)branch.z;
+    sum[0] += (double)force.x*x; sum[1] += (double)force.x*y; sum[2] += (double)force.x*z;
+    sum[3] += (double)force.y*x; sum[4] += (double)force.y*y; sum[5] += (double)force.y*z;
+    sum[6] += (double)force.z*x; sum[7] += (double)force.z*y; sum[8] += (double)force.z*z;
+}
+/* True in the steps that sum stiffness and damping, for an axis that is led to a stress. */
+enum { DEMI_CELL_REST = 8 };
+DEM_INLINE int demi_cell_stiffens(const dem_world *w) {
+    const dem_vec3 most = w->cell.desc.rate_most;
+    return (most.x > 0 || most.y > 0 || most.z > 0) &&
+        (w->clock.steps%DEMI_CELL_REST == 0 || !(w->cell.stiffness[0] > 0));
+}
+/* Adds the stiffness (N/m) and damping (N s/m) of a contact along its normal n: a strain e of axis
+   i moves b by e branch_i relative to a, which changes the force along the axis by
+   e k n_i n_i branch_i. kn, kun, cn: coefficients of the normal law. */
+static void demi_cell_stiffen(const dem_world *w, double *sum, dem_vec3 n, dem_vec3 branch,
+                              dem_real kn, dem_real kun, dem_real cn, double overlap,
+                              double share) {
+    const double x[3] = {(double)(n.x*branch.x), (double)(n.y*branch.y), (double)(n.z*branch.z)};
+    double k = (double)kn, c = (double)cn;
+    int i;
+    if (demi_normal_is(w, DEMI_HERTZIAN)) { k *= 1.5*sqrt(overlap); c *= sqrt(sqrt(overlap)); }
+    if (demi_normal_is(w, DEMI_BRANCHED)) k = (double)kun;
+    if (w->desc.law && w->desc.law_stiffness > 0) k = (double)w->desc.law_stiffness;
+    for (i = 0; i < 3; i++) {
+        sum[DEMI_CELL_STIFF + i] += share*k*x[i]*x[i];
+        sum[DEMI_CELL_DAMP + i] += share*c*x[i]*x[i];
+    }
+}
+/* Moves the bodies begin .. end - 1 with the flow, for one step. */
+static void demi_cell_carry(dem_world *w, int begin, int end) {
+    const demi_strained *c = &w->cell;
+    const double dt = (double)w->clock.dt;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        dem_real *x = w->bodies.pos + 4*i;
+        const double to[3] = {(double)x[0] - c->mid[0], (double)x[1] - c->mid[1],
+                              (double)x[2] - c->mid[2]};
+        for (k = 0; k < 3; k++) {
+            const double by = (c->rate[k]*to[k] + (k ? 0 : c->shear*to[1]))*dt;
+            const dem_real was = x[k];
+            x[k] = (dem_real)((double)x[k] + by);
+            if (w->bodies.backward) w->bodies.last_pos[4*i + k] += x[k] - was;
+        }
+    }
+}
+/* Adds the force -m L c to the bodies of a work group, and their m c c to its sums. */
+static void demi_cell_drag(dem_world *w, demi_domain *domain) {
+    double *flux = domain->cell + DEMI_CELL_FLUX;
+    int i, k;
+    for (i = domain->begin; i < domain->end; i++) {
+        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
+        const dem_vec3 drag = demi_scale(demi_cell_flow(w, v), -w->bodies.mass[i]);
+        const double m = (double)w->bodies.mass[i];
+        const double c[3] = {(double)v.x, (double)v.y, (double)v.z};
+        for (k = 0; k < 6; k++) flux[k] += m*(k < 3 ? c[k]*c[k] : c[k > 4]*c[k == 3 ? 1 : 2]);
+        w->bodies.force[4*i] += drag.x;
+        w->bodies.force[4*i + 1] += drag.y;
+        w->bodies.force[4*i + 2] += drag.z;
+    }
+}
+/* Returns the power of a velocity gradient in the contacts and bodies of all work groups, W. */
+static double demi_cell_power(const dem_world *w, const double *rate, double shear) {
+    double power = 0;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const double *sum = w->domains[d].cell, *flux = sum + DEMI_CELL_FLUX;
+        for (k = 0; k < 3; k++) power += rate[k]*(sum[DEMI_CELL_VIRIAL + 4*k] - flux[k]);
+        power += shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
+    }
+    return power;
+}
+/* Adds the work of the cell in this step to the ledger. */
+static void demi_cell_book(dem_world *w) {
+    const double work = demi_cell_power(w, w->cell.rate, w->cell.shear)*(double)w->clock.dt;
+    w->booked.energy[DEMI_E_CELL] += work;
+    w->booked.throughput += fabs(work);
+}
+/* Takes the images across the y faces that are nearest along x; only when lists are rebuilt. */
+static void demi_cell_upright(dem_world *w) {
+    if (w->cell.on && w->cell.side[0] > 0)
+        w->cell.offset -= w->cell.side[0]*floor(w->cell.offset/w->cell.side[0] + 0.5);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -13553,23 +13782,25 @@ static int demi_tessellation_beyond(const dem_world *w, const demi_wall *surface
 /* Row of a body in an array of four reals per body. An unsigned index saves a sign extension. */
 #define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
 
-/* Divides a box into cells of at least `least` (m) on each axis, at most about 4*count cells. */
-static void demi_cells_lay(const double *lo, const double *hi, double least, int count, int *cells,
-                           double *size) {
+/* Divides a box into cells of at least `least` (m) on each axis, along x of at least slant times
+   that, and at most about 4*count cells. */
+static void demi_cells_lay(const double *lo, const double *hi, double least, double slant,
+                           int count, int *cells, double *size) {
     int k;
     for (;; least *= 1.26) {
-        for (k = 0; k < 3; k++) cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/least, 1e6));
+        for (k = 0; k < 3; k++)
+            cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/(k ? least : least*slant), 1e6));
         if ((double)cells[0]*cells[1]*cells[2] <= 4.0*count + 64) break;
     }
     for (k = 0; k < 3; k++) size[k] = DEMI_MAX((hi[k] - lo[k])/cells[k], least*1e-9);
 }
 /* Returns the cell of position x; outside the grid, the nearest cell. Cell numbers increase fastest
    along axes[0], then along axes[1]. */
-static int demi_cell_of(const double *origin, const double *size, const int *cells,
-                        const int *axes, const dem_real *x) {
+static int demi_cell_of(const demi_periods *p, const double *origin, const double *size,
+                        const int *cells, const int *axes, const dem_real *x) {
     int c[3], k;
     for (k = 0; k < 3; k++) {
-        const double t = ((double)x[k] - origin[k])/size[k];
+        const double t = ((k ? (double)x[k] : demi_upright(p, x)) - origin[k])/size[k];
         c[k] = !(t > 0) ? 0 : t >= cells[k] ? cells[k] - 1 : (int)t;
     }
     return c[axes[0]] + cells[axes[0]]*(c[axes[1]] + cells[axes[1]]*c[axes[2]]);
@@ -13591,6 +13822,7 @@ static void demi_axes_order(const int *cells, int *axes) {
 /* Sets up the grid by which bodies are sorted, and computes the cell of each body. least: m,
    smallest cell. Returns 0 if memory runs out. */
 static int demi_grid_lay(dem_world *w, double least) {
+    const demi_periods p = demi_periods_of(w);
     double lo[3], hi[3];
     int i, k, n;
     demi_domain_limits(w, lo, hi);
@@ -13605,14 +13837,14 @@ static int demi_grid_lay(dem_world *w, double least) {
             hi[k] = DEMI_MAX(hi[k], x);
         }
     }
-    demi_cells_lay(lo, hi, least, w->bodies.count, w->cells, w->cell_size);
+    demi_cells_lay(lo, hi, least, demi_slant(&p), w->bodies.count, w->cells, w->cell_size);
     demi_axes_order(w->cells, w->cell_axes);
     for (k = 0; k < 3; k++) w->cell_origin[k] = lo[k];
     n = w->cells[0]*w->cells[1]*w->cells[2];
     if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
     for (i = 0; i < w->bodies.count; i++)
         w->bodies.cell_of[i] =
-            demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->cell_axes,
+            demi_cell_of(&p, w->cell_origin, w->cell_size, w->cells, w->cell_axes,
                          w->bodies.pos + 4*i);
     return 1;
 }
@@ -13696,6 +13928,11 @@ static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, 
         const dem_real d = y[e] - x[e];
         code += d < -p->half[e] ? weight : d > p->half[e] ? 2*weight : 0;
     }
+    if (p->offset < 0 || p->offset > 0) {       /* x again, after the displacement along it */
+        const int up = code/12%3;
+        const dem_real d = y[0] - x[0] + (up == 1 ? p->offset : up == 2 ? -p->offset : 0);
+        code += (d < -p->half[0] ? 4 : d > p->half[0] ? 8 : 0) - code%12;
+    }
     return (unsigned char)code;
 }
 /* Computes the shifts, m, to the 27 images of a body. Candidates store the offset of theirs in a
@@ -13707,6 +13944,7 @@ static void demi_image_shifts(dem_world *w) {
         for (e = 0; e < 3; e++) {
             const int c = code/(e == 0 ? 1 : e == 1 ? 3 : 9)%3;
             w->image_shift[4*code + e] = c == 0 ? 0 : c == 1 ? p.period[e] : -p.period[e];
+            if (e == 1 && c) w->image_shift[4*code] += c == 1 ? p.offset : -p.offset;
         }
 }
 
@@ -13726,8 +13964,10 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-    const dem_real dx = demi_image(y[0] - x[0], p->half[0], p->period[0]);
-    const dem_real dy = demi_image(y[1] - x[1], p->half[1], p->period[1]);
+    const dem_real up = y[1] - x[1];
+    const dem_real slid = up < -p->half[1] ? p->offset : up > p->half[1] ? -p->offset : 0;
+    const dem_real dx = demi_image(y[0] - x[0] + slid, p->half[0], p->period[0]);
+    const dem_real dy = demi_image(up, p->half[1], p->period[1]);
     const dem_real dz = demi_image(y[2] - x[2], p->half[2], p->period[2]);
     const dem_real cut = x[3] + y[3] + skin;
     demi_domain *domain = &w->domains[d];
@@ -13919,13 +14159,14 @@ static void demi_levels_choose(dem_world *w) {
    sort. Returns 0 if memory runs out. */
 static int demi_levels_lay(dem_world *w) {
     static const int along[3] = {0, 1, 2};
+    const demi_periods p = demi_periods_of(w);
     double hi[3];
     int i, k, l, n = 0;
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
     for (l = 0; l < w->levels.count; l++) {
         demi_level *level = &w->levels.level[l];
         demi_cells_lay(w->cell_origin, hi, 2*level->radius + (double)demi_cover(w) + 1e-300,
-                       level->count, level->cells, level->size);
+                       demi_slant(&p), level->count, level->cells, level->size);
         level->first = n;
         n += level->cells[0]*level->cells[1]*level->cells[2];
     }
@@ -13936,7 +14177,8 @@ static int demi_levels_lay(dem_world *w) {
                (double)w->bodies.pos[4*i + 3] <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
-            demi_cell_of(w->cell_origin, level->size, level->cells, along, w->bodies.pos + 4*i);
+            demi_cell_of(&p, w->cell_origin, level->size, level->cells, along,
+                         w->bodies.pos + 4*i);
     }
     demi_cells_fill(w, n);
     return 1;
@@ -13983,7 +14225,7 @@ static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, 
 static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
                            const demi_level *level) {
     const dem_real *at = w->bodies.pos + 4*a;
-    const double x = (double)at[0], y = (double)at[1], z = (double)at[2];
+    const double x = demi_upright(p, at), y = (double)at[1], z = (double)at[2];
     const int *n = level->cells;
     /* bound on the rounding error of distances over a whole period */
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
@@ -13991,7 +14233,8 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double reach =
         ((double)w->bodies.pos[4*a + 3] + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
         slack;
-    const demi_stretch sx = demi_level_span(w, level, 0, x, reach);
+    const double slant = demi_slant(p), lean = (slant - 1)*reach;
+    const demi_stretch sx = demi_level_span(w, level, 0, x, reach*slant);
     const demi_stretch sy = demi_level_span(w, level, 1, y, reach);
     const demi_stretch sz = demi_level_span(w, level, 2, z, reach);
     int j, k;
@@ -14004,7 +14247,8 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
             demi_stretch s = sx;
             if (still < 0) continue;
             /* clips the row to the sphere of reach, which is shorter than the cube's edge */
-            if (s.last - s.first > 3 && !s.round) s = demi_level_span(w, level, 0, x, sqrt(still));
+            if (s.last - s.first > 3 && !s.round)
+                s = demi_level_span(w, level, 0, x, sqrt(still) + lean);
             if (s.first < 0) {
                 demi_level_offer(w, d, p, a, row, s.first + n[0], n[0] - 1);
                 s.first = 0;
@@ -14298,12 +14542,15 @@ static void demi_rows_linked(dem_world *w, int d) {
 /* Computes the bins of a body's box: for each axis the first one and how many more. */
 static void demi_bins_of(dem_world *w, int body) {
     const double grow = ((double)w->bodies.pos[4*body + 3] + (double)demi_cover(w)/2)*(1 + 1e-5);
+    const demi_periods p = demi_periods_of(w);
+    const dem_real *place = w->bodies.pos + 4*body;
     int32_t *at = w->bin_of + 6*body;
     int k;
     for (k = 0; k < 3; k++) {
         const int n = w->bins[k], round = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
-        const double x = (double)w->bodies.pos[4*body + k] - w->cell_origin[k];
-        const double lo = floor((x - grow)/w->bin_size[k]), hi = floor((x + grow)/w->bin_size[k]);
+        const double x = (k ? (double)place[k] : demi_upright(&p, place)) - w->cell_origin[k];
+        const double far = k ? grow : grow*demi_slant(&p);
+        const double lo = floor((x - far)/w->bin_size[k]), hi = floor((x + far)/w->bin_size[k]);
         if (round && hi - lo + 1 >= n) { at[2*k] = 0; at[2*k + 1] = n - 1; continue; }
         at[2*k] = (int32_t)(round ? lo - n*floor(lo/n) : DEMI_MAX(DEMI_MIN(lo, n - 1), 0));
         at[2*k + 1] = (int32_t)(round ? hi - lo : DEMI_MAX(DEMI_MIN(hi, n - 1), 0) - at[2*k]);
@@ -14333,7 +14580,7 @@ static int demi_bins_lay(dem_world *w) {
     least = 2*least/DEMI_MAX(w->bodies.count, 1) + (double)demi_cover(w) + 1e-300;
     if (!DEMI_GROW(w, w->bin_of, 6*(size_t)w->bodies.count + 6)) return 0;
     do {
-        demi_cells_lay(w->cell_origin, hi, least, w->bodies.count, w->bins, w->bin_size);
+        demi_cells_lay(w->cell_origin, hi, least, 1, w->bodies.count, w->bins, w->bin_size);
         for (i = 0, all = 0; i < w->bodies.count; i++) {
             const int32_t *at = w->bin_of + 6*i;
             demi_bins_of(w, i);
@@ -15392,7 +15639,7 @@ static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
            (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count &&
-           !w->rail_count;
+           !w->rail_count && !w->cell.on;
 }
 /* Marks the blocks of a work group whose bodies have pairs in the pruned list or wall candidates.
    For the other blocks a step neither collects nor clears forces. */
@@ -15450,7 +15697,7 @@ static void demi_near_choose(dem_world *w) {
 static void demi_near_pass(dem_world *w, double change) {
     w->margin.last_change = change;
     w->margin.change += change;
-    w->margin.creep += 2*w->margin.change*(double)w->clock.dt;
+    w->margin.creep += 2*w->margin.change*(double)w->clock.dt + w->cell.squeeze;
     w->margin.age += (double)w->clock.dt;
 }
 /* True if the pruned list must be rebuilt. */
@@ -15971,6 +16218,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
+    demi_cell_upright(w);
     demi_wrap(w);                               /* after checks, which must not move bodies */
     if (!demi_scales_take(w) || (!w->facets_valid && !demi_surfaces_make(w)))
         return demi_no_memory(w, call);
@@ -17495,6 +17743,22 @@ static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *
         energy[DEMI_E_ROLL] += (double)t->part[5][q];
     }
 }
+/* A cell that deforms: adds the velocity difference of its flow to a row of relative velocities.
+   branch: m, from the centre of body a to that of b. */
+DEM_INLINE void demi_rows_flow(const dem_world *w, demi_rows *rate, int q, dem_vec3 branch) {
+    const dem_vec3 flow = demi_cell_flow(w, branch);
+    DEMI_XY(rate, 0, q) -= flow.x;
+    DEMI_XY(rate, 1, q) -= flow.y;
+    rate->z[q] -= flow.z;
+}
+/* The same for all pairs of a tile. */
+static DEMI_APART void demi_tile_flow(const demi_run *r, int count, demi_tile *t) {
+    int q;
+    for (q = 0; q < count; q++) {
+        demi_rows_flow(r->w, &t->rate, q, demi_rows_at(&t->gap, q));
+        if (r->following) demi_rows_flow(r->w, &t->gone, q, demi_rows_at(&t->gap, q));
+    }
+}
 /* Evaluates a tile with one of two runs, and returns that run. */
 static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
                                    demi_tile *DEMI_RESTRICT t, double *energy) {
@@ -17505,6 +17769,7 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
     demi_tile_fetch(r, full, t);
+    if (w->cell.on) demi_tile_flow(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
     for (q = 0; q < r->keep; q++)
         demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
@@ -17600,6 +17865,16 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     }
 }
 
+/* Adds the contact of row q, by its share, to the sums of a cell that deforms. */
+DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, dem_vec3 branch,
+                               dem_real share, double *sum) {
+    const dem_vec3 f = demi_v(t->force[0][q], t->force[1][q], t->force[2][q]);
+    demi_virial_add(sum, f, branch);
+    if (!demi_cell_stiffens(w) || !(t->overlap[q] > 0)) return;
+    demi_cell_stiffen(w, sum, demi_v(t->normal[0][q], t->normal[1][q], t->normal[2][q]), branch,
+                      t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
+                      (double)t->overlap[q], (double)share);
+}
 /* Computes all pairs of a work group: those within it, then those with later ones. note: called
    for every tile when its forces are known, or null. */
 DEM_INLINE void demi_pairs_with(dem_world *w, int d,
@@ -17610,7 +17885,7 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d,
     demi_run run[2];
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
-    int l, p;
+    int l, p, q;
     domain->contacts = 0;
     if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
     run[0] = demi_run_of(w, dt, 0);
@@ -17628,6 +17903,9 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d,
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
             else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
             if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
+            for (q = 0; q < count && w->cell.on; q++)
+                if (tile.touch[q] > 0)
+                    demi_tile_cell(w, &tile, q, demi_rows_at(&tile.gap, q), 1, domain->cell);
             if (note) note(w, d, &tile, &span, r);
         }
     }
@@ -22037,12 +22315,16 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
     const dem_world *w = r->w;
     const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
     demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
+    if (w->cell.on) demi_rows_flow(w, &t->rows.rate, q, demi_sub(k->arm_a, k->arm_b));
     demi_rows_put(&t->arm[1], q, k->arm_b);
     demi_rows_put(&t->spin[1], q, demi_at(w->bodies.spin + 4*k->b));
     if (!r->following) return;
     demi_rows_minus(&t->rows.gone, (size_t)q, uh + 4*k->a, uh + 4*k->b);
     demi_rows_put(&t->mid[1], q, demi_middle(k->arm_b, old->arm_b));
     demi_rows_put(&t->spun[1], q, demi_at(w->bodies.half_spin + 4*k->b));
+    if (w->cell.on)
+        demi_rows_flow(w, &t->rows.gone, q, demi_sub(demi_rows_at(&t->mid[0], q),
+                                                     demi_rows_at(&t->mid[1], q)));
 }
 /* Fills row q with the mobility of body `who` (side 0: a, 1: b; negative: a wall) at an arm:
    1/mass, orientation and moments of inertia. */
@@ -22423,6 +22705,9 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
         if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
         c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
+        if (w->cell.on && c->b >= 0)
+            demi_tile_cell(w, rows, q, demi_sub(c->arm_a, c->arm_b), c->slope*c->lift,
+                           domain->cell);
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
         if (!r->ledger) continue;
         demi_kept_energy(w, t, q, energy);
@@ -22760,6 +23045,11 @@ static void demi_member_law(const dem_world *w, demi_member_tile *m) {
             demi_rolling_put(rows, &same, q, &f, 2);
         }
 }
+/* Vector, m, from the centre of body a to that of b. */
+DEM_INLINE dem_vec3 demi_member_branch(const demi_member_tile *m, int q) {
+    return demi_add(demi_rows_at(&m->t.rows.gap, q),
+                    demi_sub(demi_rows_at(&m->t.arm[0], q), demi_rows_at(&m->t.arm[1], q)));
+}
 /* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
 static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d) {
     const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
@@ -22775,6 +23065,11 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
     }
     if (r->following) demi_member_fetch(w, m, base, full, 1);
     else demi_member_fetch(w, m, base, full, 0);
+    for (q = 0; q < full && w->cell.on; q++) {
+        const dem_vec3 branch = demi_member_branch(m, q);
+        demi_rows_flow(w, &rows->rate, q, branch);
+        if (r->following) demi_rows_flow(w, &rows->gone, q, branch);
+    }
     demi_member_recall(w, m, d, full);
     demi_member_coefs(w, m, d, full, 0);
     for (q = 0; q < full && m->weighted; q++)
@@ -22867,6 +23162,9 @@ static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int se
         dem_real *memory = w->near.memory + ((size_t)d*(size_t)w->memory_stride + (size_t)e)*stride;
         for (q = 0; q < m->count; q++) memory[m->p[q]] = rows->memory[e][q];
     }
+    for (q = 0; q < m->count && w->cell.on; q++)
+        if (rows->touch[q] > 0)
+            demi_tile_cell(w, rows, q, demi_member_branch(m, q), m->t.share[q], domain->cell);
     demi_tile_tally(rows, m->count, &tally);
     if (m->run.ranged) tally.contacts -= (dem_real)demi_tile_apart(rows, m->count);
     domain->contacts += (int)tally.contacts;
@@ -26054,6 +26352,10 @@ static int demi_region_check(dem_world *w, const char *call, const dem_region *r
                   (double)region->box.lo.x, (double)region->box.lo.y, (double)region->box.lo.z,
                   (double)region->box.hi.x, (double)region->box.hi.y, (double)region->box.hi.z,
                   DEMI_FARTHEST);
+    else if (w->cell.offset < 0 || w->cell.offset > 0)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, its images are "
+                  "displaced by %g m, which the search for room does not see; fill the cell before "
+                  "it is sheared, or add bodies at given positions", call, w->cell.offset);
     else if (!demi_region_make(w, region, (double)radius, g))
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
                   "give lo below hi by at least a diameter", call, (double)radius);
@@ -27380,6 +27682,7 @@ static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
                              (double)DEMI_MAX(wall->radius, wall->extent));
     }
     if (gravity > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*gravity*(hi - lo)));
+    if (w->cell.on) speed = DEMI_MAX(speed, demi_cell_speed(w));
     return DEMI_MAX(speed, 1e-3);
 }
 /* The shortest contact among those examined so far, and the smallest stable step. */
@@ -28651,6 +28954,7 @@ static void demi_ledger_book(dem_world *w) {
                                                            ? (double)w->clock.dt : 0);
     w->booked.energy[DEMI_E_WALLS] += walls;
     w->booked.throughput += fabs(walls);
+    if (w->cell.on && w->stage.forces_valid) demi_cell_book(w);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     dem_ledger l;
@@ -28662,6 +28966,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.walls = w->booked.energy[DEMI_E_WALLS];
     l.force = w->booked.energy[DEMI_E_FORCE];
     l.growth = w->booked.energy[DEMI_E_GROWTH];
+    l.cell = w->booked.energy[DEMI_E_CELL];
     l.inserted = w->booked.inserted;
     l.removed = w->booked.removed;
     l.normal = w->booked.energy[DEMI_E_DASHPOT];
@@ -28670,7 +28975,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
         w->booked.energy[DEMI_E_SHEAR_STORED];
     l.rolling = w->booked.energy[DEMI_E_ROLL];
     l.throughput = w->booked.throughput + w->booked.inserted;
-    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
+    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force - l.cell -
         l.inserted - l.growth + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
@@ -28743,6 +29048,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
+    if (w->cell.on) demi_tile_flow(&r, 1, &tile);
     *gap = demi_rows_at(&tile.gap, 0);
     demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
     if (!(tile.touch[0] > 0)) return 0;
@@ -29739,6 +30045,285 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>stress
+   Stress and fabric of the whole domain, and how a periodic cell that deforms (>>cell) follows
+   strain rates or target stresses. Owns w->cell; moves the domain of the desc.
+
+   The law of the stress. Along an axis let K and C be the sums of stiffness and damping over all
+   contacts for a strain of that axis (demi_cell_stiffen) over the volume, T the target, S the
+   stress, v and u the compression rates of the coming and the last step:
+       K dt (v - b u) + C (v - u) = a (T - S),   |v| at most the largest rate,
+   with a and b of servo walls (>>servo), where gain and stability are derived: K is the response of
+   the stress to a strain before any grain has moved on its own. K and C are renewed every eighth
+   step (DEMI_CELL_REST). K leaves out friction, which raises the response by at most two thirds,
+   and the other axes, which together with this one raise that of the pressure by as much. The limit
+   of the gain is seven times as high.
+   --------------------------------------------------------------------------------------------- */
+/* Volume of the domain, m3. */
+static double demi_volume(const dem_world *w) {
+    double lo[3], hi[3];
+    demi_domain_limits(w, lo, hi);
+    return (hi[0] - lo[0])*(hi[1] - lo[1])*
+        (w->desc.planar ? (double)w->desc.thickness : hi[2] - lo[2]);
+}
+/* Fails and returns 1 if the scene contains what cannot follow the cell. */
+static int demi_cell_refuse(dem_world *w, const char *call) {
+    const int slides = w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || w->cell.offset < 0 ||
+        w->cell.offset > 0;
+    int i, walls = 0;
+    for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
+    if (walls)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
+                  "wall%s, which would not: a grain and its image would touch the same wall at "
+                  "different velocities; remove the walls, or press with a servo wall instead of "
+                  "the cell", call, walls, walls == 1 ? "" : "s");
+    else if (w->joint_count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
+                  "joint%s, whose anchors would follow the flow of the cell at both ends; remove "
+                  "the joints", call, w->joint_count, w->joint_count == 1 ? "" : "s");
+    else if (w->feed_count || w->outlet_count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the regions of %d "
+                  "feeds and %d outlets would not; fill the cell before it deforms", call,
+                  w->feed_count, w->outlet_count);
+    else if (slides && w->field_count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, so that images are "
+                  "displaced, which the grids of %d field%s do not see; use dem_stress_get", call,
+                  w->field_count, w->field_count == 1 ? "" : "s");
+    else return 0;
+    return 1;
+}
+/* Chooses the strain rate of axis k for the coming step, from the sums over work groups. */
+static double demi_cell_choose(dem_world *w, int k, double target, double most) {
+    demi_strained *c = &w->cell;
+    const double dt = (double)w->clock.dt, was = -c->rate[k];
+    const double push = DEMI_SERVO_GAIN*(target - c->stress[k]) +
+        (DEMI_SERVO_KEPT*c->stiffness[k]*dt + c->damping[k])*was;
+    const double gives = c->stiffness[k]*dt + c->damping[k];
+    return -(fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0);
+}
+/* Measures the stress that the cell sees, and its stiffness and damping. */
+static void demi_cell_look(dem_world *w) {
+    demi_strained *c = &w->cell;
+    const double volume = demi_volume(w);
+    const int fresh = demi_cell_stiffens(w);
+    int d, k;
+    for (k = 0; k < 3; k++) {
+        c->stress[k] = 0;
+        if (fresh) c->stiffness[k] = c->damping[k] = 0;
+        for (d = 0; d < w->domain_count; d++) {
+            const double *sum = w->domains[d].cell;
+            c->stress[k] += (sum[DEMI_CELL_FLUX + k] - sum[DEMI_CELL_VIRIAL + 4*k])/volume;
+            c->stiffness[k] += sum[DEMI_CELL_STIFF + k]/volume;
+            c->damping[k] += sum[DEMI_CELL_DAMP + k]/volume;
+        }
+    }
+}
+/* Changes the rates. The work of a change is that of half a step, since the last step was booked
+   with the rates before. */
+static void demi_cell_turn(dem_world *w, const double *rate, double shear) {
+    demi_strained *c = &w->cell;
+    double change[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        change[k] = rate[k] - c->rate[k];
+        c->rate[k] = rate[k];
+    }
+    if (w->desc.ledger)
+        w->booked.energy[DEMI_E_CELL] +=
+            demi_cell_power(w, change, shear - c->shear)*(double)w->clock.dt/2;
+    c->shear = shear;
+}
+/* Chooses the rates for the coming step along the axes that are led to a stress. */
+static dem_result demi_cell_lead(dem_world *w) {
+    demi_strained *c = &w->cell;
+    dem_real stress[3], most[3];
+    double rate[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
+    int k;
+    if (demi_cell_refuse(w, "dem_world_step")) return DEM_ERROR_ARGUMENT;
+    demi_put(stress, c->desc.stress);
+    demi_put(most, c->desc.rate_most);
+    demi_cell_look(w);
+    for (k = 0; k < 3; k++) {
+        rate[k] = most[k] > 0 ? demi_cell_choose(w, k, (double)stress[k], (double)most[k])
+            : c->rate[k];
+        norm = DEMI_MAX(norm, fabs(rate[k]) + fabs(c->shear));
+    }
+    demi_cell_turn(w, rate, c->shear);
+    if (!(norm*dt <= 0.01))
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: the cell is deformed "
+                         "at %g 1/s, which strains it by %g in a step of %g s, must be at most "
+                         "0.01; use lower rates (rate, shear, rate_most)",
+                         (unsigned long long)w->clock.steps, norm, norm*dt, dt);
+    c->squeeze = norm*dt*(2*(double)w->effects.radius_max + (double)demi_cover(w));
+    return DEM_OK;
+}
+/* Moves the sides of the cell for one step, and all images. */
+static void demi_cell_move(dem_world *w) {
+    demi_strained *c = &w->cell;
+    const double dt = (double)w->clock.dt;
+    dem_real lo[3], hi[3];
+    int k;
+    demi_put(lo, w->desc.domain.lo);
+    demi_put(hi, w->desc.domain.hi);
+    c->offset += (c->rate[0]*c->offset + c->shear*c->side[1])*dt;
+    c->sheared += c->shear*dt;
+    for (k = 0; k < 3; k++) {
+        c->side[k] += c->rate[k]*c->side[k]*dt;
+        c->strain[k] += log1p(c->rate[k]*dt);
+        if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
+        lo[k] = (dem_real)(c->mid[k] - c->side[k]/2);
+        hi[k] = (dem_real)(c->mid[k] + c->side[k]/2);
+    }
+    w->desc.domain.lo = demi_at(lo);
+    w->desc.domain.hi = demi_at(hi);
+    demi_image_shifts(w);
+}
+#define DEMI_CELL(field, type, how, unit) \
+    DEMI_LIMITED(dem_cell_desc, field, type, how, DEMI_FARTHEST, unit)
+static const demi_field_row demi_cell_rows[] = {DEMI_CELL(rate, 'v', DEMI_ANY, "1/s"),
+    DEMI_CELL(shear, 'r', DEMI_ANY, "1/s"), DEMI_CELL(stress, 'v', DEMI_ANY, "Pa"),
+    DEMI_CELL(rate_most, 'v', DEMI_FROM, "1/s"), DEMI_ROW_END};
+/* Checks the rates of each axis of a desc; *moves receives 1 if any is not 0. */
+static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_desc *d,
+                                 int *moves) {
+    dem_real rate[3], most[3];
+    int k;
+    demi_put(rate, d->rate);
+    demi_put(most, d->rate_most);
+    for (k = 0; k < 3; k++) {
+        const int rated = rate[k] < 0 || rate[k] > 0, led = most[k] > 0;
+        const int sheared = k < 2 && (d->shear < 0 || d->shear > 0);
+        *moves |= rated || led || sheared;
+        if (rated && led)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis %d has the strain rate %g 1/s and "
+                             "the largest rate %g 1/s towards a stress, one of them must be 0",
+                             call, k, (double)rate[k], (double)most[k]);
+        if ((rated || led || sheared) && w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis %d is to be %s, but its boundary is "
+                             "not periodic; set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or "
+                             "move walls instead", call, k, rated || led ? "strained" : "sheared",
+                             k);
+    }
+    return DEM_OK;
+}
+DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
+    const char *call = "dem_cell_set";
+    demi_strained *c;
+    dem_cell_desc before;
+    dem_real rate[3], most[3];
+    double lo[3], hi[3], to[3];
+    int k, moves = 0;
+    if (demi_null(w, call, desc, "desc") || demi_rows_check(w, call, demi_cell_rows, desc, "",
+            "start from DEM_CELL_DESC and set only what differs")) return DEM_ERROR_ARGUMENT;
+    c = &w->cell;
+    if (!demi_response_is(w, DEMI_LAWS))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, whose "
+                         "solvers do not see the flow of a cell; use DEM_RESPONSE_SPRINGS", call);
+    if (w->team)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this world is a slab, and borders of slabs do "
+                         "not move; use threads", call);
+    if (demi_cell_axes(w, call, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    before = c->desc;
+    c->desc = *desc;
+    if (moves && demi_cell_refuse(w, call)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
+    if (!moves && !c->on) return DEM_OK;
+    if (!c->on) {
+        demi_domain_limits(w, lo, hi);
+        for (k = 0; k < 3; k++) { c->mid[k] = (lo[k] + hi[k])/2; c->side[k] = hi[k] - lo[k]; }
+    }
+    c->on = moves || c->offset < 0 || c->offset > 0;
+    demi_finish(w);                             /* the open half kick belongs to the old rates */
+    demi_put(rate, desc->rate);
+    demi_put(most, desc->rate_most);
+    for (k = 0; k < 3; k++) to[k] = most[k] > 0 ? c->rate[k] : (double)rate[k];
+    demi_cell_turn(w, to, (double)desc->shear);
+    if (!c->on) c->squeeze = 0;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
+    if (demi_null_look(w, "dem_cell_state_get", out, "state")) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->box = w->desc.domain;
+    out->offset = (dem_real)w->cell.offset;
+    memcpy(out->strain, w->cell.strain, sizeof out->strain);
+    memcpy(out->rate, w->cell.rate, sizeof out->rate);
+    memcpy(out->stress, w->cell.stress, sizeof out->stress);
+    out->shear = w->cell.sheared;
+    out->shear_rate = w->cell.shear;
+    return DEM_OK;
+}
+
+/* Adds a contact: its symmetric virial, and the fabric of two bodies. b < 0: a wall. */
+static void demi_stress_add(dem_stress *s, const dem_contact_info *c, int b, dem_vec3 branch) {
+    const double f[3] = {(double)c->force.x, (double)c->force.y, (double)c->force.z};
+    const double l[3] = {(double)branch.x, (double)branch.y, (double)branch.z};
+    const double n[3] = {(double)c->normal.x, (double)c->normal.y, (double)c->normal.z};
+    int k;
+    for (k = 0; k < 6; k++) {
+        const int i = k < 3 ? k : k > 4, j = k < 3 ? k : k == 3 ? 1 : 2;
+        s->contact[k] -= (f[i]*l[j] + f[j]*l[i])/2/s->volume;
+        if (b >= 0 && c->overlap > 0) s->fabric[k] += n[i]*n[j];
+    }
+    if (!(c->overlap > 0)) return;
+    s->contacts += b >= 0;
+    s->coordination += b < 0 ? 1 : 2;
+}
+/* Adds the kinetic stress and the solid fraction. */
+static void demi_stress_move(const dem_world *w, dem_stress *s) {
+    double mass = 0, mean[3] = {0, 0, 0};
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double m = (double)w->bodies.mass[i];
+        const dem_real *v = w->bodies.vel + 4*i;
+        s->solid += m/(double)w->materials[w->bodies.material[i] - 1].density/s->volume;
+        if (w->bodies.inv_mass[i] <= 0) continue;
+        mass += m;
+        for (k = 0; k < 3; k++) mean[k] += m*(double)v[k];
+        for (k = 0; k < 6; k++)
+            s->kinetic[k] += m*(double)v[k < 3 ? k : k > 4]*
+                (double)v[k < 3 ? k : k == 3 ? 1 : 2]/s->volume;
+    }
+    for (k = 0; k < 6 && mass > 0; k++)
+        s->kinetic[k] -= mean[k < 3 ? k : k > 4]*mean[k < 3 ? k : k == 3 ? 1 : 2]/mass/s->volume;
+}
+DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
+    dem_contact_info info;
+    dem_vec3 branch;
+    int d, k;
+    if (demi_null_look(w, "dem_stress_get", s, "stress")) return DEM_ERROR_ARGUMENT;
+    memset(s, 0, sizeof *s);
+    if (!w->stage.list_valid) {
+        demi_list_stale(w, "dem_stress_get");
+        return DEM_ERROR_ARGUMENT;
+    }
+    s->volume = demi_volume(w);
+    if (!(s->volume > 0)) {
+        s->volume = 0;
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_stress_get: the domain has the "
+                         "volume 0; set desc.domain along all axes");
+    }
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
+            if (demi_contact_force(w, d, k, &info, &branch)) demi_stress_add(s, &info, 0, branch);
+        for (k = 0; k < domain->kept; k++) {
+            const demi_kept *c = demi_kept_of(w, d) + k;
+            if (!demi_kept_asked(w, c)) continue;
+            demi_kept_info(w, c, &info);
+            demi_stress_add(s, &info, c->b, c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
+        }
+    }
+    demi_stress_move(w, s);
+    for (k = 0; k < 6; k++) {
+        s->total[k] = s->contact[k] + s->kinetic[k];
+        if (s->contacts) s->fabric[k] /= s->contacts;
+    }
+    s->coordination /= DEMI_MAX(w->bodies.count, 1);
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>step
    Time integration: one step, in the stages that section 10 of the manual lists, for all members
    of a team together (>>team), that is for a single world or for slabs. A phase runs over the work
@@ -29783,6 +30368,7 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     int i, l;
     if (w->bodies.booked && !w->stage.synced) demi_late_note(w, begin, end);
     demi_integrator_of(w)->advance(w, begin, end, turning);
+    if (w->cell.on) demi_cell_carry(w, begin, end);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
             w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = 0;
@@ -29901,7 +30487,7 @@ static void demi_domain_fields(dem_world *w, int d) {
 /* Starts the sums of forces and torques of work group d: with 0, or with the force fields. The move
    of a step has already set forces to 0. */
 static void demi_domain_clear(dem_world *w, int d) {
-    const demi_domain *domain = &w->domains[d];
+    demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
     if (n && !w->stage.moved) {
@@ -29922,6 +30508,7 @@ static void demi_domain_clear(dem_world *w, int d) {
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
+    if (w->cell.on) demi_cell_drag(w, domain);
 }
 /* Computes the forces of all contacts that work group d owns. Forces on its own bodies are added
    here. Forces on bodies of other groups are stored in cross_force until all groups have finished
@@ -29983,6 +30570,7 @@ static int demi_forces(dem_world *w) {
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
+        if (w->cell.on) memset(w->domains[d].cell, 0, sizeof w->domains[d].cell);
     }
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_respond);
     if (response->solve) response->solve(w);
@@ -30159,6 +30747,7 @@ static dem_result demi_step_move(dem_world *w) {
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_rails_move(w);
+    if (w->cell.on) demi_cell_move(w);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -30174,7 +30763,8 @@ static dem_result demi_step_move(dem_world *w) {
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
     w->margin.step_gone =
-        (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt;
+        (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt +
+        w->cell.squeeze/2;
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
@@ -30462,6 +31052,7 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
 static dem_result demi_step_once(dem_world *h) {
     if (!h->stage.moved) {
         dem_result result = demi_servos_lead(h);
+        if (result == DEM_OK && h->cell.on) result = demi_cell_lead(h);
         if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
@@ -31383,6 +31974,7 @@ DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
     uint64_t h = DEMI_HASH_START;
     int i;
     h = demi_hash(h, &w->clock.time, sizeof w->clock.time);
+    if (w->cell.on) h = demi_hash(h, w->cell.side, sizeof w->cell.side + sizeof w->cell.offset);
     for (i = 0; i < w->bodies.slot_count; i++) {
         const int b = w->bodies.slot_index[i];
         dem_real x[4];
@@ -34401,6 +34993,8 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     end = l->ends + 6*(size_t)n;
     if (!c->wall && dem_body_get(l->w, c->b, &b) == DEM_OK) to = b.position;
     demi_put(end, a.position);
+    if (p.offset < 0 || p.offset > 0) to = demi_add(a.position, demi_nearest(&p,
+                                                    demi_sub(to, a.position)));
     demi_put(end + 3, to);
     for (k = 0; k < 3; k++)                     /* the periodic image of b nearest to a */
         end[3 + k] = end[k] + demi_image(end[3 + k] - end[k], p.half[k], p.period[k]);
@@ -34511,7 +35105,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     dem_world_desc desc = dem_world_desc_get(world);
     dem_box d = desc.domain;
     double length[3];
-    char text[3][32];
+    char text[3][32], slant[32];
     demi_out o;
     int i, k;
     dem_result result;
@@ -34524,7 +35118,8 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     fprintf(o.file, "%d\n", g.count);
     if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
         for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
-        fprintf(o.file, "Lattice=\"%s 0 0 0 %s 0 0 0 %s\" ", text[0], text[1], text[2]);
+        demi_format_real(slant, world->cell.offset, 9);     /* of a sheared cell; else 0 */
+        fprintf(o.file, "Lattice=\"%s 0 0 %s %s 0 0 0 %s\" ", text[0], slant, text[1], text[2]);
         demi_format_real(text[0], (double)d.lo.x, 9);
         demi_format_real(text[1], (double)d.lo.y, 9);
         demi_format_real(text[2], (double)d.lo.z, 9);
@@ -35388,6 +35983,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
     DEMI_VISIT(s, w->events.n);
+    DEMI_VISIT(s, w->desc.domain);    DEMI_VISIT(s, w->cell);
 }
 /* Visits the arrays of bodies that demi_body_arrays declares as state. */
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
@@ -35578,8 +36174,8 @@ typedef struct demi_checkpoint_head {
 static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
-                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
-                            sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
+                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
+                            sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
                             sizeof(demi_ongoing), sizeof(demi_impacts),
                             (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
@@ -35993,6 +36589,9 @@ static int demi_numbers_check(const demi_reader *r) {
         if (t->effects.species[k].material < 1 ||
             t->effects.species[k].material > t->material_count)
             return demi_lie(r, "table of species", -1);
+    for (k = 0; k < 3; k++)
+        if (t->desc.boundary[k] == DEM_BOUNDARY_PERIODIC &&
+            !(demi_periods_of(t).period[k] > 0)) return demi_lie(r, "periodic cell", -1);
     bad = demi_rows_bad(w, demi_number_rows, t, &k);
     if (!bad) bad = demi_rows_bad(w, demi_booked_rows, &t->booked, &k);
     if (bad) return demi_lie(r, bad->name, -1);
@@ -38534,6 +39133,12 @@ static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
                   faces, faces == 1 ? "is" : "es");
     return across ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+static dem_effect_state demi_look_cell(const dem_world *w, dem_effect *e) {
+    if (!w->cell.on) return demi_look_off(e, "the sides of the domain do not move");
+    demi_say(e, "strain rates %.3g %.3g %.3g, shear rate %.3g 1/s", w->cell.rate[0],
+             w->cell.rate[1], w->cell.rate[2], w->cell.shear);
+    return DEM_EFFECT_ACTIVE;
+}
 static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
     if (w->effects.uniform || !w->bodies.count)
         return demi_look_off(e, "all bodies are alike: coefficients are computed once");
@@ -38720,6 +39325,7 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"walls",            demi_look_walls,        demi_leave_walls,        0},
     {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
     {"periodic faces",   demi_look_periodic,     0,                       0},
+    {"deforming cell",   demi_look_cell,         0,                       0},
     {"unlike grains",    demi_look_unlike,       0,                       0},
     {"shapes",           demi_look_shapes,       0,                       0},
     {"orientations",     demi_look_orientations, demi_leave_orientations, 0},
@@ -39168,6 +39774,12 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 s.target, s.force - s.target, s.speed, s.travel, m->travel > 0 &&
                 fabs(s.travel) >= (double)m->travel*(1 - 1e-6) ? ", the limit of its travel" : "");
     }
+    if (w->cell.on)
+        fprintf(out, "cell       strain %.4g %.4g %.4g, shear %.4g; rates %.4g %.4g %.4g, "
+                "%.4g 1/s; stress %.6g %.6g %.6g Pa\n", w->cell.strain[0], w->cell.strain[1],
+                w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
+                w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
+                w->cell.stress[2]);
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
@@ -40532,6 +41144,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d bodies are on rails (dem_body_rail_set), "
                          "whose state slabs do not pass on; use threads, or walls instead of "
                          "these bodies", call, w->rail_count);
+    if (w->cell.on || w->cell.side[0] > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell of this world has been "
+                         "deformed (dem_cell_set), but borders of slabs do not move; use threads",
+                         call);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
                          "one along which the scene is longest", call, d->axis,

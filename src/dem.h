@@ -40,6 +40,7 @@
        >>filed             contact histories between two lists, by slot
        >>bodies            grains: slots, arrays, insertion, removal
        >>integrators       kick, drift and prediction; rotation
+       >>cell              periodic cells that deform: images, flow, motion
      surface/ - walls
        >>facets            weights of the faces, edges and corners of a surface
        >>sheets            connected facets of a surface, their orientation and open edges
@@ -92,6 +93,7 @@
        >>responses         table of responses: what springs and impulses do
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>events            contacts from beginning to end; spectra of impacts; wear
+       >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>measure           counters, contacts, angle of repose, the digest
@@ -207,6 +209,7 @@
 #include "body/filed.h"
 #include "body/bodies.h"
 #include "body/integrators.h"
+#include "body/cell.h"
 #include "surface/facets.h"
 #include "surface/sheets.h"
 #include "surface/motions.h"
@@ -253,6 +256,7 @@
 #include "run/responses.h"
 #include "run/fields.h"
 #include "run/events.h"
+#include "run/stress.h"
 #include "run/step.h"
 #include "run/runs.h"
 #include "run/measure.h"

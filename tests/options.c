@@ -10,7 +10,7 @@ static const option_table tables[] = {
     {"dem_world_desc", "", demi_world_desc_rows}, {"dem_material_desc", "", demi_material_rows},
     {"dem_pair", "", demi_pair_rows}, {"dem_motion", "motion.", demi_motion_rows}, {"dem_sieve_desc", "sieve.", demi_wall_rows},
     {"dem_joint_desc", "", demi_joint_fields}, {"dem_feed_desc", "", demi_feed_rows}, {"dem_outlet_desc", "", demi_outlet_rows},
-    {"dem_field_desc", "", demi_field_rows}, {"dem_trials_desc", "", demi_trials_rows}, {"dem_replay_desc", "", demi_replay_rows}};
+    {"dem_cell_desc", "", demi_cell_rows}, {"dem_field_desc", "", demi_field_rows}, {"dem_trials_desc", "", demi_trials_rows}, {"dem_replay_desc", "", demi_replay_rows}};
 
 /* The range of a field, with its upper limit or without. */
 static void range_print(const demi_field_row *r, int upper) {

@@ -5,7 +5,7 @@
 JOBS=${JOBS:-1}
 export OMP_WAIT_POLICY=passive   # several programs share the cores: a thread that waits sleeps
 dir=build/out/studies
-programs="mill screener ellipsoids separator"
+programs="mill screener ellipsoids separator shear triaxial"
 pages="README.md docs/*.md"
 rm -rf $dir; mkdir -p $dir
 

@@ -432,6 +432,8 @@
      [DUF17]   Duff et al., J. Comput. Graph. Tech. 6 (2017) 1: a frame from one vector
      [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [ELA19]   Elandt, Drumwright, Sherman & Ruina, IEEE/RSJ IROS (2019) 8238: pressure fields
+     [EVA08]   Evans & Morriss, Statistical Mechanics of Nonequilibrium Liquids (2008): motion
+               relative to the flow of a cell
      [FEN12]   Feng, Han & Owen, Comput. Methods Appl. Mech. Eng. 205 (2012) 169: a potential of
                the overlap's volume
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
@@ -444,6 +446,7 @@
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
      [LAC54]   Lacey, J. Appl. Chem. 4 (1954) 257: mixing index
+     [LEE72]   Lees & Edwards, J. Phys. C 5 (1972) 1921: images that move with the shear
      [MAZ11]   Mazhar, Heyn & Negrut, Multibody Syst. Dyn. 26 (2011) 37: collisions by bins
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU (our copy has neither author nor year): laws by

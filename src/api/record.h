@@ -426,7 +426,7 @@ typedef struct dem_effect {
     char text[200];                /* what acts; why nothing acts; what has not happened */
 } dem_effect;
 /* Number of effects. */
-enum { DEM_EFFECTS = 18 };
+enum { DEM_EFFECTS = 19 };
 /* Writes for every effect whether it is off, idle or active, and returns their number. It finds a
    material with rolling friction on which nothing has rolled, or a wall that nothing has touched.
    It can miss contacts of spheres that begin and end between two neighbour lists. If `budget` (s of

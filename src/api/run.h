@@ -127,6 +127,41 @@ DEM_API int dem_progress_print(const dem_world *world, double done, double secon
    created. */
 DEM_API dem_result dem_world_gravity_set(dem_world *world, dem_vec3 gravity);
 
+/* How the sides of a periodic domain, the cell, move. Begin with DEM_CELL_DESC: they do not. */
+typedef struct dem_cell_desc {
+    dem_vec3 rate;            /* 1/s, strain rate of each axis; positive: the cell becomes longer */
+    dem_real shear;           /* 1/s, shear rate: change of the velocity along x with y */
+    dem_vec3 stress;          /* Pa, pressure positive: target of axes that have a rate_most */
+    /* 1/s, >= 0: largest strain rate by which the cell is led to `stress` along this axis, whose
+       `rate` must be 0; 0: the axis follows `rate` */
+    dem_vec3 rate_most;
+} dem_cell_desc;
+static const dem_cell_desc DEM_CELL_DESC_ZERO = DEM_ZERO;
+#define DEM_CELL_DESC DEM_CELL_DESC_ZERO
+/* Deforms the cell from now on, for tests of materials without walls. The centre of the domain
+   stays in place. All positions, those of fixed bodies too, follow the strain affinely: the flow of
+   the cell is rate (x - centre), plus shear (y - centre) along x. Velocities of bodies are relative
+   to this flow, here and in user-defined functions, and their kinetic energy is that of these
+   velocities. Contacts see the difference of the flow between both bodies, so no place of the cell
+   differs from another [EVA08], and images across the y faces move with the shear [LEE72]. Along
+   axes with a rate_most the rate is chosen before each step; its gain follows from the contacts
+   (>>stress). Further calls may change everything at any time; contact histories stay. Axes that
+   move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
+   Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with
+   walls, joints, feeds and outlets. Fields and fills are an error while a cell is sheared. */
+DEM_API dem_result dem_cell_set(dem_world *world, const dem_cell_desc *desc);
+/* What the cell does. */
+typedef struct dem_cell_state {
+    dem_box box;              /* m, the domain now */
+    dem_real offset;          /* m, along x: displacement of images across the upper y face */
+    /* since the beginning: logarithmic strain of each axis, > 0: longer; shear strain */
+    double strain[3], shear;
+    double rate[3], shear_rate;    /* 1/s, of the last step */
+    double stress[3];         /* Pa, along each axis, before the last step; at first 0 */
+} dem_cell_state;
+/* Writes the state of the cell to state. */
+DEM_API dem_result dem_cell_state_get(const dem_world *world, dem_cell_state *state);
+
 /* Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with desc.dt; an
    error with DEM_RESPONSE_IMPULSES. Contact history stays. Checkpoints store the step. If it is too
    large, the next dem_world_step returns DEM_ERROR_TIME_STEP. */
@@ -167,17 +202,17 @@ DEM_API dem_counters dem_counters_get(const dem_world *world);
 DEM_API void dem_overlap_max_reset(dem_world *world);
 
 /* The account of energy, J, since the world was created; zeros unless desc.ledger is 1.
-       residual = kinetic + rotational + elastic - gravity - walls - force - inserted - growth
-                  + removed + normal + slide + tangent + rolling
+       residual = kinetic + rotational + elastic - gravity - walls - force - cell - inserted
+                  - growth + removed + normal + slide + tangent + rolling
    The residual is the error of the time integration; compare it with `throughput`. Potential energy
    is not stored energy here: `gravity` is the work of gravity. If a user-defined law never fills
    force->energy, the ledger cannot separate what the law stores from what it dissipates: `unknown`
    then holds the residual, and `residual` is 0. */
 typedef struct dem_ledger {
     double kinetic, rotational, elastic;    /* stored now */
-    /* supplied: work of gravity; of moving walls and motors; of force fields; kinetic energy of
-       inserted bodies */
-    double gravity, walls, force, inserted;
+    /* supplied: work of gravity; of moving walls and motors; of force fields; of a cell that
+       deforms; kinetic energy of inserted bodies */
+    double gravity, walls, force, cell, inserted;
     /* dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential
        dashpots; by rolling resistance */
     double normal, slide, tangent, rolling;
@@ -445,6 +480,22 @@ typedef struct dem_servo {
 } dem_servo;
 /* Writes the state of a servo wall to servo. */
 DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall wall, dem_servo *servo);
+
+/* Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz. */
+typedef struct dem_stress {
+    double volume, solid;     /* m3, of the domain; fraction that bodies fill */
+    /* Pa, pressure positive: of contacts, the sum of force x branch over the volume, where a
+       contact with a wall acts from the centre to the contact; of motion, the sum of m v v over the
+       volume, about the mean velocity; both together */
+    double contact[6], kinetic[6], total[6];
+    double fabric[6];         /* mean of n n over the contacts of two bodies; its trace is 1 */
+    int contacts;             /* of two bodies */
+    double coordination;      /* contacts per body, with walls */
+} dem_stress;
+/* Computes stress and fabric of the present state in one pass over bodies and contacts. The domain
+   must have an extent along all axes (planar: along x and y; its depth is desc.thickness). An error
+   if bodies or walls have changed since the last step; then call dem_candidates_rebuild first. */
+DEM_API dem_result dem_stress_get(const dem_world *world, dem_stress *stress);
 
 /* A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress
    over a window of time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller

@@ -14,8 +14,8 @@
        getters, writers. Tests: tests/search/test_periodic.c. --- */
 /* Periods of the axes, m: begin of the box, half the period, period. An axis that is not periodic
    has the period 0 and a huge half, so that loops need no case for it. any: 1 if some axis is
-   periodic. */
-typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
+   periodic. offset: m, along x, of the image across the upper y face of a sheared cell, else 0. */
+typedef struct demi_periods { dem_real lo[3], half[3], period[3], offset; int any; } demi_periods;
 /* Returns the periods of a world. */
 static demi_periods demi_periods_of(const dem_world *w) {
     const dem_vec3 lo = w->desc.domain.lo, size = demi_sub(w->desc.domain.hi, lo);
@@ -23,6 +23,7 @@ static demi_periods demi_periods_of(const dem_world *w) {
     int k;
     demi_put(p.lo, lo);
     demi_put(p.period, size);
+    p.offset = (dem_real)w->cell.offset;
     for (k = 0, p.any = 0; k < 3; k++) {
         const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
         p.any |= periodic;
@@ -46,28 +47,48 @@ DEM_INLINE dem_real demi_into(dem_real x, dem_real from, dem_real period) {
     if (x >= from + period) x -= period;
     return x < from ? from : x;
 }
+/* A sheared cell: moves x along with the move of y by whole periods into from <= y < from + period.
+   */
+DEM_INLINE void demi_slide(const demi_periods *p, dem_real from, dem_vec3 *x) {
+    if (!(p->offset < 0 || p->offset > 0)) return;
+    x->x += p->offset*(dem_real)floor((double)((demi_into(x->y, from, p->period[1]) - x->y)/
+                                               p->period[1]) + 0.5);
+}
 /* Returns the image of a position in the periodic box. */
 static dem_vec3 demi_place_of(const demi_periods *p, dem_vec3 x) {
     if (!p->any) return x;
+    demi_slide(p, p->lo[1], &x);
     return demi_v(demi_into(x.x, p->lo[0], p->period[0]), demi_into(x.y, p->lo[1], p->period[1]),
                   demi_into(x.z, p->lo[2], p->period[2]));
 }
 /* Returns the distance between the nearest images of two positions, for a distance of any size. */
 static dem_vec3 demi_nearest(const demi_periods *p, dem_vec3 d) {
     if (!p->any) return d;
+    demi_slide(p, -p->half[1], &d);
     return demi_v(demi_into(d.x, -p->half[0], p->period[0]),
                   demi_into(d.y, -p->half[1], p->period[1]),
                   demi_into(d.z, -p->half[2], p->period[2]));
+}
+/* In a sheared cell the images of a body are on a lattice whose y axis is inclined. Searches use
+   the coordinate x - offset (y - lo)/period, in which the lattice is rectangular: returns that, or
+   x[0]. Two bodies that differ by at most r along x and y differ in it by at most
+   r demi_slant. */
+DEM_INLINE double demi_upright(const demi_periods *p, const dem_real *x) {
+    if (!(p->offset < 0 || p->offset > 0)) return (double)x[0];
+    return (double)demi_into(x[0] - p->offset*(x[1] - p->lo[1])/p->period[1], p->lo[0],
+                             p->period[0]);
+}
+static double demi_slant(const demi_periods *p) {
+    return p->offset < 0 || p->offset > 0 ? 1 + fabs((double)(p->offset/p->period[1])) : 1;
 }
 /* Returns the positions of all bodies in the periodic box: count x 4, as bodies.pos. They are valid
    until bodies move or are sorted. */
 static const dem_real *demi_wrapped(const dem_world *w) {
     const demi_periods p = demi_periods_of(w);
-    int i, k;
+    int i;
     if (!p.any) return w->bodies.pos;
     for (i = 0; i < w->bodies.count; i++) {
-        for (k = 0; k < 3; k++)
-            w->bodies.scratch[4*i + k] = demi_into(w->bodies.pos[4*i + k], p.lo[k], p.period[k]);
+        demi_put(w->bodies.scratch + 4*i, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
         w->bodies.scratch[4*i + 3] = w->bodies.pos[4*i + 3];
     }
     return w->bodies.scratch;
@@ -83,12 +104,13 @@ static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
 static void demi_wrap(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
-    for (k = 0; k < 3 && p.any; k++) {
-        for (i = 0; i < w->bodies.count && p.period[k] > 0; i++) {
-            const dem_real from = w->bodies.pos[4*i + k];
-            const dem_real to = demi_into(from, p.lo[k], p.period[k]);
-            if (w->bodies.backward) w->bodies.last_pos[4*i + k] += to - from;
-            w->bodies.pos[4*i + k] = to;
+    for (i = 0; i < w->bodies.count && p.any; i++) {
+        dem_real to[3];
+        demi_put(to, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
+        for (k = 0; k < 3; k++) {
+            if (p.period[k] > 0 && w->bodies.backward)
+                w->bodies.last_pos[4*i + k] += to[k] - w->bodies.pos[4*i + k];
+            w->bodies.pos[4*i + k] = to[k];
         }
     }
 }

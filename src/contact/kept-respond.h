@@ -157,12 +157,16 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
     const dem_world *w = r->w;
     const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
     demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
+    if (w->cell.on) demi_rows_flow(w, &t->rows.rate, q, demi_sub(k->arm_a, k->arm_b));
     demi_rows_put(&t->arm[1], q, k->arm_b);
     demi_rows_put(&t->spin[1], q, demi_at(w->bodies.spin + 4*k->b));
     if (!r->following) return;
     demi_rows_minus(&t->rows.gone, (size_t)q, uh + 4*k->a, uh + 4*k->b);
     demi_rows_put(&t->mid[1], q, demi_middle(k->arm_b, old->arm_b));
     demi_rows_put(&t->spun[1], q, demi_at(w->bodies.half_spin + 4*k->b));
+    if (w->cell.on)
+        demi_rows_flow(w, &t->rows.gone, q, demi_sub(demi_rows_at(&t->mid[0], q),
+                                                     demi_rows_at(&t->mid[1], q)));
 }
 /* Fills row q with the mobility of body `who` (side 0: a, 1: b; negative: a wall) at an arm:
    1/mass, orientation and moments of inertia. */
@@ -543,6 +547,9 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
         if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
         c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
+        if (w->cell.on && c->b >= 0)
+            demi_tile_cell(w, rows, q, demi_sub(c->arm_a, c->arm_b), c->slope*c->lift,
+                           domain->cell);
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
         if (!r->ledger) continue;
         demi_kept_energy(w, t, q, energy);

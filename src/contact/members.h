@@ -226,6 +226,11 @@ static void demi_member_law(const dem_world *w, demi_member_tile *m) {
             demi_rolling_put(rows, &same, q, &f, 2);
         }
 }
+/* Vector, m, from the centre of body a to that of b. */
+DEM_INLINE dem_vec3 demi_member_branch(const demi_member_tile *m, int q) {
+    return demi_add(demi_rows_at(&m->t.rows.gap, q),
+                    demi_sub(demi_rows_at(&m->t.arm[0], q), demi_rows_at(&m->t.arm[1], q)));
+}
 /* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
 static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d) {
     const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
@@ -241,6 +246,11 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
     }
     if (r->following) demi_member_fetch(w, m, base, full, 1);
     else demi_member_fetch(w, m, base, full, 0);
+    for (q = 0; q < full && w->cell.on; q++) {
+        const dem_vec3 branch = demi_member_branch(m, q);
+        demi_rows_flow(w, &rows->rate, q, branch);
+        if (r->following) demi_rows_flow(w, &rows->gone, q, branch);
+    }
     demi_member_recall(w, m, d, full);
     demi_member_coefs(w, m, d, full, 0);
     for (q = 0; q < full && m->weighted; q++)
@@ -333,6 +343,9 @@ static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int se
         dem_real *memory = w->near.memory + ((size_t)d*(size_t)w->memory_stride + (size_t)e)*stride;
         for (q = 0; q < m->count; q++) memory[m->p[q]] = rows->memory[e][q];
     }
+    for (q = 0; q < m->count && w->cell.on; q++)
+        if (rows->touch[q] > 0)
+            demi_tile_cell(w, rows, q, demi_member_branch(m, q), m->t.share[q], domain->cell);
     demi_tile_tally(rows, m->count, &tally);
     if (m->run.ranged) tally.contacts -= (dem_real)demi_tile_apart(rows, m->count);
     domain->contacts += (int)tally.contacts;

@@ -310,6 +310,22 @@ static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *
         energy[DEMI_E_ROLL] += (double)t->part[5][q];
     }
 }
+/* A cell that deforms: adds the velocity difference of its flow to a row of relative velocities.
+   branch: m, from the centre of body a to that of b. */
+DEM_INLINE void demi_rows_flow(const dem_world *w, demi_rows *rate, int q, dem_vec3 branch) {
+    const dem_vec3 flow = demi_cell_flow(w, branch);
+    DEMI_XY(rate, 0, q) -= flow.x;
+    DEMI_XY(rate, 1, q) -= flow.y;
+    rate->z[q] -= flow.z;
+}
+/* The same for all pairs of a tile. */
+static DEMI_APART void demi_tile_flow(const demi_run *r, int count, demi_tile *t) {
+    int q;
+    for (q = 0; q < count; q++) {
+        demi_rows_flow(r->w, &t->rate, q, demi_rows_at(&t->gap, q));
+        if (r->following) demi_rows_flow(r->w, &t->gone, q, demi_rows_at(&t->gap, q));
+    }
+}
 /* Evaluates a tile with one of two runs, and returns that run. */
 static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
                                    demi_tile *DEMI_RESTRICT t, double *energy) {
@@ -320,6 +336,7 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
     demi_tile_fetch(r, full, t);
+    if (w->cell.on) demi_tile_flow(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
     for (q = 0; q < r->keep; q++)
         demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
@@ -415,6 +432,16 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     }
 }
 
+/* Adds the contact of row q, by its share, to the sums of a cell that deforms. */
+DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, dem_vec3 branch,
+                               dem_real share, double *sum) {
+    const dem_vec3 f = demi_v(t->force[0][q], t->force[1][q], t->force[2][q]);
+    demi_virial_add(sum, f, branch);
+    if (!demi_cell_stiffens(w) || !(t->overlap[q] > 0)) return;
+    demi_cell_stiffen(w, sum, demi_v(t->normal[0][q], t->normal[1][q], t->normal[2][q]), branch,
+                      t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
+                      (double)t->overlap[q], (double)share);
+}
 /* Computes all pairs of a work group: those within it, then those with later ones. note: called
    for every tile when its forces are known, or null. */
 DEM_INLINE void demi_pairs_with(dem_world *w, int d,
@@ -425,7 +452,7 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d,
     demi_run run[2];
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
-    int l, p;
+    int l, p, q;
     domain->contacts = 0;
     if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
     run[0] = demi_run_of(w, dt, 0);
@@ -443,6 +470,9 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d,
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
             else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
             if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
+            for (q = 0; q < count && w->cell.on; q++)
+                if (tile.touch[q] > 0)
+                    demi_tile_cell(w, &tile, q, demi_rows_at(&tile.gap, q), 1, domain->cell);
             if (note) note(w, d, &tile, &span, r);
         }
     }

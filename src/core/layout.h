@@ -91,7 +91,15 @@ typedef struct demi_species {
    DEMI_E_TOLD: what user-defined laws report. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
       DEMI_E_ROLL,
-       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_TOLD, DEMI_E_GROWTH, DEMI_ENERGIES };
+       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_CELL, DEMI_E_TOLD, DEMI_E_GROWTH,
+       DEMI_ENERGIES };
+
+/* What each work group sums over its contacts and bodies in a cell that deforms. DEMI_CELL_VIRIAL:
+   9 products of the force on a and the vector from a to b, N m, row by row; DEMI_CELL_FLUX: m v v,
+   N m, xx yy zz xy xz yz; DEMI_CELL_STIFF, DEMI_CELL_DAMP: 3 each, of contacts, for a strain along
+   each axis, N m and N m s. */
+enum { DEMI_CELL_VIRIAL = 0, DEMI_CELL_FLUX = 9, DEMI_CELL_STIFF = 15, DEMI_CELL_DAMP = 18,
+       DEMI_CELL_SUMS = 21 };
 
 /* A contact point of a body and a wall as >>touch finds it: geometry, before any law is called. */
 typedef struct demi_touching {
@@ -227,7 +235,7 @@ typedef struct demi_domain {
     double turn;                   /* m/s, max change of |spin| times moment_arm in the step */
     double turn_speed;             /* m/s, max |spin| times moment_arm */
     double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
-    double energy[DEMI_ENERGIES];
+    double energy[DEMI_ENERGIES], cell[DEMI_CELL_SUMS];
     uint64_t met[DEMI_MATERIALS];  /* as in demi_booked, since the last rebuild */
 } demi_domain;
 

@@ -190,7 +190,15 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(margin.slack, 'd', DEMI_FROM | DEMI_TO_SLAB),
     DEMI_N(margin.last_change, 'd', DEMI_FROM), DEMI_N(wall_fastest, 'd', DEMI_TO_SLAB),
     DEMI_N(effects.radius_min, 'r', DEMI_FROM), DEMI_N(effects.radius_max, 'r', DEMI_FROM),
-    DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD), DEMI_ROW_END};
+    DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD),
+    DEMI_N(desc.domain, 'v', DEMI_ANY), DEMI_N(cell.desc, 'r', DEMI_ANY),
+    DEMI_N(cell.mid, 'd', DEMI_ANY), DEMI_N(cell.side, 'd', DEMI_FROM),
+    DEMI_N(cell.offset, 'd', DEMI_ANY), DEMI_N(cell.rate, 'd', DEMI_ANY),
+    DEMI_N(cell.shear, 'd', DEMI_ANY), DEMI_N(cell.strain, 'd', DEMI_ANY),
+    DEMI_N(cell.sheared, 'd', DEMI_ANY), DEMI_N(cell.stress, 'd', DEMI_ANY),
+    DEMI_N(cell.stiffness, 'd', DEMI_FROM), DEMI_N(cell.damping, 'd', DEMI_FROM),
+    DEMI_N(cell.squeeze, 'd', DEMI_FROM), DEMI_N(cell.on, 'i', 0), DEMI_N(cell.none, 'i', 0),
+    DEMI_ROW_END};
 #undef DEMI_OF
 #define DEMI_OF demi_booked
 static const demi_field_row demi_booked_rows[] = {

@@ -93,6 +93,18 @@ typedef struct demi_booked {       /* >>ledger: totals and maxima since the begi
     int sweeps, none;              /* of the last solve; padding, 0 */
 } demi_booked;
 
+/* A periodic cell that deforms. rate: of the last step; `stress` is that at which it was chosen. */
+typedef struct demi_strained {       /* >>cell, >>stress */
+    dem_cell_desc desc;
+    double mid[3], side[3];        /* m: its centre, which does not move, and its sides */
+    double offset;                 /* m, along x, of the image across the upper y face */
+    double rate[3], shear;         /* 1/s */
+    double strain[3], sheared;     /* logarithmic strains, and shear strain, since the beginning */
+    double stress[3], stiffness[3], damping[3];        /* Pa; Pa; Pa s */
+    double squeeze;                /* m, bound on the approach of a candidate pair in a step */
+    int on, none;                  /* 1: it moves, or is sheared; padding, 0 */
+} demi_strained;
+
 /* Bodies. A slot identifies a body and never changes; its index in the arrays changes with every
    rebuild. Part >>bodies owns them, integrators move them, contacts add forces. demi_body_arrays
    says how each array is used. "x 4": four reals per body. */
@@ -368,6 +380,7 @@ struct dem_world {
     demi_in_force effects;         /* >>rebuild */
     demi_levels levels;            /* >>search */
     demi_booked booked;            /* >>ledger; added, removed: >>bodies, >>feed, >>step */
+    demi_strained cell;               /* >>stress; box: >>cell */
     /* >>materials */
     int material_count;
     dem_material_desc materials[DEMI_MATERIALS];

@@ -193,6 +193,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
     DEMI_VISIT(s, w->events.n);
+    DEMI_VISIT(s, w->desc.domain);    DEMI_VISIT(s, w->cell);
 }
 /* Visits the arrays of bodies that demi_body_arrays declares as state. */
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
@@ -383,8 +384,8 @@ typedef struct demi_checkpoint_head {
 static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
-                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
-                            sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
+                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
+                            sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
                             sizeof(demi_ongoing), sizeof(demi_impacts),
                             (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);

@@ -181,6 +181,9 @@ static int demi_numbers_check(const demi_reader *r) {
         if (t->effects.species[k].material < 1 ||
             t->effects.species[k].material > t->material_count)
             return demi_lie(r, "table of species", -1);
+    for (k = 0; k < 3; k++)
+        if (t->desc.boundary[k] == DEM_BOUNDARY_PERIODIC &&
+            !(demi_periods_of(t).period[k] > 0)) return demi_lie(r, "periodic cell", -1);
     bad = demi_rows_bad(w, demi_number_rows, t, &k);
     if (!bad) bad = demi_rows_bad(w, demi_booked_rows, &t->booked, &k);
     if (bad) return demi_lie(r, bad->name, -1);

@@ -401,6 +401,8 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     end = l->ends + 6*(size_t)n;
     if (!c->wall && dem_body_get(l->w, c->b, &b) == DEM_OK) to = b.position;
     demi_put(end, a.position);
+    if (p.offset < 0 || p.offset > 0) to = demi_add(a.position, demi_nearest(&p,
+                                                    demi_sub(to, a.position)));
     demi_put(end + 3, to);
     for (k = 0; k < 3; k++)                     /* the periodic image of b nearest to a */
         end[3 + k] = end[k] + demi_image(end[3 + k] - end[k], p.half[k], p.period[k]);
@@ -511,7 +513,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     dem_world_desc desc = dem_world_desc_get(world);
     dem_box d = desc.domain;
     double length[3];
-    char text[3][32];
+    char text[3][32], slant[32];
     demi_out o;
     int i, k;
     dem_result result;
@@ -524,7 +526,8 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     fprintf(o.file, "%d\n", g.count);
     if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
         for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
-        fprintf(o.file, "Lattice=\"%s 0 0 0 %s 0 0 0 %s\" ", text[0], text[1], text[2]);
+        demi_format_real(slant, world->cell.offset, 9);     /* of a sheared cell; else 0 */
+        fprintf(o.file, "Lattice=\"%s 0 0 %s %s 0 0 0 %s\" ", text[0], slant, text[1], text[2]);
         demi_format_real(text[0], (double)d.lo.x, 9);
         demi_format_real(text[1], (double)d.lo.y, 9);
         demi_format_real(text[2], (double)d.lo.z, 9);

@@ -216,6 +216,12 @@ static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
                   faces, faces == 1 ? "is" : "es");
     return across ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+static dem_effect_state demi_look_cell(const dem_world *w, dem_effect *e) {
+    if (!w->cell.on) return demi_look_off(e, "the sides of the domain do not move");
+    demi_say(e, "strain rates %.3g %.3g %.3g, shear rate %.3g 1/s", w->cell.rate[0],
+             w->cell.rate[1], w->cell.rate[2], w->cell.shear);
+    return DEM_EFFECT_ACTIVE;
+}
 static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
     if (w->effects.uniform || !w->bodies.count)
         return demi_look_off(e, "all bodies are alike: coefficients are computed once");
@@ -402,6 +408,7 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"walls",            demi_look_walls,        demi_leave_walls,        0},
     {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
     {"periodic faces",   demi_look_periodic,     0,                       0},
+    {"deforming cell",   demi_look_cell,         0,                       0},
     {"unlike grains",    demi_look_unlike,       0,                       0},
     {"shapes",           demi_look_shapes,       0,                       0},
     {"orientations",     demi_look_orientations, demi_leave_orientations, 0},

@@ -282,6 +282,12 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 s.target, s.force - s.target, s.speed, s.travel, m->travel > 0 &&
                 fabs(s.travel) >= (double)m->travel*(1 - 1e-6) ? ", the limit of its travel" : "");
     }
+    if (w->cell.on)
+        fprintf(out, "cell       strain %.4g %.4g %.4g, shear %.4g; rates %.4g %.4g %.4g, "
+                "%.4g 1/s; stress %.6g %.6g %.6g Pa\n", w->cell.strain[0], w->cell.strain[1],
+                w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
+                w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
+                w->cell.stress[2]);
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;

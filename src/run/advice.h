@@ -203,6 +203,7 @@ static double demi_speed_estimate(const dem_world *w, const demi_grades *g) {
                              (double)DEMI_MAX(wall->radius, wall->extent));
     }
     if (gravity > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*gravity*(hi - lo)));
+    if (w->cell.on) speed = DEMI_MAX(speed, demi_cell_speed(w));
     return DEMI_MAX(speed, 1e-3);
 }
 /* The shortest contact among those examined so far, and the smallest stable step. */

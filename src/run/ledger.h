@@ -58,6 +58,7 @@ static void demi_ledger_book(dem_world *w) {
                                                            ? (double)w->clock.dt : 0);
     w->booked.energy[DEMI_E_WALLS] += walls;
     w->booked.throughput += fabs(walls);
+    if (w->cell.on && w->stage.forces_valid) demi_cell_book(w);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     dem_ledger l;
@@ -69,6 +70,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.walls = w->booked.energy[DEMI_E_WALLS];
     l.force = w->booked.energy[DEMI_E_FORCE];
     l.growth = w->booked.energy[DEMI_E_GROWTH];
+    l.cell = w->booked.energy[DEMI_E_CELL];
     l.inserted = w->booked.inserted;
     l.removed = w->booked.removed;
     l.normal = w->booked.energy[DEMI_E_DASHPOT];
@@ -77,7 +79,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
         w->booked.energy[DEMI_E_SHEAR_STORED];
     l.rolling = w->booked.energy[DEMI_E_ROLL];
     l.throughput = w->booked.throughput + w->booked.inserted;
-    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
+    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force - l.cell -
         l.inserted - l.growth + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {

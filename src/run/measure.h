@@ -588,6 +588,7 @@ DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
     uint64_t h = DEMI_HASH_START;
     int i;
     h = demi_hash(h, &w->clock.time, sizeof w->clock.time);
+    if (w->cell.on) h = demi_hash(h, w->cell.side, sizeof w->cell.side + sizeof w->cell.offset);
     for (i = 0; i < w->bodies.slot_count; i++) {
         const int b = w->bodies.slot_index[i];
         dem_real x[4];

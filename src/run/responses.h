@@ -33,6 +33,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
+    if (w->cell.on) demi_tile_flow(&r, 1, &tile);
     *gap = demi_rows_at(&tile.gap, 0);
     demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
     if (!(tile.touch[0] > 0)) return 0;

@@ -43,6 +43,7 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     int i, l;
     if (w->bodies.booked && !w->stage.synced) demi_late_note(w, begin, end);
     demi_integrator_of(w)->advance(w, begin, end, turning);
+    if (w->cell.on) demi_cell_carry(w, begin, end);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
             w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = 0;
@@ -161,7 +162,7 @@ static void demi_domain_fields(dem_world *w, int d) {
 /* Starts the sums of forces and torques of work group d: with 0, or with the force fields. The move
    of a step has already set forces to 0. */
 static void demi_domain_clear(dem_world *w, int d) {
-    const demi_domain *domain = &w->domains[d];
+    demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
     if (n && !w->stage.moved) {
@@ -182,6 +183,7 @@ static void demi_domain_clear(dem_world *w, int d) {
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
+    if (w->cell.on) demi_cell_drag(w, domain);
 }
 /* Computes the forces of all contacts that work group d owns. Forces on its own bodies are added
    here. Forces on bodies of other groups are stored in cross_force until all groups have finished
@@ -243,6 +245,7 @@ static int demi_forces(dem_world *w) {
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
+        if (w->cell.on) memset(w->domains[d].cell, 0, sizeof w->domains[d].cell);
     }
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_respond);
     if (response->solve) response->solve(w);
@@ -419,6 +422,7 @@ static dem_result demi_step_move(dem_world *w) {
     demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_rails_move(w);
+    if (w->cell.on) demi_cell_move(w);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -434,7 +438,8 @@ static dem_result demi_step_move(dem_world *w) {
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
     w->margin.step_gone =
-        (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt;
+        (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt +
+        w->cell.squeeze/2;
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
@@ -722,6 +727,7 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
 static dem_result demi_step_once(dem_world *h) {
     if (!h->stage.moved) {
         dem_result result = demi_servos_lead(h);
+        if (result == DEM_OK && h->cell.on) result = demi_cell_lead(h);
         if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;

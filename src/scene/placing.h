@@ -417,6 +417,10 @@ static int demi_region_check(dem_world *w, const char *call, const dem_region *r
                   (double)region->box.lo.x, (double)region->box.lo.y, (double)region->box.lo.z,
                   (double)region->box.hi.x, (double)region->box.hi.y, (double)region->box.hi.z,
                   DEMI_FARTHEST);
+    else if (w->cell.offset < 0 || w->cell.offset > 0)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, its images are "
+                  "displaced by %g m, which the search for room does not see; fill the cell before "
+                  "it is sheared, or add bodies at given positions", call, w->cell.offset);
     else if (!demi_region_make(w, region, (double)radius, g))
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
                   "give lo below hi by at least a diameter", call, (double)radius);

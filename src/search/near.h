@@ -574,7 +574,7 @@ static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
            (!w->bodies.backward || demi_response_is(w, DEMI_MIDWAY)) && !w->joint_count &&
-           !w->rail_count;
+           !w->rail_count && !w->cell.on;
 }
 /* Marks the blocks of a work group whose bodies have pairs in the pruned list or wall candidates.
    For the other blocks a step neither collects nor clears forces. */
@@ -632,7 +632,7 @@ static void demi_near_choose(dem_world *w) {
 static void demi_near_pass(dem_world *w, double change) {
     w->margin.last_change = change;
     w->margin.change += change;
-    w->margin.creep += 2*w->margin.change*(double)w->clock.dt;
+    w->margin.creep += 2*w->margin.change*(double)w->clock.dt + w->cell.squeeze;
     w->margin.age += (double)w->clock.dt;
 }
 /* True if the pruned list must be rebuilt. */

@@ -461,6 +461,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
+    demi_cell_upright(w);
     demi_wrap(w);                               /* after checks, which must not move bodies */
     if (!demi_scales_take(w) || (!w->facets_valid && !demi_surfaces_make(w)))
         return demi_no_memory(w, call);

@@ -13,23 +13,25 @@
 /* Row of a body in an array of four reals per body. An unsigned index saves a sign extension. */
 #define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
 
-/* Divides a box into cells of at least `least` (m) on each axis, at most about 4*count cells. */
-static void demi_cells_lay(const double *lo, const double *hi, double least, int count, int *cells,
-                           double *size) {
+/* Divides a box into cells of at least `least` (m) on each axis, along x of at least slant times
+   that, and at most about 4*count cells. */
+static void demi_cells_lay(const double *lo, const double *hi, double least, double slant,
+                           int count, int *cells, double *size) {
     int k;
     for (;; least *= 1.26) {
-        for (k = 0; k < 3; k++) cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/least, 1e6));
+        for (k = 0; k < 3; k++)
+            cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/(k ? least : least*slant), 1e6));
         if ((double)cells[0]*cells[1]*cells[2] <= 4.0*count + 64) break;
     }
     for (k = 0; k < 3; k++) size[k] = DEMI_MAX((hi[k] - lo[k])/cells[k], least*1e-9);
 }
 /* Returns the cell of position x; outside the grid, the nearest cell. Cell numbers increase fastest
    along axes[0], then along axes[1]. */
-static int demi_cell_of(const double *origin, const double *size, const int *cells,
-                        const int *axes, const dem_real *x) {
+static int demi_cell_of(const demi_periods *p, const double *origin, const double *size,
+                        const int *cells, const int *axes, const dem_real *x) {
     int c[3], k;
     for (k = 0; k < 3; k++) {
-        const double t = ((double)x[k] - origin[k])/size[k];
+        const double t = ((k ? (double)x[k] : demi_upright(p, x)) - origin[k])/size[k];
         c[k] = !(t > 0) ? 0 : t >= cells[k] ? cells[k] - 1 : (int)t;
     }
     return c[axes[0]] + cells[axes[0]]*(c[axes[1]] + cells[axes[1]]*c[axes[2]]);
@@ -51,6 +53,7 @@ static void demi_axes_order(const int *cells, int *axes) {
 /* Sets up the grid by which bodies are sorted, and computes the cell of each body. least: m,
    smallest cell. Returns 0 if memory runs out. */
 static int demi_grid_lay(dem_world *w, double least) {
+    const demi_periods p = demi_periods_of(w);
     double lo[3], hi[3];
     int i, k, n;
     demi_domain_limits(w, lo, hi);
@@ -65,14 +68,14 @@ static int demi_grid_lay(dem_world *w, double least) {
             hi[k] = DEMI_MAX(hi[k], x);
         }
     }
-    demi_cells_lay(lo, hi, least, w->bodies.count, w->cells, w->cell_size);
+    demi_cells_lay(lo, hi, least, demi_slant(&p), w->bodies.count, w->cells, w->cell_size);
     demi_axes_order(w->cells, w->cell_axes);
     for (k = 0; k < 3; k++) w->cell_origin[k] = lo[k];
     n = w->cells[0]*w->cells[1]*w->cells[2];
     if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
     for (i = 0; i < w->bodies.count; i++)
         w->bodies.cell_of[i] =
-            demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->cell_axes,
+            demi_cell_of(&p, w->cell_origin, w->cell_size, w->cells, w->cell_axes,
                          w->bodies.pos + 4*i);
     return 1;
 }
@@ -156,6 +159,11 @@ static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, 
         const dem_real d = y[e] - x[e];
         code += d < -p->half[e] ? weight : d > p->half[e] ? 2*weight : 0;
     }
+    if (p->offset < 0 || p->offset > 0) {       /* x again, after the displacement along it */
+        const int up = code/12%3;
+        const dem_real d = y[0] - x[0] + (up == 1 ? p->offset : up == 2 ? -p->offset : 0);
+        code += (d < -p->half[0] ? 4 : d > p->half[0] ? 8 : 0) - code%12;
+    }
     return (unsigned char)code;
 }
 /* Computes the shifts, m, to the 27 images of a body. Candidates store the offset of theirs in a
@@ -167,6 +175,7 @@ static void demi_image_shifts(dem_world *w) {
         for (e = 0; e < 3; e++) {
             const int c = code/(e == 0 ? 1 : e == 1 ? 3 : 9)%3;
             w->image_shift[4*code + e] = c == 0 ? 0 : c == 1 ? p.period[e] : -p.period[e];
+            if (e == 1 && c) w->image_shift[4*code] += c == 1 ? p.offset : -p.offset;
         }
 }
 
@@ -186,8 +195,10 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-    const dem_real dx = demi_image(y[0] - x[0], p->half[0], p->period[0]);
-    const dem_real dy = demi_image(y[1] - x[1], p->half[1], p->period[1]);
+    const dem_real up = y[1] - x[1];
+    const dem_real slid = up < -p->half[1] ? p->offset : up > p->half[1] ? -p->offset : 0;
+    const dem_real dx = demi_image(y[0] - x[0] + slid, p->half[0], p->period[0]);
+    const dem_real dy = demi_image(up, p->half[1], p->period[1]);
     const dem_real dz = demi_image(y[2] - x[2], p->half[2], p->period[2]);
     const dem_real cut = x[3] + y[3] + skin;
     demi_domain *domain = &w->domains[d];
@@ -379,13 +390,14 @@ static void demi_levels_choose(dem_world *w) {
    sort. Returns 0 if memory runs out. */
 static int demi_levels_lay(dem_world *w) {
     static const int along[3] = {0, 1, 2};
+    const demi_periods p = demi_periods_of(w);
     double hi[3];
     int i, k, l, n = 0;
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
     for (l = 0; l < w->levels.count; l++) {
         demi_level *level = &w->levels.level[l];
         demi_cells_lay(w->cell_origin, hi, 2*level->radius + (double)demi_cover(w) + 1e-300,
-                       level->count, level->cells, level->size);
+                       demi_slant(&p), level->count, level->cells, level->size);
         level->first = n;
         n += level->cells[0]*level->cells[1]*level->cells[2];
     }
@@ -396,7 +408,8 @@ static int demi_levels_lay(dem_world *w) {
                (double)w->bodies.pos[4*i + 3] <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
-            demi_cell_of(w->cell_origin, level->size, level->cells, along, w->bodies.pos + 4*i);
+            demi_cell_of(&p, w->cell_origin, level->size, level->cells, along,
+                         w->bodies.pos + 4*i);
     }
     demi_cells_fill(w, n);
     return 1;
@@ -443,7 +456,7 @@ static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, 
 static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
                            const demi_level *level) {
     const dem_real *at = w->bodies.pos + 4*a;
-    const double x = (double)at[0], y = (double)at[1], z = (double)at[2];
+    const double x = demi_upright(p, at), y = (double)at[1], z = (double)at[2];
     const int *n = level->cells;
     /* bound on the rounding error of distances over a whole period */
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
@@ -451,7 +464,8 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double reach =
         ((double)w->bodies.pos[4*a + 3] + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
         slack;
-    const demi_stretch sx = demi_level_span(w, level, 0, x, reach);
+    const double slant = demi_slant(p), lean = (slant - 1)*reach;
+    const demi_stretch sx = demi_level_span(w, level, 0, x, reach*slant);
     const demi_stretch sy = demi_level_span(w, level, 1, y, reach);
     const demi_stretch sz = demi_level_span(w, level, 2, z, reach);
     int j, k;
@@ -464,7 +478,8 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
             demi_stretch s = sx;
             if (still < 0) continue;
             /* clips the row to the sphere of reach, which is shorter than the cube's edge */
-            if (s.last - s.first > 3 && !s.round) s = demi_level_span(w, level, 0, x, sqrt(still));
+            if (s.last - s.first > 3 && !s.round)
+                s = demi_level_span(w, level, 0, x, sqrt(still) + lean);
             if (s.first < 0) {
                 demi_level_offer(w, d, p, a, row, s.first + n[0], n[0] - 1);
                 s.first = 0;
@@ -758,12 +773,15 @@ static void demi_rows_linked(dem_world *w, int d) {
 /* Computes the bins of a body's box: for each axis the first one and how many more. */
 static void demi_bins_of(dem_world *w, int body) {
     const double grow = ((double)w->bodies.pos[4*body + 3] + (double)demi_cover(w)/2)*(1 + 1e-5);
+    const demi_periods p = demi_periods_of(w);
+    const dem_real *place = w->bodies.pos + 4*body;
     int32_t *at = w->bin_of + 6*body;
     int k;
     for (k = 0; k < 3; k++) {
         const int n = w->bins[k], round = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
-        const double x = (double)w->bodies.pos[4*body + k] - w->cell_origin[k];
-        const double lo = floor((x - grow)/w->bin_size[k]), hi = floor((x + grow)/w->bin_size[k]);
+        const double x = (k ? (double)place[k] : demi_upright(&p, place)) - w->cell_origin[k];
+        const double far = k ? grow : grow*demi_slant(&p);
+        const double lo = floor((x - far)/w->bin_size[k]), hi = floor((x + far)/w->bin_size[k]);
         if (round && hi - lo + 1 >= n) { at[2*k] = 0; at[2*k + 1] = n - 1; continue; }
         at[2*k] = (int32_t)(round ? lo - n*floor(lo/n) : DEMI_MAX(DEMI_MIN(lo, n - 1), 0));
         at[2*k + 1] = (int32_t)(round ? hi - lo : DEMI_MAX(DEMI_MIN(hi, n - 1), 0) - at[2*k]);
@@ -793,7 +811,7 @@ static int demi_bins_lay(dem_world *w) {
     least = 2*least/DEMI_MAX(w->bodies.count, 1) + (double)demi_cover(w) + 1e-300;
     if (!DEMI_GROW(w, w->bin_of, 6*(size_t)w->bodies.count + 6)) return 0;
     do {
-        demi_cells_lay(w->cell_origin, hi, least, w->bodies.count, w->bins, w->bin_size);
+        demi_cells_lay(w->cell_origin, hi, least, 1, w->bodies.count, w->bins, w->bin_size);
         for (i = 0, all = 0; i < w->bodies.count; i++) {
             const int32_t *at = w->bin_of + 6*i;
             demi_bins_of(w, i);

@@ -200,6 +200,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d bodies are on rails (dem_body_rail_set), "
                          "whose state slabs do not pass on; use threads, or walls instead of "
                          "these bodies", call, w->rail_count);
+    if (w->cell.on || w->cell.side[0] > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell of this world has been "
+                         "deformed (dem_cell_set), but borders of slabs do not move; use threads",
+                         call);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
                          "one along which the scene is longest", call, d->axis,

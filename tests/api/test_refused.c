@@ -137,6 +137,7 @@ static dem_trials_desc good_dem_trials_desc(refuser *r) { dem_trials_desc d; (vo
 static dem_mixing_desc good_dem_mixing_desc(refuser *r) { dem_mixing_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; d.radius_max = DEM_R(0.01); return d; }
 static dem_events_desc good_dem_events_desc(refuser *r) { (void)r; return DEM_EVENTS_DESC; }
 static dem_field_desc good_dem_field_desc(refuser *r) { dem_field_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; return d; }
+static dem_cell_desc good_dem_cell_desc(refuser *r) { dem_cell_desc d = DEM_CELL_DESC; (void)r; return d; }
 static dem_wall_part good_dem_wall_part(refuser *r) { static const char first[] = "a"; static dem_wall_part two[2]; (void)r; memset(two, 0, sizeof two); two[0].name = two[1].name = first; two[0].material.id = two[1].material.id = 1; return two[0]; }
 static dem_grains good_dem_grains(refuser *r) { static dem_real radii[2] = {0.001f, 0.001f}; static dem_real places[6]; dem_grains g; (void)r; memset(&g, 0, sizeof g); memcpy(places, corner_reals, sizeof places); g.count = 2; g.positions = places; g.radii = radii; return g; }
 static dem_replay_desc good_dem_replay_desc(refuser *r) { dem_replay_desc d = DEM_REPLAY_DESC; (void)r; return d; }

@@ -86,6 +86,8 @@ int main(int argc, char **argv) {
         ALL_ROWS(dem_material_desc, demi_material_rows);
         ALL_ROWS(dem_pair, demi_pair_rows);
         ALL_ROWS(dem_field_desc, demi_field_rows);
+        ALL_ROWS(dem_cell_desc, demi_cell_rows);
+        PART_ROWS(demi_strained, demi_number_rows, cell);
         ALL_ROWS(dem_feed_desc, demi_feed_rows);
         ALL_ROWS(dem_outlet_desc, demi_outlet_rows);
         ALL_ROWS(dem_motion, demi_motion_rows);
