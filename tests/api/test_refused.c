@@ -131,6 +131,7 @@ static dem_profile good_dem_profile(refuser *r) { static int32_t s[2] = {0, 1}; 
 static dem_sieve_desc good_dem_sieve_desc(refuser *r) { dem_sieve_desc d; (void)r; memset(&d, 0, sizeof d); d.normal = at(0, 0, 1); d.point = at(0, 0, -1); d.aperture = DEM_R(0.01); d.bar = DEM_R(0.002); return d; }
 static dem_motion good_dem_motion(refuser *r) { dem_motion m = DEM_MOTION; (void)r; m.kind = DEM_MOTION_TRANSLATING; m.velocity = at(0, 0, 1e-3); return m; }
 static dem_joint_desc good_dem_joint_desc(refuser *r) { dem_joint_desc d = DEM_JOINT_DESC; d.kind = DEM_JOINT_POINT; d.a = dem_body_id_get(r->world, 0); d.b = dem_body_id_get(r->world, 1); return d; }
+static dem_rail_desc good_dem_rail_desc(refuser *r) { dem_rail_desc d = DEM_RAIL_DESC; (void)r; d.axes = DEM_RAIL_Z; return d; }
 static dem_feed_desc good_dem_feed_desc(refuser *r) { dem_feed_desc d = DEM_FEED_DESC; (void)r; d.material.id = 1; d.class_count = 1; d.radius[0] = DEM_R(1e-3); d.amount[0] = 1; d.rate = 1; d.box = box_of(0.02, 0.02, 0.02, 0.04, 0.04, 0.04); return d; }
 static dem_outlet_desc good_dem_outlet_desc(refuser *r) { dem_outlet_desc d = DEM_OUTLET_DESC; (void)r; d.box = box_of(1, 1, 1, 2, 2, 2); return d; }
 static dem_trials_desc good_dem_trials_desc(refuser *r) { dem_trials_desc d; (void)r; memset(&d, 0, sizeof d); return d; }
