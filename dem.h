@@ -30081,6 +30081,11 @@ static int demi_cell_refuse(dem_world *w, const char *call) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
                   "joint%s, whose anchors would follow the flow of the cell at both ends; remove "
                   "the joints", call, w->joint_count, w->joint_count == 1 ? "" : "s");
+    else if (w->rail_count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and %d bod%s on rails: "
+                  "velocities in the cell are relative to its flow, those of rails are not; remove "
+                  "the rails (axes 0)", call, w->rail_count,
+                  w->rail_count == 1 ? "y is" : "ies are");
     else if (w->feed_count || w->outlet_count)
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the regions of %d "
                   "feeds and %d outlets would not; fill the cell before it deforms", call,
@@ -36175,8 +36180,8 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
-                            sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
-                            sizeof(demi_ongoing), sizeof(demi_impacts),
+                            sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written),
+                            sizeof(demi_event_counts), sizeof(demi_ongoing), sizeof(demi_impacts),
                             (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;

@@ -25,6 +25,7 @@ static const refused_field refused_fields[] = {
     {"dem_pair", "cohesion", offsetof(dem_pair, cohesion), FIELD_REAL, sizeof(((dem_pair *)0)->cohesion)},
     {"dem_pair", "compliance", offsetof(dem_pair, compliance), FIELD_REAL, sizeof(((dem_pair *)0)->compliance)},
     {"dem_pair", "stiffness_adhesion", offsetof(dem_pair, stiffness_adhesion), FIELD_REAL, sizeof(((dem_pair *)0)->stiffness_adhesion)},
+    {"dem_pair", "ignored", offsetof(dem_pair, ignored), FIELD_INT, sizeof(((dem_pair *)0)->ignored)},
     {"dem_sizes", "kind", offsetof(dem_sizes, kind), FIELD_INT, sizeof(((dem_sizes *)0)->kind)},
     {"dem_sizes", "by_count", offsetof(dem_sizes, by_count), FIELD_INT, sizeof(((dem_sizes *)0)->by_count)},
     {"dem_sizes", "min", offsetof(dem_sizes, min), FIELD_REAL, sizeof(((dem_sizes *)0)->min)},
@@ -37,6 +38,14 @@ static const refused_field refused_fields[] = {
     {"dem_sizes", "radius", offsetof(dem_sizes, radius), FIELD_REAL, sizeof(((dem_sizes *)0)->radius)},
     {"dem_sizes", "passing", offsetof(dem_sizes, passing), FIELD_DOUBLE, sizeof(((dem_sizes *)0)->passing)},
     {"dem_sizes", "deviation", offsetof(dem_sizes, deviation), FIELD_REAL, sizeof(((dem_sizes *)0)->deviation)},
+    {"dem_selection", "group", offsetof(dem_selection, group), FIELD_INT, sizeof(((dem_selection *)0)->group)},
+    {"dem_selection", "material", offsetof(dem_selection, material), FIELD_INT, sizeof(((dem_selection *)0)->material)},
+    {"dem_selection", "shape", offsetof(dem_selection, shape), FIELD_INT, sizeof(((dem_selection *)0)->shape)},
+    {"dem_selection", "radius_min", offsetof(dem_selection, radius_min), FIELD_REAL, sizeof(((dem_selection *)0)->radius_min)},
+    {"dem_selection", "radius_max", offsetof(dem_selection, radius_max), FIELD_REAL, sizeof(((dem_selection *)0)->radius_max)},
+    {"dem_selection", "region", offsetof(dem_selection, region), FIELD_POINTER, sizeof(((dem_selection *)0)->region)},
+    {"dem_selection", "count", offsetof(dem_selection, count), FIELD_INT, sizeof(((dem_selection *)0)->count)},
+    {"dem_selection", "bodies", offsetof(dem_selection, bodies), FIELD_POINTER, sizeof(((dem_selection *)0)->bodies)},
     {"dem_cluster_desc", "count", offsetof(dem_cluster_desc, count), FIELD_INT, sizeof(((dem_cluster_desc *)0)->count)},
     {"dem_cluster_desc", "positions", offsetof(dem_cluster_desc, positions), FIELD_POINTER, sizeof(((dem_cluster_desc *)0)->positions)},
     {"dem_cluster_desc", "radii", offsetof(dem_cluster_desc, radii), FIELD_POINTER, sizeof(((dem_cluster_desc *)0)->radii)},
@@ -90,6 +99,10 @@ static const refused_field refused_fields[] = {
     {"dem_joint_desc", "axis", offsetof(dem_joint_desc, axis), FIELD_REAL, sizeof(((dem_joint_desc *)0)->axis)},
     {"dem_joint_desc", "speed", offsetof(dem_joint_desc, speed), FIELD_REAL, sizeof(((dem_joint_desc *)0)->speed)},
     {"dem_joint_desc", "torque", offsetof(dem_joint_desc, torque), FIELD_REAL, sizeof(((dem_joint_desc *)0)->torque)},
+    {"dem_rail_desc", "axes", offsetof(dem_rail_desc, axes), FIELD_INT, sizeof(((dem_rail_desc *)0)->axes)},
+    {"dem_rail_desc", "velocity", offsetof(dem_rail_desc, velocity), FIELD_REAL, sizeof(((dem_rail_desc *)0)->velocity)},
+    {"dem_rail_desc", "spin", offsetof(dem_rail_desc, spin), FIELD_REAL, sizeof(((dem_rail_desc *)0)->spin)},
+    {"dem_rail_desc", "wall", offsetof(dem_rail_desc, wall), FIELD_INT, sizeof(((dem_rail_desc *)0)->wall)},
     {"dem_feed_desc", "material", offsetof(dem_feed_desc, material), FIELD_INT, sizeof(((dem_feed_desc *)0)->material)},
     {"dem_feed_desc", "class_count", offsetof(dem_feed_desc, class_count), FIELD_INT, sizeof(((dem_feed_desc *)0)->class_count)},
     {"dem_feed_desc", "radius", offsetof(dem_feed_desc, radius), FIELD_REAL, sizeof(((dem_feed_desc *)0)->radius)},
@@ -117,6 +130,11 @@ static const refused_field refused_fields[] = {
     {"dem_outlet_desc", "radius", offsetof(dem_outlet_desc, radius), FIELD_REAL, sizeof(((dem_outlet_desc *)0)->radius)},
     {"dem_outlet_desc", "material", offsetof(dem_outlet_desc, material), FIELD_INT, sizeof(((dem_outlet_desc *)0)->material)},
     {"dem_outlet_desc", "keep", offsetof(dem_outlet_desc, keep), FIELD_INT, sizeof(((dem_outlet_desc *)0)->keep)},
+    {"dem_outlet_desc", "residence_bin", offsetof(dem_outlet_desc, residence_bin), FIELD_DOUBLE, sizeof(((dem_outlet_desc *)0)->residence_bin)},
+    {"dem_cell_desc", "rate", offsetof(dem_cell_desc, rate), FIELD_REAL, sizeof(((dem_cell_desc *)0)->rate)},
+    {"dem_cell_desc", "shear", offsetof(dem_cell_desc, shear), FIELD_REAL, sizeof(((dem_cell_desc *)0)->shear)},
+    {"dem_cell_desc", "stress", offsetof(dem_cell_desc, stress), FIELD_REAL, sizeof(((dem_cell_desc *)0)->stress)},
+    {"dem_cell_desc", "rate_most", offsetof(dem_cell_desc, rate_most), FIELD_REAL, sizeof(((dem_cell_desc *)0)->rate_most)},
     {"dem_trials_desc", "duration", offsetof(dem_trials_desc, duration), FIELD_DOUBLE, sizeof(((dem_trials_desc *)0)->duration)},
     {"dem_trials_desc", "budget", offsetof(dem_trials_desc, budget), FIELD_DOUBLE, sizeof(((dem_trials_desc *)0)->budget)},
     {"dem_trials_desc", "tolerance", offsetof(dem_trials_desc, tolerance), FIELD_DOUBLE, sizeof(((dem_trials_desc *)0)->tolerance)},
@@ -124,6 +142,9 @@ static const refused_field refused_fields[] = {
     {"dem_trials_desc", "observable_count", offsetof(dem_trials_desc, observable_count), FIELD_INT, sizeof(((dem_trials_desc *)0)->observable_count)},
     {"dem_trials_desc", "progress", offsetof(dem_trials_desc, progress), FIELD_POINTER, sizeof(((dem_trials_desc *)0)->progress)},
     {"dem_trials_desc", "user", offsetof(dem_trials_desc, user), FIELD_POINTER, sizeof(((dem_trials_desc *)0)->user)},
+    {"dem_events_desc", "function", offsetof(dem_events_desc, function), FIELD_POINTER, sizeof(((dem_events_desc *)0)->function)},
+    {"dem_events_desc", "user", offsetof(dem_events_desc, user), FIELD_POINTER, sizeof(((dem_events_desc *)0)->user)},
+    {"dem_events_desc", "begins", offsetof(dem_events_desc, begins), FIELD_INT, sizeof(((dem_events_desc *)0)->begins)},
     {"dem_field_desc", "box", offsetof(dem_field_desc, box), FIELD_REAL, sizeof(((dem_field_desc *)0)->box)},
     {"dem_field_desc", "cells", offsetof(dem_field_desc, cells), FIELD_INT, sizeof(((dem_field_desc *)0)->cells)},
     {"dem_field_desc", "start", offsetof(dem_field_desc, start), FIELD_DOUBLE, sizeof(((dem_field_desc *)0)->start)},
@@ -134,6 +155,16 @@ static const refused_field refused_fields[] = {
     {"dem_field_desc", "radius_max", offsetof(dem_field_desc, radius_max), FIELD_REAL, sizeof(((dem_field_desc *)0)->radius_max)},
     {"dem_field_desc", "stress", offsetof(dem_field_desc, stress), FIELD_INT, sizeof(((dem_field_desc *)0)->stress)},
     {"dem_field_desc", "width", offsetof(dem_field_desc, width), FIELD_REAL, sizeof(((dem_field_desc *)0)->width)},
+    {"dem_field_desc", "group", offsetof(dem_field_desc, group), FIELD_INT, sizeof(((dem_field_desc *)0)->group)},
+    {"dem_field_desc", "variance", offsetof(dem_field_desc, variance), FIELD_INT, sizeof(((dem_field_desc *)0)->variance)},
+    {"dem_field_desc", "bodies", offsetof(dem_field_desc, bodies), FIELD_INT, sizeof(((dem_field_desc *)0)->bodies)},
+    {"dem_mixing_desc", "box", offsetof(dem_mixing_desc, box), FIELD_REAL, sizeof(((dem_mixing_desc *)0)->box)},
+    {"dem_mixing_desc", "cells", offsetof(dem_mixing_desc, cells), FIELD_INT, sizeof(((dem_mixing_desc *)0)->cells)},
+    {"dem_mixing_desc", "material", offsetof(dem_mixing_desc, material), FIELD_INT, sizeof(((dem_mixing_desc *)0)->material)},
+    {"dem_mixing_desc", "radius_min", offsetof(dem_mixing_desc, radius_min), FIELD_REAL, sizeof(((dem_mixing_desc *)0)->radius_min)},
+    {"dem_mixing_desc", "radius_max", offsetof(dem_mixing_desc, radius_max), FIELD_REAL, sizeof(((dem_mixing_desc *)0)->radius_max)},
+    {"dem_mixing_desc", "centre", offsetof(dem_mixing_desc, centre), FIELD_REAL, sizeof(((dem_mixing_desc *)0)->centre)},
+    {"dem_mixing_desc", "axis", offsetof(dem_mixing_desc, axis), FIELD_REAL, sizeof(((dem_mixing_desc *)0)->axis)},
     {"dem_wall_part", "name", offsetof(dem_wall_part, name), FIELD_POINTER, sizeof(((dem_wall_part *)0)->name)},
     {"dem_wall_part", "material", offsetof(dem_wall_part, material), FIELD_INT, sizeof(((dem_wall_part *)0)->material)},
     {"dem_grains", "count", offsetof(dem_grains, count), FIELD_INT, sizeof(((dem_grains *)0)->count)},
@@ -156,6 +187,9 @@ static const refused_field refused_fields[] = {
     {"dem_output_desc", "wall", offsetof(dem_output_desc, wall), FIELD_INT, sizeof(((dem_output_desc *)0)->wall)},
     {"dem_output_desc", "columns", offsetof(dem_output_desc, columns), FIELD_POINTER, sizeof(((dem_output_desc *)0)->columns)},
     {"dem_output_desc", "user", offsetof(dem_output_desc, user), FIELD_POINTER, sizeof(((dem_output_desc *)0)->user)},
+    {"dem_output_desc", "field", offsetof(dem_output_desc, field), FIELD_INT, sizeof(((dem_output_desc *)0)->field)},
+    {"dem_output_desc", "z0", offsetof(dem_output_desc, z0), FIELD_REAL, sizeof(((dem_output_desc *)0)->z0)},
+    {"dem_output_desc", "z1", offsetof(dem_output_desc, z1), FIELD_REAL, sizeof(((dem_output_desc *)0)->z1)},
     {"dem_slabs_desc", "axis", offsetof(dem_slabs_desc, axis), FIELD_INT, sizeof(((dem_slabs_desc *)0)->axis)},
     {"dem_slabs_desc", "count", offsetof(dem_slabs_desc, count), FIELD_INT, sizeof(((dem_slabs_desc *)0)->count)},
     {"dem_slabs_desc", "first", offsetof(dem_slabs_desc, first), FIELD_INT, sizeof(((dem_slabs_desc *)0)->first)},
@@ -171,6 +205,9 @@ TAKE_OUT(dem_coefficients)
 TAKE_CONST(dem_sizes)
 TAKE_OUT(dem_body_state)
 TAKE_CONST(dem_body_state)
+TAKE_CONST(dem_selection)
+TAKE_OUT(dem_body)
+TAKE_OUT(dem_bodies_means)
 TAKE_CONST(dem_cluster_desc)
 TAKE_CONST(dem_mesh)
 TAKE_CONST(dem_shape)
@@ -178,23 +215,35 @@ TAKE_OUT(dem_shape_info)
 TAKE_CONST(dem_profile)
 TAKE_CONST(dem_sieve_desc)
 TAKE_CONST(dem_motion)
+TAKE_OUT(dem_vec3)
 TAKE_OUT(dem_pose)
 TAKE_OUT(dem_wall_loads)
 TAKE_CONST(dem_joint_desc)
 TAKE_OUT(dem_joint_state)
+TAKE_CONST(dem_rail_desc)
+TAKE_OUT(dem_rail_state)
 TAKE_CONST(dem_feed_desc)
 TAKE_OUT(dem_feed_state)
 TAKE_CONST(dem_outlet_desc)
 TAKE_OUT(dem_outlet_state)
 TAKE_OUT(dem_advice)
 TAKE_OUT(dem_finding)
+TAKE_CONST(dem_cell_desc)
+TAKE_OUT(dem_cell_state)
 TAKE_CONST(dem_trials_desc)
 TAKE_OUT(dem_trials)
 TAKE_OUT(dem_contact_info)
+TAKE_CONST(dem_events_desc)
+TAKE_OUT(dem_impacts)
+TAKE_OUT(dem_wear)
 TAKE_OUT(dem_servo)
+TAKE_OUT(dem_stress)
 TAKE_CONST(dem_field_desc)
 TAKE_OUT(dem_field_data)
 TAKE_OUT(dem_field_cell)
+TAKE_OUT(dem_body_means)
+TAKE_CONST(dem_mixing_desc)
+TAKE_OUT(dem_mixing)
 TAKE_OUT(dem_repose)
 TAKE_OUT(dem_mesh)
 TAKE_OUT(dem_mesh_health)
@@ -349,6 +398,12 @@ static int call_dem_body_set(refuser *r) {
     return dem_body_set(r->world, body, state) == DEM_OK;
 }
 
+static int call_dem_body_radius_set(refuser *r) {
+    dem_body body = take_dem_body(r, 2, "body");
+    dem_real radius = take_dem_real(r, 3, "radius");
+    return dem_body_radius_set(r->world, body, radius) == DEM_OK;
+}
+
 static int call_dem_temperature_get(refuser *r) {
     (void)dem_temperature_get(r->world);
     return 1;
@@ -368,6 +423,50 @@ static int call_dem_bodies_get(refuser *r) {
 static int call_dem_body_id_get(refuser *r) {
     int index = take_int(r, 2, "index");
     return dem_body_id_get(r->world, index).slot != 0;
+}
+
+static int call_dem_group_get(refuser *r) {
+    const char *name = take_const_char(r, 2, "name");
+    (void)dem_group_get(r->world, name);
+    return 1;
+}
+
+static int call_dem_bodies_select(refuser *r) {
+    const dem_selection *selection = take_const_dem_selection(r, 2, "selection");
+    dem_body *out = take_out_dem_body(r, 3, "out");
+    int capacity = take_int(r, 4, "capacity");
+    return dem_bodies_select(r->world, selection, out, capacity) > 0;
+}
+
+static int call_dem_bodies_group_set(refuser *r) {
+    const dem_selection *selection = take_const_dem_selection(r, 2, "selection");
+    dem_group group = take_dem_group(r, 3, "group");
+    int member = take_int(r, 4, "member");
+    return dem_bodies_group_set(r->world, selection, group, member) > 0;
+}
+
+static int call_dem_bodies_velocity_set(refuser *r) {
+    const dem_selection *selection = take_const_dem_selection(r, 2, "selection");
+    dem_vec3 velocity = take_dem_vec3(r, 3, "velocity");
+    dem_vec3 spin = take_dem_vec3(r, 4, "spin");
+    return dem_bodies_velocity_set(r->world, selection, velocity, spin) > 0;
+}
+
+static int call_dem_bodies_fixed_set(refuser *r) {
+    const dem_selection *selection = take_const_dem_selection(r, 2, "selection");
+    int fixed = take_int(r, 3, "fixed");
+    return dem_bodies_fixed_set(r->world, selection, fixed) > 0;
+}
+
+static int call_dem_bodies_remove(refuser *r) {
+    const dem_selection *selection = take_const_dem_selection(r, 2, "selection");
+    return dem_bodies_remove(r->world, selection) > 0;
+}
+
+static int call_dem_bodies_means_get(refuser *r) {
+    const dem_selection *selection = take_const_dem_selection(r, 2, "selection");
+    dem_bodies_means *means = take_out_dem_bodies_means(r, 3, "means");
+    return dem_bodies_means_get(r->world, selection, means) == DEM_OK;
 }
 
 static int call_dem_body_reals_get(refuser *r) {
@@ -550,6 +649,18 @@ static int call_dem_wall_motion_set(refuser *r) {
     return dem_wall_motion_set(r->world, wall, motion) == DEM_OK;
 }
 
+static int call_dem_wall_surface_velocity_set(refuser *r) {
+    dem_wall wall = take_dem_wall(r, 2, "wall");
+    dem_vec3 velocity = take_dem_vec3(r, 3, "velocity");
+    return dem_wall_surface_velocity_set(r->world, wall, velocity) == DEM_OK;
+}
+
+static int call_dem_wall_surface_velocity_get(refuser *r) {
+    dem_wall wall = take_dem_wall(r, 2, "wall");
+    dem_vec3 *velocity = take_out_dem_vec3(r, 3, "velocity");
+    return dem_wall_surface_velocity_get(r->world, wall, velocity) == DEM_OK;
+}
+
 static int call_dem_wall_pose_get(refuser *r) {
     dem_wall wall = take_dem_wall(r, 2, "wall");
     dem_pose *pose = take_out_dem_pose(r, 3, "pose");
@@ -594,6 +705,18 @@ static int call_dem_joint_get(refuser *r) {
 static int call_dem_joint_remove(refuser *r) {
     dem_joint joint = take_dem_joint(r, 2, "joint");
     return dem_joint_remove(r->world, joint) == DEM_OK;
+}
+
+static int call_dem_body_rail_set(refuser *r) {
+    dem_body body = take_dem_body(r, 2, "body");
+    const dem_rail_desc *desc = take_const_dem_rail_desc(r, 3, "desc");
+    return dem_body_rail_set(r->world, body, desc) == DEM_OK;
+}
+
+static int call_dem_body_reaction_get(refuser *r) {
+    dem_body body = take_dem_body(r, 2, "body");
+    dem_rail_state *state = take_out_dem_rail_state(r, 3, "state");
+    return dem_body_reaction_get(r->world, body, state) == DEM_OK;
 }
 
 static int call_dem_feed_add(refuser *r) {
@@ -676,6 +799,16 @@ static int call_dem_progress_print(refuser *r) {
 static int call_dem_world_gravity_set(refuser *r) {
     dem_vec3 gravity = take_dem_vec3(r, 2, "gravity");
     return dem_world_gravity_set(r->world, gravity) == DEM_OK;
+}
+
+static int call_dem_cell_set(refuser *r) {
+    const dem_cell_desc *desc = take_const_dem_cell_desc(r, 2, "desc");
+    return dem_cell_set(r->world, desc) == DEM_OK;
+}
+
+static int call_dem_cell_state_get(refuser *r) {
+    dem_cell_state *state = take_out_dem_cell_state(r, 2, "state");
+    return dem_cell_state_get(r->world, state) == DEM_OK;
 }
 
 static int call_dem_world_dt_set(refuser *r) {
@@ -777,10 +910,57 @@ static int call_dem_candidates_rebuild(refuser *r) {
     return dem_candidates_rebuild(r->world) == DEM_OK;
 }
 
+static int call_dem_events_record(refuser *r) {
+    const dem_events_desc *desc = take_const_dem_events_desc(r, 2, "desc");
+    return dem_events_record(r->world, desc) == DEM_OK;
+}
+
+static int call_dem_events_stop(refuser *r) {
+    return dem_events_stop(r->world) == DEM_OK;
+}
+
+static int call_dem_events_open_each(refuser *r) {
+    dem_event_fn fn = take_dem_event_fn(r, 2, "fn");
+    void *user = take_out_void(r, 3, "user");
+    return dem_events_open_each(r->world, fn, user) > 0;
+}
+
+static int call_dem_impacts_get(refuser *r) {
+    dem_material a = take_dem_material(r, 2, "a");
+    dem_material b = take_dem_material(r, 3, "b");
+    dem_impacts *impacts = take_out_dem_impacts(r, 4, "impacts");
+    return dem_impacts_get(r->world, a, b, impacts) == DEM_OK;
+}
+
+static int call_dem_impacts_csv_write(refuser *r) {
+    const char *path = take_const_char(r, 2, "path");
+    return dem_impacts_csv_write(r->world, path) == DEM_OK;
+}
+
+static int call_dem_wall_wear_get(refuser *r) {
+    dem_wall wall = take_dem_wall(r, 2, "wall");
+    double coefficient = take_double(r, 3, "coefficient");
+    double hardness = take_double(r, 4, "hardness");
+    dem_wear *wear = take_out_dem_wear(r, 5, "wear");
+    return dem_wall_wear_get(r->world, wall, coefficient, hardness, wear) == DEM_OK;
+}
+
+static int call_dem_wall_wear_facets_get(refuser *r) {
+    dem_wall wall = take_dem_wall(r, 2, "wall");
+    double *work = take_out_double(r, 3, "work");
+    int capacity = take_int(r, 4, "capacity");
+    return dem_wall_wear_facets_get(r->world, wall, work, capacity) > 0;
+}
+
 static int call_dem_wall_servo_get(refuser *r) {
     dem_wall wall = take_dem_wall(r, 2, "wall");
     dem_servo *servo = take_out_dem_servo(r, 3, "servo");
     return dem_wall_servo_get(r->world, wall, servo) == DEM_OK;
+}
+
+static int call_dem_stress_get(refuser *r) {
+    dem_stress *stress = take_out_dem_stress(r, 2, "stress");
+    return dem_stress_get(r->world, stress) == DEM_OK;
 }
 
 static int call_dem_field_add(refuser *r) {
@@ -803,9 +983,21 @@ static int call_dem_field_cell_get(refuser *r) {
     return dem_field_cell_get(r->world, field, i, j, k, cell) == DEM_OK;
 }
 
+static int call_dem_body_means_get(refuser *r) {
+    dem_body body = take_dem_body(r, 2, "body");
+    dem_body_means *means = take_out_dem_body_means(r, 3, "means");
+    return dem_body_means_get(r->world, body, means) == DEM_OK;
+}
+
 static int call_dem_field_reset(refuser *r) {
     dem_field field = take_dem_field(r, 2, "field");
     return dem_field_reset(r->world, field) == DEM_OK;
+}
+
+static int call_dem_mixing_get(refuser *r) {
+    const dem_mixing_desc *desc = take_const_dem_mixing_desc(r, 2, "desc");
+    dem_mixing *mixing = take_out_dem_mixing(r, 3, "mixing");
+    return dem_mixing_get(r->world, desc, mixing) == DEM_OK;
 }
 
 static int call_dem_repose_heap_get(refuser *r) {
@@ -973,6 +1165,28 @@ static int call_dem_wall_loads_csv_write(refuser *r) {
     return dem_wall_loads_csv_write(r->world, wall, path) == DEM_OK;
 }
 
+static int call_dem_bodies_csv_write(refuser *r) {
+    const char *path = take_const_char(r, 2, "path");
+    return dem_bodies_csv_write(r->world, path) == DEM_OK;
+}
+
+static int call_dem_contacts_csv_write(refuser *r) {
+    const char *path = take_const_char(r, 2, "path");
+    return dem_contacts_csv_write(r->world, path) == DEM_OK;
+}
+
+static int call_dem_field_csv_write(refuser *r) {
+    dem_field field = take_dem_field(r, 2, "field");
+    const char *path = take_const_char(r, 3, "path");
+    return dem_field_csv_write(r->world, field, path) == DEM_OK;
+}
+
+static int call_dem_outlet_residence_csv_write(refuser *r) {
+    dem_outlet outlet = take_dem_outlet(r, 2, "outlet");
+    const char *path = take_const_char(r, 3, "path");
+    return dem_outlet_residence_csv_write(r->world, outlet, path) == DEM_OK;
+}
+
 static int call_dem_replay_open(refuser *r) {
     const char *path = take_const_char(r, 2, "path");
     const dem_replay_desc *desc = take_const_dem_replay_desc(r, 3, "desc");
@@ -987,6 +1201,17 @@ static int call_dem_checkpoint_write(refuser *r) {
 static int call_dem_checkpoint_read(refuser *r) {
     const char *path = take_const_char(r, 2, "path");
     return dem_checkpoint_read(r->world, path) == DEM_OK;
+}
+
+static int call_dem_checkpoint_read_changed(refuser *r) {
+    const char *path = take_const_char(r, 2, "path");
+    const char *allowed = take_const_char(r, 3, "allowed");
+    return dem_checkpoint_read_changed(r->world, path, allowed) == DEM_OK;
+}
+
+static int call_dem_checkpoint_changes_get(refuser *r) {
+    (void)dem_checkpoint_changes_get(r->world);
+    return 1;
 }
 
 static int call_dem_output_add(refuser *r) {
@@ -1051,10 +1276,18 @@ static const refused_call refused_calls[] = {
     {"dem_body_remove", call_dem_body_remove, 0},
     {"dem_body_get", call_dem_body_get, 1},
     {"dem_body_set", call_dem_body_set, 0},
+    {"dem_body_radius_set", call_dem_body_radius_set, 0},
     {"dem_temperature_get", call_dem_temperature_get, 1},
     {"dem_temperature_set", call_dem_temperature_set, 0},
     {"dem_bodies_get", call_dem_bodies_get, 1},
     {"dem_body_id_get", call_dem_body_id_get, 1},
+    {"dem_group_get", call_dem_group_get, 1},
+    {"dem_bodies_select", call_dem_bodies_select, 1},
+    {"dem_bodies_group_set", call_dem_bodies_group_set, 0},
+    {"dem_bodies_velocity_set", call_dem_bodies_velocity_set, 0},
+    {"dem_bodies_fixed_set", call_dem_bodies_fixed_set, 0},
+    {"dem_bodies_remove", call_dem_bodies_remove, 0},
+    {"dem_bodies_means_get", call_dem_bodies_means_get, 1},
     {"dem_body_reals_get", call_dem_body_reals_get, 1},
     {"dem_body_reals_set", call_dem_body_reals_set, 0},
     {"dem_bodies_reals_set", call_dem_bodies_reals_set, 0},
@@ -1081,6 +1314,8 @@ static const refused_call refused_calls[] = {
     {"dem_wall_sieve_add", call_dem_wall_sieve_add, 0},
     {"dem_sieve_blinded_get", call_dem_sieve_blinded_get, 1},
     {"dem_wall_motion_set", call_dem_wall_motion_set, 0},
+    {"dem_wall_surface_velocity_set", call_dem_wall_surface_velocity_set, 0},
+    {"dem_wall_surface_velocity_get", call_dem_wall_surface_velocity_get, 1},
     {"dem_wall_pose_get", call_dem_wall_pose_get, 1},
     {"dem_wall_remove", call_dem_wall_remove, 0},
     {"dem_wall_loads_get", call_dem_wall_loads_get, 1},
@@ -1089,6 +1324,8 @@ static const refused_call refused_calls[] = {
     {"dem_joint_motor_set", call_dem_joint_motor_set, 0},
     {"dem_joint_get", call_dem_joint_get, 1},
     {"dem_joint_remove", call_dem_joint_remove, 0},
+    {"dem_body_rail_set", call_dem_body_rail_set, 0},
+    {"dem_body_reaction_get", call_dem_body_reaction_get, 1},
     {"dem_feed_add", call_dem_feed_add, 0},
     {"dem_feed_get", call_dem_feed_get, 1},
     {"dem_outlet_add", call_dem_outlet_add, 0},
@@ -1103,6 +1340,8 @@ static const refused_call refused_calls[] = {
     {"dem_world_settle", call_dem_world_settle, 0},
     {"dem_progress_print", call_dem_progress_print, 1},
     {"dem_world_gravity_set", call_dem_world_gravity_set, 0},
+    {"dem_cell_set", call_dem_cell_set, 0},
+    {"dem_cell_state_get", call_dem_cell_state_get, 1},
     {"dem_world_dt_set", call_dem_world_dt_set, 0},
     {"dem_world_time_get", call_dem_world_time_get, 1},
     {"dem_world_steps_get", call_dem_world_steps_get, 1},
@@ -1121,11 +1360,21 @@ static const refused_call refused_calls[] = {
     {"dem_bonds_make", call_dem_bonds_make, 0},
     {"dem_candidates_get", call_dem_candidates_get, 1},
     {"dem_candidates_rebuild", call_dem_candidates_rebuild, 0},
+    {"dem_events_record", call_dem_events_record, 0},
+    {"dem_events_stop", call_dem_events_stop, 0},
+    {"dem_events_open_each", call_dem_events_open_each, 0},
+    {"dem_impacts_get", call_dem_impacts_get, 0},
+    {"dem_impacts_csv_write", call_dem_impacts_csv_write, 0},
+    {"dem_wall_wear_get", call_dem_wall_wear_get, 0},
+    {"dem_wall_wear_facets_get", call_dem_wall_wear_facets_get, 0},
     {"dem_wall_servo_get", call_dem_wall_servo_get, 1},
+    {"dem_stress_get", call_dem_stress_get, 1},
     {"dem_field_add", call_dem_field_add, 0},
     {"dem_field_get", call_dem_field_get, 1},
     {"dem_field_cell_get", call_dem_field_cell_get, 1},
+    {"dem_body_means_get", call_dem_body_means_get, 1},
     {"dem_field_reset", call_dem_field_reset, 0},
+    {"dem_mixing_get", call_dem_mixing_get, 1},
     {"dem_repose_heap_get", call_dem_repose_heap_get, 1},
     {"dem_repose_drum_get", call_dem_repose_drum_get, 1},
     {"dem_mesh_read", call_dem_mesh_read, 0},
@@ -1149,9 +1398,15 @@ static const refused_call refused_calls[] = {
     {"dem_walls_vtp_write", call_dem_walls_vtp_write, 0},
     {"dem_surfaces_vtp_write", call_dem_surfaces_vtp_write, 0},
     {"dem_wall_loads_csv_write", call_dem_wall_loads_csv_write, 0},
+    {"dem_bodies_csv_write", call_dem_bodies_csv_write, 0},
+    {"dem_contacts_csv_write", call_dem_contacts_csv_write, 0},
+    {"dem_field_csv_write", call_dem_field_csv_write, 0},
+    {"dem_outlet_residence_csv_write", call_dem_outlet_residence_csv_write, 0},
     {"dem_replay_open", call_dem_replay_open, 0},
     {"dem_checkpoint_write", call_dem_checkpoint_write, 0},
     {"dem_checkpoint_read", call_dem_checkpoint_read, 0},
+    {"dem_checkpoint_read_changed", call_dem_checkpoint_read_changed, 0},
+    {"dem_checkpoint_changes_get", call_dem_checkpoint_changes_get, 1},
     {"dem_output_add", call_dem_output_add, 0},
     {"dem_output_every_add", call_dem_output_every_add, 0},
     {"dem_output_remove", call_dem_output_remove, 0},

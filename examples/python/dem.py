@@ -43,6 +43,7 @@ except ImportError:
 VERSION_MAJOR = 0
 VERSION_MINOR = 1
 VERSION_PATCH = 0
+GROUPS = 32
 BODY_REALS = 8
 LAW_MEMORY = 16
 ROW_GROUP = 64
@@ -50,12 +51,22 @@ ROW_GROUP = 64
 SIEVES = 32
 POLYHEDRON_FACES = 100
 RINGS = 12
+RAIL_X = 1
+RAIL_Y = 2
+RAIL_Z = 4
+RAIL_SPIN_X = 8
+RAIL_SPIN_Y = 16
+RAIL_SPIN_Z = 32
+RAIL_ALL = 63
 CLASSES = 16
+RESIDENCE_BINS = 64
 OBSERVABLES = 8
 TRIALS = 8
+IMPACT_BINS = 120
+IMPACT_LIMITS = 121
 REPLAY_VALUES = 16
 OUTPUT_COLUMNS = 32
-EFFECTS = 16
+EFFECTS = 19
 VERSION = VERSION_MAJOR*10000 + VERSION_MINOR*100 + VERSION_PATCH
 # inline functions of dem.h, which the library exports under other names
 _INLINE = r"""
@@ -75,6 +86,7 @@ void dempy_law_mindlin_rescaled(const dem_contact *c, dem_real *memory, dem_cont
 void dempy_law_roll_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_step(c, memory, f); }
 void dempy_law_roll_constant(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_constant(c, memory, f); }
 void dempy_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_epsd(c, memory, f); }
+void dempy_law_twist(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_twist(c, memory, f); }
 """
 # ---- the shared library ------------------------------------------------------------------------
 
@@ -1145,6 +1157,16 @@ class Severity(enum.IntEnum):
     ERROR = 3
 
 
+class EventKind(enum.IntEnum):
+    """What a function of events is called for."""
+    # a contact has ended
+    END = 0
+    # a contact has begun
+    BEGIN = 1
+    # a contact exists: dem_events_open_each
+    OPEN = 2
+
+
 class OutputKind(enum.IntEnum):
     """The action of an output."""
     # calls a function
@@ -1161,6 +1183,14 @@ class OutputKind(enum.IntEnum):
     CSV = 5
     # dem_surfaces_vtp_write
     SURFACES = 6
+    # dem_walls_vtp_write, from z0 to z1
+    WALLS = 7
+    # dem_bodies_csv_write
+    BODIES_CSV = 8
+    # dem_contacts_csv_write
+    CONTACTS_CSV = 9
+    # dem_field_csv_write, of `field`
+    FIELD_CSV = 10
 
 
 class EffectState(enum.IntEnum):
@@ -1393,6 +1423,21 @@ class Wall(Id):
         motion = self.world._bound(motion, ('dem_wall_motion_set', self))
         self.world._ok(_lib.dem_wall_motion_set(self.world._at, self, motion))
 
+    def surface_velocity_set(self, velocity):
+        """Sets the velocity of the surface of a wall (m/s), for a belt: the wall does not move with it. The velocity is
+        in world axes and rotates with the wall from now on. At a contact the surface moves with the part of it across
+        the contact normal, so a curved or closed surface moves along itself everywhere, also at rims. 0 stops it.
+        """
+        self.world._ok(_lib.dem_wall_surface_velocity_set(self.world._at, self, velocity))
+
+    @property
+    def surface_velocity(self):
+        """Writes the velocity of the surface, in present world axes, to velocity."""
+        velocity = Vec3()
+        self.world._ok(_lib.dem_wall_surface_velocity_get(self.world._at, self, velocity))
+        self.world._with(velocity)
+        return velocity
+
     @property
     def pose(self):
         """Writes the present pose of a wall to pose."""
@@ -1416,6 +1461,29 @@ class Wall(Id):
     def loads_reset(self):
         """Sets the sums of a wall's loads to 0."""
         self.world._ok(_lib.dem_wall_loads_reset(self.world._at, self))
+
+    def wear(self, coefficient, hardness):
+        """Computes the wear of a wall by Archard's law: the worn volume is the work of sliding times a dimensionless
+        coefficient, over the hardness (Pa, > 0) of the softer side. coefficient: >= 0, that of Archard (per normal
+        force and distance) divided by the coefficient of friction.
+        """
+        wear = Wear()
+        self.world._ok(_lib.dem_wall_wear_get(self.world._at, self, coefficient, hardness, wear))
+        self.world._with(wear)
+        return wear
+
+    @property
+    def wear_facets(self):
+        """Writes the work of sliding on each facet (mesh) or segment (profile) of a wall, J, in the order of its
+        elements, at most `capacity` of them, and returns their number (0: the wall has no facets). The work counts
+        for the facet that is nearest to the contact point. work: or null. Returns -1 if contacts are not recorded.
+        """
+        capacity = self.world._number(_lib.dem_wall_wear_facets_get(self.world._at, self, None, 0))
+        work = (ctypes.c_double*max(capacity, 1))()
+        count = self.world._number(_lib.dem_wall_wear_facets_get(self.world._at, self, ctypes.cast(work,
+            ctypes.POINTER(ctypes.c_double)), capacity))
+        array = (work._type_*count).from_buffer(work)
+        return array
 
     @property
     def servo(self):
@@ -1457,13 +1525,27 @@ class Field(Id):
         return cell
 
     def reset(self):
-        """Sets the sums of a field and its number of samples to 0; the window of time stays."""
+        """Sets the sums of a field, the averages of its bodies and its number of samples to 0; the window of time stays."""
         self.world._ok(_lib.dem_field_reset(self.world._at, self))
+
+    def csv_write(self, path):
+        """Writes the cells of a field: centre (m) and what dem_field_cell_get returns."""
+        self.world._ok(_lib.dem_field_csv_write(self.world._at, self, os.fsencode(path)))
+
+
+@_struct
+class Group(Id):
+    """counts from 1"""
+    __slots__ = ()
+    c_name = 'dem_group'
+    rows = [
+        ('id', ctypes.c_int32, ''),
+    ]
 
 
 @_struct
 class Shape(Id):
-    """counts from 1"""
+    """counts from 1 in desc.groups"""
     __slots__ = ()
     c_name = 'dem_shape'
     rows = [
@@ -1515,6 +1597,14 @@ class Body(Id):
             ('fixed', fixed), ('orientation', orientation),) if value is not None})
         self.world._ok(_lib.dem_body_set(self.world._at, self, state))
 
+    def radius_set(self, radius):
+        """Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with it). Mass and
+        moments of inertia follow from the density of the material. Velocity, spin and contacts with their history
+        stay. The next step checks the time step, or chooses it again. The ledger counts the kinetic energy of the new
+        mass as `inserted`, and what springs gain as `growth`. See desc.growth for radii that change all the time.
+        """
+        self.world._ok(_lib.dem_body_radius_set(self.world._at, self, radius))
+
     @property
     def reals(self):
         """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
@@ -1532,6 +1622,35 @@ class Body(Id):
         """
         reals = _array(reals, Real, self.world._context.reals, 'reals')
         self.world._ok(_lib.dem_body_reals_set(self.world._at, self, reals))
+
+    def rail_set(self, *, axes=0, velocity=None, spin=None, wall=None):
+        """Puts a body on a rail, changes its rail, or takes it off (axes 0). Its velocity and spin along locked axes
+        become the prescribed ones at once. The forces and torques of dem_body_get include those of the rail.
+
+        axes: 0 to 63: sum of DEM_RAIL_ constants; 0 means no rail
+        velocity: m/s, along locked axes
+        spin: rad/s, about locked axes
+        wall: The body also has the velocity and spin of this wall along and about locked axes, as if it were part of
+            it, so any motion of a wall is a path for a body. Null, or a wall that is removed, means none.
+        """
+        desc = RailDesc(axes=axes, velocity=velocity, spin=spin, wall=wall)
+        self.world._ok(_lib.dem_body_rail_set(self.world._at, self, desc))
+
+    @property
+    def reaction(self):
+        """Writes the state of a body's rail to state. It is an error if the body has none."""
+        state = RailState()
+        self.world._ok(_lib.dem_body_reaction_get(self.world._at, self, state))
+        self.world._with(state)
+        return state
+
+    @property
+    def means(self):
+        """Writes the averages of a grain to means. An error if no field averages bodies."""
+        means = BodyMeans()
+        self.world._ok(_lib.dem_body_means_get(self.world._at, self, means))
+        self.world._with(means)
+        return means
 
 
 @_struct
@@ -1594,6 +1713,7 @@ class Contact(Struct):
         ('friction', Real, 'of the pair of materials'),
         ('friction_static', Real, ""),
         ('rolling_friction', Real, ""),
+        ('spinning_friction', Real, ""),
         ('sliding', Real, 'force->sliding of the last step; 0 when the contact begins'),
         ('material_a', ctypes.c_int32, 'ids of materials'),
         ('material_b', ctypes.c_int32, ""),
@@ -1728,6 +1848,7 @@ class ContactRows(Struct):
         ('friction', ctypes.POINTER(Real), ''),
         ('friction_static', ctypes.POINTER(Real), ''),
         ('rolling_friction', ctypes.POINTER(Real), ''),
+        ('spinning_friction', ctypes.POINTER(Real), ''),
         ('material_a', ctypes.POINTER(ctypes.c_int32), ''),
         ('material_b', ctypes.POINTER(ctypes.c_int32), ''),
         ('kad', ctypes.POINTER(Real), ''),
@@ -1794,7 +1915,9 @@ LawRateFn.__doc__ = 'For laws that change user-defined numbers (law_who): bounds
 
 @_struct
 class BodyState(Struct):
-    """The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and ignores the rest."""
+    """The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and ignores the rest;
+    dem_body_radius_set sets the radius.
+    """
     __slots__ = ()
     c_name = 'dem_body_state'
     rows = [
@@ -1834,6 +1957,21 @@ def _wrap_dem_reals_fn(function, context, struct):
 
 RealsFn = Function(_wrap_dem_reals_fn, None, ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(BodyState), Body, ctypes.c_double, Real, ctypes.c_void_p)
 RealsFn.__doc__ = "Advances the user-defined numbers of a body by one step, in place: `reals` has as many entries as desc.body_reals has names. rates: per second, the sum of what the law added for all contacts of the body. *body is its state at the end of the step, at `time` (s); dt: s. Without this function dem.h takes Euler's step, reals += rates dt, which is stable for dt below 2 over the fastest rate of decay. It is called once per body and step, from several threads."
+
+
+def _wrap_dem_growth_fn(function, context, struct):
+
+    def call(body, id, time, user):
+        try:
+            return int(function(body[0], id, time) or context.raised is not None)
+        except BaseException as error:
+            context.fail(error)
+            return 1
+    return ctypes.cast(ctypes.CFUNCTYPE(Real, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.c_void_p)(call), GrowthFn.c)
+
+
+GrowthFn = Function(_wrap_dem_growth_fn, Real, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.c_void_p)
+GrowthFn.__doc__ = 'Returns the rate of the radius of a body, m/s (desc.growth): > 0 grows, < 0 wears. *body is its state at `time` (s). Slabs call it from several threads.'
 
 
 ForceFn = Function(None, ctypes.c_void_p)
@@ -1910,6 +2048,15 @@ class WorldDesc(Struct):
          'Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers of '
          'walls stay as set; dem_wall_loads sums what they would gain.'),
         ('body_reals_user', ctypes.c_void_p, 'passed to body_reals_fn'),
+        ('growth', GrowthFn,
+         'Returns the rate of the radius of a body, m/s: > 0 grows, < 0 wears. Mass follows at constant '
+         'density, velocity and contact history stay. Each change of radii costs a new list and another '
+         'computation of forces. Null means constant radii; see dem_body_radius_set.'),
+        ('growth_user', ctypes.c_void_p, 'passed to growth'),
+        ('growth_interval', Real, 's, between two changes of radii; 0 means every step'),
+        ('groups', str,
+         'Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and '
+         '_. A body belongs to none until dem_bodies_group_set. Null means no groups.'),
         ('force', ForceFn, 'force on a body; null means none'),
         ('body_force', BodyForceFn, 'force and torque on a body; null means none'),
         ('force_user', ctypes.c_void_p, 'passed to both'),
@@ -2008,7 +2155,9 @@ class Pair(Struct):
         ('normal_damping', Real,
          'N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from restitution '
          '(linear) or none (hysteretic)'),
-        ('spinning_friction', Real, 'The next three are for impulses only: 0 when mixed, and must be 0 with springs.'),
+        ('spinning_friction', Real,
+         'mu_spin, >= 0: twisting friction, a moment about the normal up to mu_spin R* Fn; 0 when mixed. With '
+         'springs: dem_law_twist.'),
         ('cohesion', Real,
          'N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of the '
          'smaller radius.'),
@@ -2016,6 +2165,9 @@ class Pair(Struct):
          'm/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable for '
          'any value; oscillations that the step does not resolve are damped.'),
         ('stiffness_adhesion', Real, 'N/m, kad of the hysteretic law; its kun is stiffness/restitution^2'),
+        ('ignored', ctypes.c_int32,
+         '1: bodies and walls of these materials pass through each other. They make no contacts, and laws that'
+         ' act at a distance are not called for them. Mixed: 0.'),
     ]
 
 
@@ -2123,6 +2275,46 @@ class Bodies(Struct):
         ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; null if there are none'),
         ('rates', View(Real, 'count', 'real_count', const=True),
          'count x real_count, per s, of the last step; null likewise'),
+        ('groups', ctypes.POINTER(ctypes.c_uint32), 'bit id - 1: in that group; null without desc.groups'),
+    ]
+
+
+@_struct
+class Selection(Struct):
+    """Which bodies: those that fulfil every condition. DEM_SELECTION, all zero, selects every body."""
+    __slots__ = ()
+    c_name = 'dem_selection'
+    counts = {'count': ('bodies', 1)}
+    rows = [
+        ('group', Group, 'only members of this group; id 0 means any'),
+        ('material', Material, 'only of this material; id 0 means any'),
+        ('shape', Shape, 'only of this shape; id 0 means any, spheres included'),
+        ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means no limit'),
+        ('radius_max', Real, ""),
+        ('region', View(Region, const=True),
+         'Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means '
+         'anywhere.'),
+        ('count', ctypes.c_int, 'of bodies'),
+        ('bodies', View(Body, 'count', const=True),
+         'Only these; ids of bodies that are gone do not count. Null means any.'),
+    ]
+
+
+@_struct
+class BodiesMeans(Struct):
+    """Sums and means over selected bodies; zeros if there are none."""
+    __slots__ = ()
+    c_name = 'dem_bodies_means'
+    rows = [
+        ('bodies', ctypes.c_int, 'their number'),
+        ('mass', ctypes.c_double, 'kg, sum'),
+        ('centre', ctypes.c_double*3, 'm, of mass; positions in the periodic box'),
+        ('velocity', ctypes.c_double*3, 'm/s, of the centre of mass'),
+        ('spin', ctypes.c_double*3, 'rad/s and m: means over bodies'),
+        ('radius', ctypes.c_double, ""),
+        ('force', ctypes.c_double*3, 'N, sum: of the last step, without gravity'),
+        ('kinetic', ctypes.c_double, 'J, sums, those of fixed bodies included'),
+        ('rotational', ctypes.c_double, ""),
     ]
 
 
@@ -2237,7 +2429,7 @@ def _wrap_dem_motion_fn(function, context, struct):
 
 
 MotionFn = Function(_wrap_dem_motion_fn, None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)
-MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step (for its end and its middle; with impulses also for the end of the next step), from one thread. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
+MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step (for its end and its middle; with impulses also for the end of the next step), from one thread. dem_world_check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
 
 
 @_struct
@@ -2430,8 +2622,37 @@ class JointState(Struct):
 
 
 @_struct
+class RailDesc(Struct):
+    """A rail. Components of velocity and spin along axes that are not locked are ignored."""
+    __slots__ = ()
+    c_name = 'dem_rail_desc'
+    rows = [
+        ('axes', ctypes.c_int, '0 to 63: sum of DEM_RAIL_ constants; 0 means no rail'),
+        ('velocity', Vec3, 'm/s, along locked axes'),
+        ('spin', Vec3, 'rad/s, about locked axes'),
+        ('wall', Wall,
+         'The body also has the velocity and spin of this wall along and about locked axes, as if it were part'
+         ' of it, so any motion of a wall is a path for a body. Null, or a wall that is removed, means none.'),
+    ]
+
+
+@_struct
+class RailState(Struct):
+    """The reaction of a rail: what it exerts on the body."""
+    __slots__ = ()
+    c_name = 'dem_rail_state'
+    rows = [
+        ('desc', RailDesc, 'as set'),
+        ('force', Vec3, 'N, at the present time'),
+        ('torque', Vec3, "N m, about the body's centre"),
+        ('power', ctypes.c_double, 'W, of the rail on the body'),
+        ('work', ctypes.c_double, 'J, since the rail was set'),
+    ]
+
+
+@_struct
 class Feed(Id):
-    """largest number of size classes"""
+    """bins of the distribution of residence times"""
     __slots__ = ()
     c_name = 'dem_feed'
     rows = [
@@ -2467,6 +2688,12 @@ class Outlet(Id):
     def reset(self):
         """Sets the counts of an outlet to 0. dem_body_counts stays; grains inside have not entered."""
         self.world._ok(_lib.dem_outlet_reset(self.world._at, self))
+
+    def residence_csv_write(self, path):
+        """Writes the distribution of the residence times of an outlet with residence_bin: for each bin up to the last
+        one in use its middle (s), its grains, their fraction per s, and the fraction of all grains up to its end.
+        """
+        self.world._ok(_lib.dem_outlet_residence_csv_write(self.world._at, self, os.fsencode(path)))
 
 
 @_struct
@@ -2542,6 +2769,9 @@ class OutletDesc(Struct):
         ('radius', Real*CLASSES, 'm, ascending; a grain counts in the nearest class'),
         ('material', Material, 'only grains of this material; id 0 means all'),
         ('keep', ctypes.c_int, '1: grains stay and are only counted; at most 16 such'),
+        ('residence_bin', ctypes.c_double,
+         's, >= 0: width of a bin of residence times, which run from the insertion of a grain (grains that '
+         'were there before: from dem_outlet_add) until the outlet counts it; 0: not measured'),
     ]
 
 
@@ -2571,6 +2801,12 @@ class OutletState(Struct):
         ('held_mass', ctypes.c_double*CLASSES, ""),
         ('back_total_mass', ctypes.c_double, ""),
         ('held_total_mass', ctypes.c_double, ""),
+        ('residence', ctypes.c_double*CLASSES,
+         'residence_bin only: sums over the counted grains, per class, of their residence times, s, and of the'
+         ' squares, s2: the mean of class k is residence[k]/count[k]. Grains per bin; the last bin has all '
+         'longer times.'),
+        ('residence_square', ctypes.c_double*CLASSES, ""),
+        ('residence_count', ctypes.c_uint64*RESIDENCE_BINS, ''),
     ]
 
 
@@ -2604,6 +2840,38 @@ class Finding(Struct):
     rows = [
         ('severity', Severity, ''),
         ('text', Text(240), 'what is wrong, its value, the likely cause, the remedy'),
+    ]
+
+
+@_struct
+class CellDesc(Struct):
+    """How the sides of a periodic domain, the cell, move. Begin with DEM_CELL_DESC: they do not."""
+    __slots__ = ()
+    c_name = 'dem_cell_desc'
+    rows = [
+        ('rate', Vec3, '1/s, strain rate of each axis; positive: the cell becomes longer'),
+        ('shear', Real, '1/s, shear rate: change of the velocity along x with y'),
+        ('stress', Vec3, 'Pa, pressure positive: target of axes that have a rate_most'),
+        ('rate_most', Vec3,
+         '1/s, >= 0: largest strain rate by which the cell is led to `stress` along this axis, whose `rate` '
+         'must be 0; 0: the axis follows `rate`'),
+    ]
+
+
+@_struct
+class CellState(Struct):
+    """What the cell does."""
+    __slots__ = ()
+    c_name = 'dem_cell_state'
+    rows = [
+        ('box', Box, 'm, the domain now'),
+        ('offset', Real, 'm, along x: displacement of images across the upper y face'),
+        ('strain', ctypes.c_double*3,
+         'since the beginning: logarithmic strain of each axis, > 0: longer; shear strain'),
+        ('shear', ctypes.c_double, ""),
+        ('rate', ctypes.c_double*3, '1/s, of the last step'),
+        ('shear_rate', ctypes.c_double, ""),
+        ('stress', ctypes.c_double*3, 'Pa, along each axis, before the last step; at first 0'),
     ]
 
 
@@ -2642,10 +2910,11 @@ class Counters(Struct):
 @_struct
 class Ledger(Struct):
     """The account of energy, J, since the world was created; zeros unless desc.ledger is 1. residual = kinetic +
-    rotational + elastic - gravity - walls - force - inserted + removed + normal + slide + tangent + rolling The
-    residual is the error of the time integration; compare it with `throughput`. Potential energy is not stored energy
-    here: `gravity` is the work of gravity. If a user-defined law never fills force->energy, the ledger cannot
-    separate what the law stores from what it dissipates: `unknown` then holds the residual, and `residual` is 0.
+    rotational + elastic - gravity - walls - force - cell - inserted - growth + removed + normal + slide + tangent +
+    rolling The residual is the error of the time integration; compare it with `throughput`. Potential energy is not
+    stored energy here: `gravity` is the work of gravity. If a user-defined law never fills force->energy, the ledger
+    cannot separate what the law stores from what it dissipates: `unknown` then holds the residual, and `residual` is
+    0.
     """
     __slots__ = ()
     c_name = 'dem_ledger'
@@ -2654,10 +2923,11 @@ class Ledger(Struct):
         ('rotational', ctypes.c_double, ""),
         ('elastic', ctypes.c_double, ""),
         ('gravity', ctypes.c_double,
-         'supplied: work of gravity; of moving walls and motors; of force fields; kinetic energy of inserted '
-         'bodies'),
+         'supplied: work of gravity; of moving walls and motors; of force fields; of a cell that deforms; '
+         'kinetic energy of inserted bodies'),
         ('walls', ctypes.c_double, ""),
         ('force', ctypes.c_double, ""),
+        ('cell', ctypes.c_double, ""),
         ('inserted', ctypes.c_double, ""),
         ('normal', ctypes.c_double,
          'dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential dashpots; '
@@ -2667,6 +2937,9 @@ class Ledger(Struct):
         ('rolling', ctypes.c_double, ""),
         ('removed', ctypes.c_double, 'kinetic energy of removed bodies'),
         ('throughput', ctypes.c_double, 'sum of the magnitudes of what was supplied'),
+        ('growth', ctypes.c_double,
+         'supplied: work of bodies that change their radius. Other changes of the scene between the same two '
+         'steps count with it.'),
         ('residual', ctypes.c_double, ''),
         ('unknown', ctypes.c_double, '> 0: the user-defined law created energy'),
     ]
@@ -2822,6 +3095,117 @@ class ContactInfo(Struct):
 
 
 @_struct
+class Event(Struct):
+    """A contact of two bodies, or of a body and a wall, from its beginning to its end. It exists while any of their
+    contact points has an overlap, or while a law with a range exerts a force beyond contact; with impulses, while its
+    impulse is not 0. Bodies of several spheres and walls of several facets have one contact with each other.
+    """
+    __slots__ = ()
+    c_name = 'dem_event'
+    rows = [
+        ('kind', EventKind, ''),
+        ('a', Body, 'a has the lower slot; b is null for a contact with a wall'),
+        ('b', Body, ""),
+        ('wall', ctypes.c_int32, 'dem_wall id; 0: b is a body'),
+        ('material_a', Material, ''),
+        ('material_b', Material, ''),
+        ('cut', ctypes.c_int,
+         '1: recording began during the contact; 2: it ended because a body or the wall was removed; 3: both. '
+         'Else 0.'),
+        ('point', Vec3, 'm; unit, from a to b: where it began'),
+        ('normal', Vec3, ""),
+        ('begin', ctypes.c_double, 's; end: the present time unless kind is DEM_EVENT_END'),
+        ('end', ctypes.c_double, ""),
+        ('closing_speed', ctypes.c_double,
+         'm/s, relative velocity at the contact point when it began: along the normal, > 0 if the two '
+         'approach; across it. They belong to the first step of the contact.'),
+        ('slip_speed', ctypes.c_double, ""),
+        ('mass', ctypes.c_double,
+         'kg, effective mass m_a m_b/(m_a + m_b) for a central impact; fixed bodies and walls are infinitely '
+         'heavy; 0: neither can move'),
+        ('force', ctypes.c_double,
+         'N, the largest normal force, summed over contact points (of impulses the mean over a step); N s, the'
+         ' normal force summed over time'),
+        ('impulse', ctypes.c_double, ""),
+        ('lost_normal', ctypes.c_double,
+         'J, energy lost so far as in dem_ledger: by the normal law, by sliding, by tangential dashpots (and '
+         'springs that held energy at the end; what they stored when recording began counts as supplied), by '
+         'rolling resistance'),
+        ('lost_slide', ctypes.c_double, ""),
+        ('lost_tangent', ctypes.c_double, ""),
+        ('lost_rolling', ctypes.c_double, ""),
+    ]
+
+
+def _wrap_dem_event_fn(function, context, struct):
+
+    def call(event, user):
+        try:
+            function(event[0])
+        except BaseException as error:
+            context.fail(error)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(Event), ctypes.c_void_p)(call), EventFn.c)
+
+
+EventFn = Function(_wrap_dem_event_fn, None, ctypes.POINTER(Event), ctypes.c_void_p)
+EventFn.__doc__ = 'Receives one contact. It may only read the world.'
+
+
+@_struct
+class EventsDesc(Struct):
+    """How contacts are recorded. Begin with DEM_EVENTS_DESC."""
+    __slots__ = ()
+    c_name = 'dem_events_desc'
+    rows = [
+        ('function', EventFn,
+         'called after each step for the contacts that have ended in it; null means no call. The contacts are '
+         'in the order of their ids, for any number of threads and slabs.'),
+        ('user', ctypes.c_void_p, 'passed to `function`; or null'),
+        ('begins', ctypes.c_int, '1: also called for contacts that have begun, before those'),
+    ]
+
+
+@_struct
+class Impacts(Struct):
+    """Statistics of the recorded contacts."""
+    __slots__ = ()
+    c_name = 'dem_impacts'
+    rows = [
+        ('seconds', ctypes.c_double, 's, recorded so far'),
+        ('ended', ctypes.c_double, 'number of contacts that have ended'),
+        ('open', ctypes.c_int, 'number of contacts that exist'),
+        ('rate', ctypes.c_double, '1/s: ended/seconds'),
+        ('lost_normal', ctypes.c_double,
+         'J, lost in all recorded contacts, those that exist included. For all materials these are what the '
+         'ledger has booked since recording began, except losses of joints.'),
+        ('lost_slide', ctypes.c_double, ""),
+        ('lost_tangent', ctypes.c_double, ""),
+        ('lost_rolling', ctypes.c_double, ""),
+        ('bin', ctypes.c_double*IMPACT_LIMITS, 'J, limits of the bins'),
+        ('impacts', ctypes.c_double*IMPACT_BINS,
+         'contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun before '
+         'the recording are not counted'),
+        ('losses', ctypes.c_double*IMPACT_BINS,
+         'contacts that have ended, by energy lost in them (the sum of all four losses); and the energy lost '
+         'in the contacts of each bin, J'),
+        ('energy', ctypes.c_double*IMPACT_BINS, ""),
+    ]
+
+
+@_struct
+class Wear(Struct):
+    """Wear of a wall since recording began."""
+    __slots__ = ()
+    c_name = 'dem_wear'
+    rows = [
+        ('seconds', ctypes.c_double, 's, recorded so far'),
+        ('slide', ctypes.c_double, 'J, lost on it by sliding; by the normal law'),
+        ('normal', ctypes.c_double, ""),
+        ('volume', ctypes.c_double, 'm3, coefficient*slide/hardness'),
+    ]
+
+
+@_struct
 class Servo(Struct):
     """What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of its velocity, in
     which it presses the grains; a piston of several walls has one state.
@@ -2839,6 +3223,26 @@ class Servo(Struct):
          'force)/2, and is at most the largest one (>>servo).'),
         ('damping', ctypes.c_double, ""),
         ('time', ctypes.c_double, ""),
+    ]
+
+
+@_struct
+class Stress(Struct):
+    """Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz."""
+    __slots__ = ()
+    c_name = 'dem_stress'
+    rows = [
+        ('volume', ctypes.c_double, 'm3, of the domain; fraction that bodies fill'),
+        ('solid', ctypes.c_double, ""),
+        ('contact', ctypes.c_double*6,
+         'Pa, pressure positive: of contacts, the sum of force x branch over the volume, where a contact with '
+         'a wall acts from the centre to the contact; of motion, the sum of m v v over the volume, about the '
+         'mean velocity; both together'),
+        ('kinetic', ctypes.c_double*6, ""),
+        ('total', ctypes.c_double*6, ""),
+        ('fabric', ctypes.c_double*6, 'mean of n n over the contacts of two bodies; its trace is 1'),
+        ('contacts', ctypes.c_int, 'of two bodies'),
+        ('coordination', ctypes.c_double, 'contacts per body, with walls'),
     ]
 
 
@@ -2864,6 +3268,9 @@ class FieldDesc(Struct):
          "m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 "
          'width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first '
          'factor), evaluated at the centres of cells. Keep cells no longer than width.'),
+        ('group', Group, 'only members of this group; id 0 means all grains'),
+        ('variance', ctypes.c_int, '1: also variances of cells over the samples; not in slabs'),
+        ('bodies', ctypes.c_int, '1: also averages each grain (dem_body_means); one field may'),
     ]
 
 
@@ -2910,6 +3317,80 @@ class FieldCell(Struct):
          'Pa, xx yy zz xy xz yz, pressure positive: of contacts and of motion about that velocity; 0 unless '
          'desc.stress is 1'),
         ('coordination', ctypes.c_double, 'contacts per grain, with walls; 0 unless desc.stress is 1'),
+        ('grains_variance', ctypes.c_double,
+         'Variances over the samples, of the values of the whole cell; 0 unless desc.variance is 1: of grains,'
+         ' solid, density, (kg/m3)^2, and velocity, m2/s2, weighted by mass. The mean of n independent samples'
+         ' has the standard error sqrt(variance/n).'),
+        ('solid_variance', ctypes.c_double, ""),
+        ('density_variance', ctypes.c_double, ""),
+        ('velocity_variance', ctypes.c_double*3, ""),
+    ]
+
+
+@_struct
+class BodyMeans(Struct):
+    """Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The field chooses
+    grains by material and radius only.
+    """
+    __slots__ = ()
+    c_name = 'dem_body_means'
+    rows = [
+        ('samples', ctypes.c_uint64, 'number of samples; 0: all others are 0'),
+        ('velocity', ctypes.c_double*3, 'm/s; m2/s2'),
+        ('velocity_variance', ctypes.c_double*3, ""),
+        ('spin', ctypes.c_double*3, 'rad/s; (rad/s)^2'),
+        ('spin_variance', ctypes.c_double*3, ""),
+        ('force', ctypes.c_double*3, 'N; N2: of contacts and fields, not of gravity'),
+        ('force_variance', ctypes.c_double*3, ""),
+    ]
+
+
+@_struct
+class MixingDesc(Struct):
+    """Two components of a mixture: the grains of one material or of a range of radii, and all others. Only grains in
+    `box` that can move count. Begin with DEM_MIXING_DESC.
+    """
+    __slots__ = ()
+    c_name = 'dem_mixing_desc'
+    rows = [
+        ('box', Box, 'm, required: what the cells divide'),
+        ('cells', ctypes.c_int*3, 'required, >= 1: along each axis; 10 to 30 grains per cell suit'),
+        ('material', Material,
+         'the component: a material (id 0: any), and (bounding) radii, m (max 0: any); not both open'),
+        ('radius_min', Real, ''),
+        ('radius_max', Real, ''),
+        ('centre', Vec3, 'm, a point on an axis; its direction, of any length, 0: no axis'),
+        ('axis', Vec3, ""),
+    ]
+
+
+@_struct
+class Mixing(Struct):
+    """Mixing of two components (>>mixing has the formulas). Indices that are not defined are NaN: if one component is
+    absent, if all grains are in one cell, or if no cell has two grains.
+    """
+    __slots__ = ()
+    c_name = 'dem_mixing'
+    rows = [
+        ('grains', ctypes.c_int, 'grains in the box; of these, grains of the component'),
+        ('part', ctypes.c_int, ""),
+        ('cells', ctypes.c_int, 'cells with at least one grain'),
+        ('fraction', ctypes.c_double, 'part/grains'),
+        ('variance', ctypes.c_double,
+         "variance of the component's fraction over the cells, weighted by their grains; of cells that hold "
+         'one component each; of a random mixture'),
+        ('variance_segregated', ctypes.c_double, ""),
+        ('variance_random', ctypes.c_double, ""),
+        ('lacey', ctypes.c_double,
+         "[LAC54]: 0 segregated, 1 random, above 1 more regular than random; Kramer's index, the same with "
+         'standard deviations instead of variances'),
+        ('kramer', ctypes.c_double, ""),
+        ('segregation', ctypes.c_double*3,
+         'along x, y, z, and of the distance from the axis: 1 if the component is ahead of all others, 0 '
+         'random, -1 if it is behind; random mixtures deviate by sqrt((N + 1)/(3 Na Nb))'),
+        ('segregation_radial', ctypes.c_double, ""),
+        ('contacts', ctypes.c_int, 'between grains in the box; -1: no list (dem_contacts_get)'),
+        ('contact_segregation', ctypes.c_double, '1: no contact between the components, 0 random; needs a list'),
     ]
 
 
@@ -3016,8 +3497,9 @@ class ReplayDesc(Struct):
     rows = [
         ('title', str, 'copied; null means the name of the file'),
         ('number', str,
-         'Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the values '
-         'of number_fn. Null means the first name, or "number". Copied, at most 63 characters.'),
+         'Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in desc.groups '
+         '(1: member, 0: not), or one for the values of number_fn. Null means the first name, or "number". '
+         'Copied, at most 63 characters.'),
         ('number_fn', ReplayDescNumberFn,
          'returns the number of a body, for every frame; null means one of desc.body_reals'),
         ('user', ctypes.c_void_p, 'passed to number_fn; or null'),
@@ -3091,16 +3573,20 @@ class OutputDesc(Struct):
         ('start', ctypes.c_double, 's, times of the first and the last; end 0 means no last'),
         ('end', ctypes.c_double, ""),
         ('wall', Wall,
-         'CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write; or the'
-         ' values that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, '
-         'copied); or, if all three are zero, steps, bodies, contacts, kinetic and rotational energy (J) and '
-         'overlap_max'),
+         'CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write; the '
+         'mixing of two components, if mixing.cells are set; the values that `values` writes, with `columns` '
+         'as their names (1 to 32 words as in body_reals, copied); or, if all four are zero, steps, bodies, '
+         'contacts, kinetic and rotational energy (J) and overlap_max'),
         ('columns', str, ''),
         ('values', OutputDescValues, ''),
         ('function', OutputDescFunction,
          'CALL: may change the world, but not step it. A return value other than 0 stops the run '
          '(DEM_ERROR_STOPPED).'),
         ('user', ctypes.c_void_p, 'passed to `values` and `function`; or null'),
+        ('mixing', MixingDesc, 'CSV: see above'),
+        ('field', Field, 'FIELD_CSV: required'),
+        ('z0', Real, 'm, WALLS: profiles are extruded between them'),
+        ('z1', Real, ""),
     ]
 
 
@@ -3239,7 +3725,7 @@ ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ct
 ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0 to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
-structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Servo, FieldDesc, FieldData, FieldCell, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
+structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Group, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, Selection, BodiesMeans, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, RailDesc, RailState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, CellDesc, CellState, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Event, EventsDesc, Impacts, Wear, Servo, Stress, FieldDesc, FieldData, FieldCell, BodyMeans, MixingDesc, Mixing, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
 
 
 class World(WorldBase):
@@ -3249,9 +3735,10 @@ class World(WorldBase):
             tangent_law=0, rolling_law=0, tension=0, friction_load=0, slider=0, convention=0, law=None, law_rows=None,
             law_user=None, law_memory=0, law_memory_names=None, law_vectors=0, law_stiffness=0, law_range=0,
             law_range_radii=0, law_who=0, law_rate=None, body_reals=None, body_reals_fn=None, body_reals_user=None,
-            force=None, body_force=None, force_user=None, integrator=0, dt=0, allow_large_dt=0, impact_speed=0,
-            response=0, cone=0, solver=0, sweeps=0, tolerance=0, cold_start=0, unsolved_stops=0, search=0, skin=0,
-            rotation=0, ellipsoid_overlap=0, cluster_contacts=0, orientations=0, ledger=0, threads=0, allocator=None):
+            growth=None, growth_user=None, growth_interval=0, groups=None, force=None, body_force=None,
+            force_user=None, integrator=0, dt=0, allow_large_dt=0, impact_speed=0, response=0, cone=0, solver=0,
+            sweeps=0, tolerance=0, cold_start=0, unsolved_stops=0, search=0, skin=0, rotation=0, ellipsoid_overlap=0,
+            cluster_contacts=0, orientations=0, ledger=0, threads=0, allocator=None):
         """Creates an empty world. ArgumentError says which value is out of range.
 
         gravity: m/s2
@@ -3287,6 +3774,13 @@ class World(WorldBase):
         body_reals_fn: Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers
             of walls stay as set; dem_wall_loads sums what they would gain.
         body_reals_user: passed to body_reals_fn
+        growth: Returns the rate of the radius of a body, m/s: > 0 grows, < 0 wears. Mass follows at constant density,
+            velocity and contact history stay. Each change of radii costs a new list and another computation of
+            forces. Null means constant radii; see dem_body_radius_set.
+        growth_user: passed to growth
+        growth_interval: s, between two changes of radii; 0 means every step
+        groups: Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and _.
+            A body belongs to none until dem_bodies_group_set. Null means no groups.
         force: force on a body; null means none
         body_force: force and torque on a body; null means none
         force_user: passed to both
@@ -3321,7 +3815,8 @@ class World(WorldBase):
             law_rows=law_rows, law_user=law_user, law_memory=law_memory, law_memory_names=law_memory_names,
             law_vectors=law_vectors, law_stiffness=law_stiffness, law_range=law_range,
             law_range_radii=law_range_radii, law_who=law_who, law_rate=law_rate, body_reals=body_reals,
-            body_reals_fn=body_reals_fn, body_reals_user=body_reals_user, force=force,
+            body_reals_fn=body_reals_fn, body_reals_user=body_reals_user, growth=growth,
+            growth_user=growth_user, growth_interval=growth_interval, groups=groups, force=force,
             body_force=body_force, force_user=force_user, integrator=integrator, dt=dt,
             allow_large_dt=allow_large_dt, impact_speed=impact_speed, response=response, cone=cone,
             solver=solver, sweeps=sweeps, tolerance=tolerance, cold_start=cold_start,
@@ -3381,7 +3876,8 @@ class World(WorldBase):
 
     def pair_set(self, a, b, *, young_eff=None, shear_eff=None, restitution=None, friction=None,
             friction_static=None, rolling_friction=None, stiffness=None, stiffness_ratio=None, tangent_damping=None,
-            normal_damping=None, spinning_friction=None, cohesion=None, compliance=None, stiffness_adhesion=None):
+            normal_damping=None, spinning_friction=None, cohesion=None, compliance=None, stiffness_adhesion=None,
+            ignored=None):
         """Replaces the contact properties of two materials, in both orders. Start from dem_pair_get.
 
         Fields that are not given stay as they are.
@@ -3397,20 +3893,23 @@ class World(WorldBase):
         tangent_damping: factor on the tangential dashpot, >= 0; mixed: 1
         normal_damping: N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
             restitution (linear) or none (hysteretic)
-        spinning_friction: The next three are for impulses only: 0 when mixed, and must be 0 with springs.
+        spinning_friction: mu_spin, >= 0: twisting friction, a moment about the normal up to mu_spin R* Fn; 0 when
+            mixed. With springs: dem_law_twist.
         cohesion: N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of the
             smaller radius.
         compliance: m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable for
             any value; oscillations that the step does not resolve are damped.
         stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2
+        ignored: 1: bodies and walls of these materials pass through each other. They make no contacts, and laws that
+            act at a distance are not called for them. Mixed: 0.
         """
         pair = self.pair(a, b)
         pair._put({name: value for name, value in (('young_eff', young_eff), ('shear_eff', shear_eff), ('restitution',
             restitution), ('friction', friction), ('friction_static', friction_static), ('rolling_friction',
             rolling_friction), ('stiffness', stiffness), ('stiffness_ratio', stiffness_ratio), ('tangent_damping',
             tangent_damping), ('normal_damping', normal_damping), ('spinning_friction', spinning_friction),
-            ('cohesion', cohesion), ('compliance', compliance), ('stiffness_adhesion', stiffness_adhesion),) if value
-            is not None})
+            ('cohesion', cohesion), ('compliance', compliance), ('stiffness_adhesion', stiffness_adhesion),
+            ('ignored', ignored),) if value is not None})
         self._ok(_lib.dem_pair_set(self._at, a, b, pair))
 
     def coefficients(self, a, b, radius_a, radius_b):
@@ -3443,10 +3942,10 @@ class World(WorldBase):
     def spheres_fill(self, material, radius, region, count, seed):
         """Adds up to count spheres of one radius (m) at random positions in a region, one after the other. The same seed
         gives the same positions. A position is free if the sphere there overlaps no body (a body that is not a sphere
-        counts with its bounding sphere), also across periodic faces, and touches no wall. No position is free behind
-        a plane, on the wrong side of a cylinder or in a sieve; the inside of a closed mesh counts like its outside.
-        Returns how many were added. If these are fewer than count, 2000 tries for one sphere failed;
-        dem_world_error_get says so, but the world can run.
+        counts with its bounding sphere), also across periodic faces, and touches no wall. What the material ignores
+        (dem_pair) does not count. No position is free behind a plane, on the wrong side of a cylinder or in a sieve;
+        the inside of a closed mesh counts like its outside. Returns how many were added. If these are fewer than
+        count, 2000 tries for one sphere failed; dem_world_error_get says so, but the world can run.
         """
         return self._filled(_lib.dem_spheres_fill(self._at, material, radius, self._bound(Region.make(region)), count,
             seed), count, 'dem_spheres_fill')
@@ -3525,6 +4024,85 @@ class World(WorldBase):
         self._ok(0)
         found._of = self
         return found if found else None
+
+    def group(self, name):
+        """Returns the group with this name in desc.groups."""
+        found = _lib.dem_group_get(self._at, name.encode())
+        self._ok(0)
+        found._of = self
+        return found if found else None
+
+    def bodies_select(self, selection):
+        """Writes the ids of the selected bodies, in the order of their slots, at most `capacity` of them. Returns how
+        many are selected, -1 on error. `out` or null, to count them. Selections are made between steps: laws and
+        other functions that a step calls cannot make them.
+        """
+        selection = self._bound(Selection.make(selection))
+        capacity = self._number(_lib.dem_bodies_select(self._at, selection, None, 0))
+        out = (Body*max(capacity, 1))()
+        count = self._number(_lib.dem_bodies_select(self._at, selection, ctypes.cast(out, ctypes.POINTER(Body)),
+            capacity))
+        array = (out._type_*count).from_buffer(out)
+        return array
+
+    def bodies_group_set(self, selection, group, member):
+        """Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be in many
+        groups. Members stay members when bodies are sorted, restarted or dealt to slabs. Returns how many bodies are
+        selected, -1 on error.
+        """
+        selection = self._bound(Selection.make(selection))
+        return self._number(_lib.dem_bodies_group_set(self._at, selection, group, member))
+
+    def bodies_velocity_set(self, selection, velocity, spin):
+        """Gives the selected bodies a velocity (m/s) and a spin (rad/s), as dem_body_set does. Returns their number, -1
+        on error.
+        """
+        selection = self._bound(Selection.make(selection))
+        return self._number(_lib.dem_bodies_velocity_set(self._at, selection, velocity, spin))
+
+    def bodies_fixed_set(self, selection, fixed):
+        """Freezes the selected bodies (fixed = 1), which then never move, or frees them (0). Returns their number, -1 on
+        error.
+        """
+        selection = self._bound(Selection.make(selection))
+        return self._number(_lib.dem_bodies_fixed_set(self._at, selection, fixed))
+
+    def bodies_remove(self, *, group=None, material=None, shape=None, radius_min=0, radius_max=0, region=None,
+            count=0, bodies=None):
+        """Removes the selected bodies, with one new list for all. Returns their number, -1 on error.
+
+        group: only members of this group; id 0 means any
+        material: only of this material; id 0 means any
+        shape: only of this shape; id 0 means any, spheres included
+        radius_min: m, only of these (bounding) radii; max 0 means no limit
+        region: Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means
+            anywhere.
+        count: of bodies
+        bodies: Only these; ids of bodies that are gone do not count. Null means any.
+        """
+        selection = Selection(group=group, material=material, shape=shape, radius_min=radius_min,
+            radius_max=radius_max, region=region, count=count, bodies=bodies)
+        return self._number(_lib.dem_bodies_remove(self._at, selection))
+
+    def bodies_means(self, *, group=None, material=None, shape=None, radius_min=0, radius_max=0, region=None,
+            count=0, bodies=None):
+        """Writes the sums and means of the selected bodies to `means`.
+
+        group: only members of this group; id 0 means any
+        material: only of this material; id 0 means any
+        shape: only of this shape; id 0 means any, spheres included
+        radius_min: m, only of these (bounding) radii; max 0 means no limit
+        region: Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means
+            anywhere.
+        count: of bodies
+        bodies: Only these; ids of bodies that are gone do not count. Null means any.
+        """
+        means = BodiesMeans()
+        selection = Selection(group=group, material=material, shape=shape, radius_min=radius_min,
+            radius_max=radius_max, region=region, count=count, bodies=bodies)
+        self._ok(_lib.dem_bodies_means_get(self._at, selection, means))
+        self._with(means)
+        return means
 
     def bodies_reals_set(self, reals):
         """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
@@ -3775,7 +4353,7 @@ class World(WorldBase):
         return self._id(_lib.dem_feed_add(self._at, desc))
 
     def outlet(self, *, frame=None, box=None, beyond=0, wanted_min=0, wanted_max=0, class_count=0, radius=(),
-            material=None, keep=0):
+            material=None, keep=0, residence_bin=0):
         """Adds an outlet. The wall that is its frame cannot be removed.
 
         frame: the region moves with this wall; null means at rest
@@ -3786,9 +4364,11 @@ class World(WorldBase):
         radius: m, ascending; a grain counts in the nearest class
         material: only grains of this material; id 0 means all
         keep: 1: grains stay and are only counted; at most 16 such
+        residence_bin: s, >= 0: width of a bin of residence times, which run from the insertion of a grain (grains
+            that were there before: from dem_outlet_add) until the outlet counts it; 0: not measured
         """
         desc = OutletDesc(frame=frame, box=box, beyond=beyond, wanted_min=wanted_min, wanted_max=wanted_max,
-            class_count=class_count, radius=radius, material=material, keep=keep)
+            class_count=class_count, radius=radius, material=material, keep=keep, residence_bin=residence_bin)
         return self._id(_lib.dem_outlet_add(self._at, desc))
 
     @property
@@ -3875,6 +4455,35 @@ class World(WorldBase):
         it, checkpoints store it, and slabs take it over when they are created.
         """
         self._ok(_lib.dem_world_gravity_set(self._at, gravity))
+
+    def cell_set(self, *, rate=None, shear=0, stress=None, rate_most=None):
+        """Deforms the cell from now on, for tests of materials without walls. The centre of the domain stays in place.
+        All positions, those of fixed bodies too, follow the strain affinely: the flow of the cell is rate (x -
+        centre), plus shear (y - centre) along x. Velocities of bodies are relative to this flow, here and in
+        user-defined functions, and their kinetic energy is that of these velocities. Contacts see the difference of
+        the flow between both bodies, so no place of the cell differs from another [EVA08], and images across the y
+        faces move with the shear [LEE72]. Along axes with a rate_most the rate is chosen before each step; its gain
+        follows from the contacts (>>stress). Further calls may change everything at any time; contact histories stay.
+        Axes that move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
+        Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with walls, joints,
+        feeds and outlets. Fields and fills are an error while a cell is sheared.
+
+        rate: 1/s, strain rate of each axis; positive: the cell becomes longer
+        shear: 1/s, shear rate: change of the velocity along x with y
+        stress: Pa, pressure positive: target of axes that have a rate_most
+        rate_most: 1/s, >= 0: largest strain rate by which the cell is led to `stress` along this axis, whose `rate`
+            must be 0; 0: the axis follows `rate`
+        """
+        desc = CellDesc(rate=rate, shear=shear, stress=stress, rate_most=rate_most)
+        self._ok(_lib.dem_cell_set(self._at, desc))
+
+    @property
+    def cell_state(self):
+        """Writes the state of the cell to state."""
+        state = CellState()
+        self._ok(_lib.dem_cell_state_get(self._at, state))
+        self._with(state)
+        return state
 
     def dt_set(self, dt):
         """Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with desc.dt; an error with
@@ -4037,8 +4646,61 @@ class World(WorldBase):
         """Rebuilds the neighbour list now, for tests and analysis. A run does so automatically."""
         self._ok(_lib.dem_candidates_rebuild(self._at))
 
+    def events_record(self, *, function=None, user=None, begins=0):
+        """Starts to record contacts; needs desc.ledger. If they are recorded already, replaces the function and keeps
+        the records. Forces and motions have the same bits as without a recording. Checkpoints contain the records,
+        but not the function: call this again after reading one in a new program. Slabs continue the recording of the
+        world from which they are created, if one process holds them all; dem_slabs_collect returns it. A step that
+        has no memory for the records completes, stops the recording and fails with DEM_ERROR_MEMORY.
+
+        function: called after each step for the contacts that have ended in it; null means no call. The contacts are
+            in the order of their ids, for any number of threads and slabs.
+        user: passed to `function`; or null
+        begins: 1: also called for contacts that have begun, before those
+        """
+        desc = EventsDesc(function=function, user=user, begins=begins)
+        desc = self._bound(desc)
+        self._ok(_lib.dem_events_record(self._at, desc))
+
+    def events_stop(self):
+        """Ends the recording and discards its records."""
+        self._ok(_lib.dem_events_stop(self._at))
+
+    def events_open_each(self, fn=None):
+        """Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn and user: or null.
+        Returns -1 if contacts are not recorded.
+        """
+        fn = self._callback(EventFn, fn)
+        return self._number(_lib.dem_events_open_each(self._at, fn, None))
+
+    def impacts(self, a, b):
+        """Computes the statistics of contacts between two materials, walls included; material id 0 means any. An error
+        if contacts are not recorded.
+        """
+        impacts = Impacts()
+        self._ok(_lib.dem_impacts_get(self._at, a, b, impacts))
+        self._with(impacts)
+        return impacts
+
+    def impacts_csv_write(self, path):
+        """Writes the spectra of all pairs of materials that have touched to a CSV file. A line per bin that is not
+        empty: material_a, material_b, from, to (J), impacts, losses (both 1/s), power (W).
+        """
+        self._ok(_lib.dem_impacts_csv_write(self._at, os.fsencode(path)))
+
+    @property
+    def stress(self):
+        """Computes stress and fabric of the present state in one pass over bodies and contacts. The domain must have an
+        extent along all axes (planar: along x and y; its depth is desc.thickness). An error if bodies or walls have
+        changed since the last step; then call dem_candidates_rebuild first.
+        """
+        stress = Stress()
+        self._ok(_lib.dem_stress_get(self._at, stress))
+        self._with(stress)
+        return stress
+
     def field(self, *, box=None, cells=(), start=0, end=0, interval=0, material=None, radius_min=0,
-            radius_max=0, stress=0, width=0):
+            radius_max=0, stress=0, width=0, group=None, variance=0, bodies=0):
         """Adds a field, and returns its id. Steps sample it from then on.
 
         box: m, required: what the cells divide
@@ -4051,10 +4713,30 @@ class World(WorldBase):
         width: m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 width
             [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first factor),
             evaluated at the centres of cells. Keep cells no longer than width.
+        group: only members of this group; id 0 means all grains
+        variance: 1: also variances of cells over the samples; not in slabs
+        bodies: 1: also averages each grain (dem_body_means); one field may
         """
         desc = FieldDesc(box=box, cells=cells, start=start, end=end, interval=interval, material=material,
-            radius_min=radius_min, radius_max=radius_max, stress=stress, width=width)
+            radius_min=radius_min, radius_max=radius_max, stress=stress, width=width, group=group, variance=variance,
+            bodies=bodies)
         return self._id(_lib.dem_field_add(self._at, desc))
+
+    def mixing(self, *, box=None, cells=(), material=None, radius_min=0, radius_max=0, centre=None,
+            axis=None):
+        """Computes the mixing of two components from the present places of all grains.
+
+        box: m, required: what the cells divide
+        cells: required, >= 1: along each axis; 10 to 30 grains per cell suit
+        material: the component: a material (id 0: any), and (bounding) radii, m (max 0: any); not both open
+        centre: m, a point on an axis; its direction, of any length, 0: no axis
+        """
+        mixing = Mixing()
+        desc = MixingDesc(box=box, cells=cells, material=material, radius_min=radius_min, radius_max=radius_max,
+            centre=centre, axis=axis)
+        self._ok(_lib.dem_mixing_get(self._at, desc, mixing))
+        self._with(mixing)
+        return mixing
 
     def repose_heap(self, box=None):
         """Measures the angle of repose of a heap. It considers grains in `box` (m; both corners 0: all) that can move
@@ -4246,13 +4928,27 @@ class World(WorldBase):
         """
         self._ok(_lib.dem_surfaces_vtp_write(self._at, os.fsencode(path)))
 
+    def bodies_csv_write(self, path):
+        """Writes the bodies: id, number of the material, (bounding) radius, position, velocity, spin and body_reals. If
+        a field averages bodies (dem_field_desc.bodies), also the samples, and mean and variance of velocity, spin and
+        force. dem_grains_read reads such a table.
+        """
+        self._ok(_lib.dem_bodies_csv_write(self._at, os.fsencode(path)))
+
+    def contacts_csv_write(self, path):
+        """Writes the contacts: ids of a and b (-1: a wall), wall (0: none), point (m), normal (from a to b), overlap (m)
+        and force (N, on a). Computes forces first if the scene has changed.
+        """
+        self._ok(_lib.dem_contacts_csv_write(self._at, os.fsencode(path)))
+
     def replay(self, path, *, title=None, number=None, number_fn=None, user=None, resolution=0, interval=0):
         """Opens a replay of the world. desc: or null, for DEM_REPLAY_DESC. Close the replay before its world is
         destroyed.
 
         title: copied; null means the name of the file
-        number: Name of the numbers by which grains can be coloured: one in desc.body_reals, or one for the values of
-            number_fn. Null means the first name, or "number". Copied, at most 63 characters.
+        number: Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in desc.groups
+            (1: member, 0: not), or one for the values of number_fn. Null means the first name, or "number". Copied,
+            at most 63 characters.
         number_fn: returns the number of a body, for every frame; null means one of desc.body_reals
         user: passed to number_fn; or null
         resolution: m, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame
@@ -4281,8 +4977,26 @@ class World(WorldBase):
         """
         self._ok(_lib.dem_checkpoint_read(self._at, os.fsencode(path)))
 
+    def checkpoint_read_changed(self, path, allowed):
+        """The same for a world that differs from the one that wrote the file. allowed: words, each the name of a field
+        of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all but density) or "pairs";
+        "" allows nothing. Fields named there keep the values of this world. Everything else must agree: domain,
+        boundary, planar, thickness, response, names, shapes, walls, fields, feeds and outlets always. Contact
+        histories are converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
+        `law_memory` or the like differs. A ledger that the file lacks begins with the present kinetic energy as
+        `inserted` and the present elastic energy as `growth`.
+        """
+        self._ok(_lib.dem_checkpoint_read_changed(self._at, os.fsencode(path), allowed.encode()))
+
+    @property
+    def checkpoint_changes(self):
+        """Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as "dt: 1e-05
+        there, 2e-05 here", or "".
+        """
+        return (_lib.dem_checkpoint_changes_get(self._at) or b'').decode()
+
     def output(self, *, kind=0, path=None, interval=0, start=0, end=0, wall=None, columns=None, values=None,
-            function=None, user=None):
+            function=None, user=None, mixing=None, field=None, z0=0, z1=0):
         """Adds an output that a run writes automatically, at the steps nearest to start, start + interval and so on, in
         the order in which outputs were added. The first line of a CSV file replaces an older file of that name; a
         file with other columns is an error of the run. If a file cannot be written, the run stops with the state
@@ -4298,15 +5012,19 @@ class World(WorldBase):
             null.
         interval: s, required, 1e-12 to 1e15
         start: s, times of the first and the last; end 0 means no last
-        wall: CSV: what a line contains. One of three: the loads of this wall, as dem_wall_loads_csv_write; or the
-            values that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or,
-            if all three are zero, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max
+        wall: CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write; the mixing
+            of two components, if mixing.cells are set; the values that `values` writes, with `columns` as their names
+            (1 to 32 words as in body_reals, copied); or, if all four are zero, steps, bodies, contacts, kinetic and
+            rotational energy (J) and overlap_max
         function: CALL: may change the world, but not step it. A return value other than 0 stops the run
             (DEM_ERROR_STOPPED).
         user: passed to `values` and `function`; or null
+        mixing: CSV: see above
+        field: FIELD_CSV: required
+        z0: m, WALLS: profiles are extruded between them
         """
         desc = OutputDesc(kind=kind, path=path, interval=interval, start=start, end=end, wall=wall, columns=columns,
-            values=values, function=function, user=user)
+            values=values, function=function, user=user, mixing=mixing, field=field, z0=z0, z1=z1)
         desc = self._bound(desc)
         return self._id(_lib.dem_output_add(self._at, desc))
 
@@ -4358,7 +5076,7 @@ class World(WorldBase):
     def report(self, out=None):
         """Prints the report: bodies, time step and what limits it, contact detection, laws and effects, what the scene
         contains but has not happened, the largest overlap, pairs of materials, loads of walls, joints, feeds,
-        outlets, and the ledger. It calls a user-defined force field once per body.
+        outlets, and the ledger. It calls a user-defined force field and desc.growth once per body.
         """
         return self._print(_lib.dem_world_report, out, self._at)
 
@@ -4554,6 +5272,17 @@ def law_roll_epsd(c, memory, f):
     return _lib.dempy_law_roll_epsd(c, memory, f)
 
 
+def law_twist(c, memory, f):
+    """Twisting (spinning) friction: a moment about the normal of at most mu_spin R* F against the relative spin about
+    the normal, and at rest any moment up to that, as with impulses. A spring acts in parallel with a dashpot behind
+    the limit. As in dem_law_roll_constant it is as stiff as a step can resolve, k = (0.3/dt)^2 I with I = 2/5 m*
+    R*^2, and critically damped. So it holds a grain at rest and does not limit the time step. It adds to the moment
+    of a rolling law. Contact history: 1 real, the moment of the spring [N m]; it does not change its sign if a and b
+    are exchanged.
+    """
+    return _lib.dempy_law_twist(c, memory, f)
+
+
 def result_name(result):
     """Returns a short text for a result, such as "out of memory"."""
     return (_lib.dem_result_name_get(_number(result, Result)) or b'').decode()
@@ -4592,6 +5321,7 @@ _FUNCTIONS = [
     ('dempy_law_roll_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
     ('dempy_law_roll_constant', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
     ('dempy_law_roll_epsd', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dempy_law_twist', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
     ('dem_world_create_error_get', ctypes.c_char_p, [ctypes.POINTER(WorldDesc)]),
     ('dem_world_destroy', None, [ctypes.c_void_p]),
     ('dem_world_error_get', ctypes.c_char_p, [ctypes.c_void_p]),
@@ -4620,10 +5350,19 @@ _FUNCTIONS = [
     ('dem_body_remove', ctypes.c_int, [ctypes.c_void_p, Body]),
     ('dem_body_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)]),
     ('dem_body_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)]),
+    ('dem_body_radius_set', ctypes.c_int, [ctypes.c_void_p, Body, Real]),
     ('dem_temperature_get', ctypes.c_double, [ctypes.c_void_p]),
     ('dem_temperature_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_uint64]),
     ('dem_bodies_get', Bodies, [ctypes.c_void_p]),
     ('dem_body_id_get', Body, [ctypes.c_void_p, ctypes.c_int]),
+    ('dem_group_get', Group, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_bodies_select', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.POINTER(Body),
+     ctypes.c_int]),
+    ('dem_bodies_group_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), Group, ctypes.c_int]),
+    ('dem_bodies_velocity_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), Vec3, Vec3]),
+    ('dem_bodies_fixed_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.c_int]),
+    ('dem_bodies_remove', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection)]),
+    ('dem_bodies_means_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.POINTER(BodiesMeans)]),
     ('dem_body_reals_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)]),
     ('dem_body_reals_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)]),
     ('dem_bodies_reals_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Real)]),
@@ -4654,6 +5393,8 @@ _FUNCTIONS = [
     ('dem_wall_sieve_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(SieveDesc)]),
     ('dem_sieve_blinded_get', ctypes.c_int, [ctypes.c_void_p, Wall, Real]),
     ('dem_wall_motion_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Motion)]),
+    ('dem_wall_surface_velocity_set', ctypes.c_int, [ctypes.c_void_p, Wall, Vec3]),
+    ('dem_wall_surface_velocity_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Vec3)]),
     ('dem_wall_pose_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Pose)]),
     ('dem_wall_remove', ctypes.c_int, [ctypes.c_void_p, Wall]),
     ('dem_wall_loads_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(WallLoads)]),
@@ -4662,6 +5403,8 @@ _FUNCTIONS = [
     ('dem_joint_motor_set', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.c_int, Real, Real]),
     ('dem_joint_get', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.POINTER(JointState)]),
     ('dem_joint_remove', ctypes.c_int, [ctypes.c_void_p, Joint]),
+    ('dem_body_rail_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(RailDesc)]),
+    ('dem_body_reaction_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(RailState)]),
     ('dem_feed_add', Feed, [ctypes.c_void_p, ctypes.POINTER(FeedDesc)]),
     ('dem_feed_get', ctypes.c_int, [ctypes.c_void_p, Feed, ctypes.POINTER(FeedState)]),
     ('dem_outlet_add', Outlet, [ctypes.c_void_p, ctypes.POINTER(OutletDesc)]),
@@ -4676,6 +5419,8 @@ _FUNCTIONS = [
     ('dem_world_settle', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, Real, ProgressFn.c, ctypes.c_void_p]),
     ('dem_progress_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p]),
     ('dem_world_gravity_set', ctypes.c_int, [ctypes.c_void_p, Vec3]),
+    ('dem_cell_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(CellDesc)]),
+    ('dem_cell_state_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(CellState)]),
     ('dem_world_dt_set', ctypes.c_int, [ctypes.c_void_p, Real]),
     ('dem_world_time_get', ctypes.c_double, [ctypes.c_void_p]),
     ('dem_world_steps_get', ctypes.c_uint64, [ctypes.c_void_p]),
@@ -4695,12 +5440,24 @@ _FUNCTIONS = [
     ('dem_bonds_make', ctypes.c_int, [ctypes.c_void_p, Real, ContactFn.c, ctypes.c_void_p]),
     ('dem_candidates_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint32), ctypes.c_int]),
     ('dem_candidates_rebuild', ctypes.c_int, [ctypes.c_void_p]),
+    ('dem_events_record', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(EventsDesc)]),
+    ('dem_events_stop', ctypes.c_int, [ctypes.c_void_p]),
+    ('dem_events_open_each', ctypes.c_int, [ctypes.c_void_p, EventFn.c, ctypes.c_void_p]),
+    ('dem_impacts_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Impacts)]),
+    ('dem_impacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_wall_wear_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_double, ctypes.c_double,
+     ctypes.POINTER(Wear)]),
+    ('dem_wall_wear_facets_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(ctypes.c_double),
+     ctypes.c_int]),
     ('dem_wall_servo_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Servo)]),
+    ('dem_stress_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Stress)]),
     ('dem_field_add', Field, [ctypes.c_void_p, ctypes.POINTER(FieldDesc)]),
     ('dem_field_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.POINTER(FieldData)]),
     ('dem_field_cell_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_int, ctypes.c_int, ctypes.c_int,
      ctypes.POINTER(FieldCell)]),
+    ('dem_body_means_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyMeans)]),
     ('dem_field_reset', ctypes.c_int, [ctypes.c_void_p, Field]),
+    ('dem_mixing_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(MixingDesc), ctypes.POINTER(Mixing)]),
     ('dem_repose_heap_get', ctypes.c_int, [ctypes.c_void_p, Box, ctypes.POINTER(Repose)]),
     ('dem_repose_drum_get', ctypes.c_int, [ctypes.c_void_p, Box, Vec3, ctypes.POINTER(Repose)]),
     ('dem_mesh_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Mesh),
@@ -4731,12 +5488,18 @@ _FUNCTIONS = [
     ('dem_walls_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, Real, Real]),
     ('dem_surfaces_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
     ('dem_wall_loads_csv_write', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_char_p]),
+    ('dem_bodies_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_contacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_field_csv_write', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_char_p]),
+    ('dem_outlet_residence_csv_write', ctypes.c_int, [ctypes.c_void_p, Outlet, ctypes.c_char_p]),
     ('dem_replay_open', ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ReplayDesc)]),
     ('dem_replay_frame_write', ctypes.c_int, [ctypes.c_void_p]),
     ('dem_replay_value_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double]),
     ('dem_replay_close', ctypes.c_int, [ctypes.c_void_p]),
     ('dem_checkpoint_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
     ('dem_checkpoint_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+    ('dem_checkpoint_read_changed', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p]),
+    ('dem_checkpoint_changes_get', ctypes.c_char_p, [ctypes.c_void_p]),
     ('dem_output_add', Output, [ctypes.c_void_p, ctypes.POINTER(OutputDesc)]),
     ('dem_output_every_add', Output, [ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_double]),
     ('dem_output_remove', ctypes.c_int, [ctypes.c_void_p, Output]),

@@ -385,8 +385,8 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
-                            sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written), sizeof(demi_event_counts),
-                            sizeof(demi_ongoing), sizeof(demi_impacts),
+                            sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written),
+                            sizeof(demi_event_counts), sizeof(demi_ongoing), sizeof(demi_impacts),
                             (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;

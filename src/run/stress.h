@@ -35,6 +35,11 @@ static int demi_cell_refuse(dem_world *w, const char *call) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
                   "joint%s, whose anchors would follow the flow of the cell at both ends; remove "
                   "the joints", call, w->joint_count, w->joint_count == 1 ? "" : "s");
+    else if (w->rail_count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and %d bod%s on rails: "
+                  "velocities in the cell are relative to its flow, those of rails are not; remove "
+                  "the rails (axes 0)", call, w->rail_count,
+                  w->rail_count == 1 ? "y is" : "ies are");
     else if (w->feed_count || w->outlet_count)
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the regions of %d "
                   "feeds and %d outlets would not; fill the cell before it deforms", call,
