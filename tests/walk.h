@@ -190,6 +190,7 @@ static inline void walk_law(const dem_contact *c, dem_real *memory, dem_contact_
     push->normal = 1000*c->overlap + c->closing_speed/100;
     if (c->dt > 0) memory[3] += c->dt;
 }
+DEM_LAW_ROWS(walk_law_rows, walk_law, 6)
 static inline void walk_rate(const dem_contact *c, dem_real *rates) { rates[0] = c->overlap; }
 static inline dem_vec3 walk_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
     (void)v; (void)radius; (void)time; (void)user;
@@ -219,7 +220,8 @@ static inline int walk_pointer(const walk_field *f, void *out) {
     if (!strcmp(f->of, name)) { kind *p = value; memcpy(out, &p, sizeof p); return 1; }
 #define WALK_FUNCTION(name, value) \
     if (!strcmp(f->of, #name)) { name p = value; memcpy(out, &p, sizeof p); return 1; }
-    WALK_FUNCTION(dem_law_fn, walk_law) WALK_FUNCTION(dem_law_rate_fn, walk_rate) WALK_FUNCTION(dem_force_fn, walk_force)
+    WALK_FUNCTION(dem_law_fn, walk_law) WALK_FUNCTION(dem_law_rows_fn, walk_law_rows)
+    WALK_FUNCTION(dem_law_rate_fn, walk_rate) WALK_FUNCTION(dem_force_fn, walk_force)
     WALK_FUNCTION(dem_body_force_fn, walk_body_force) WALK_FUNCTION(dem_reals_fn, walk_reals)
     WALK_FUNCTION(dem_growth_fn, walk_growth)
     WALK_FUNCTION(dem_motion_fn, walk_motion) WALK_FUNCTION(dem_inside_fn, walk_inside)
