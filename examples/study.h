@@ -482,7 +482,7 @@ STUDY_FN int study_sweep_run(const study_sweep *s, double *result) {
         }
     study_sweep_write(s, result, done, before);
     for (i = 0; i < s->cases; i++)
-        for (k = 0; k < s->results && done[i] == 2; k++) result[i*s->results + k] = NAN;
+        for (k = 0; k < s->results && done[i] == 2; k++) result[i*s->results + k] = (double)NAN;
     study.files++;
     free(done);
     free(before);
@@ -495,8 +495,8 @@ STUDY_FN double study_mean(const double *value, int count, int step, double *err
     for (i = 0; i < count; i++) if (value[i*step] == value[i*step]) { sum += value[i*step]; n++; }
     for (i = 0; i < count; i++)
         if (value[i*step] == value[i*step]) square += (value[i*step] - sum/n)*(value[i*step] - sum/n);
-    if (error) *error = n > 1 ? sqrt(square/(n - 1)/n) : NAN;
-    return n ? sum/n : NAN;
+    if (error) *error = n > 1 ? sqrt(square/(n - 1)/n) : (double)NAN;
+    return n ? sum/n : (double)NAN;
 }
 
 /* ---- pictures ---- */
@@ -543,8 +543,8 @@ STUDY_FN void study_bars(study_figure *f, int count, const double *x, const doub
     int i, k;
     for (i = 0; i < count; i++)
         for (k = 0; k < 3; k++) {
-            to[3*i + k] = k < 2 ? x[i] : NAN;
-            to[3*(count + i) + k] = k < 2 ? y[i] + (k ? error[i] : -error[i]) : NAN;
+            to[3*i + k] = k < 2 ? x[i] : (double)NAN;
+            to[3*(count + i) + k] = k < 2 ? y[i] + (k ? error[i] : -error[i]) : (double)NAN;
         }
     study_curve(f, 0, STUDY_OUTLINE, 3*count, to, to + 3*count);
 }
