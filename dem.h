@@ -29742,6 +29742,11 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
     e->pending[e->n.pending++] = *event;
     return 1;
 }
+/* What a tangential spring gains while radii change and nothing moves is work of growth, not of the
+   contact (>>growth); so that it does not count as a loss, it is added here, as in the ledger. */
+static void demi_event_regrow(const dem_world *w, demi_ongoing *o, double stored) {
+    if (demi_member(w, 0)->stage.grown) o->work += stored;
+}
 /* Adds a noted contact to its open contact, which begins if there is none. Returns 0 if memory ran
    out. */
 static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n) {
@@ -29750,6 +29755,7 @@ static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n)
     const double lost[3] = {n->energy[DEMI_E_DASHPOT], n->energy[DEMI_E_SLIDE],
                             n->energy[DEMI_E_ROLL]};
     const double dt = later || w->stage.forces_valid ? (double)w->clock.dt : 0;
+    const int known = !(e->n.fresh && n->old);
     dem_event key;
     demi_ongoing *o;
     int i, k, facet = 0;
@@ -29768,18 +29774,20 @@ static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n)
     o = &e->open[i];
     if (e->seen[i] != e->turn) {
         o->event.force = DEMI_MAX(o->event.force, o->force);
+        demi_event_regrow(w, o, -o->stored);
         o->force = o->stored = 0;
         e->seen[i] = e->turn;
     }
     o->force += (double)n->force;
     o->stored += n->energy[DEMI_E_SHEAR_STORED];
+    if (known) demi_event_regrow(w, o, n->energy[DEMI_E_SHEAR_STORED]);
     if (n->b < 0 && lost[1] > 0 && demi_wall_kinds[m->walls[n->wall].kind].corners > 1)
         facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
                                                                 demi_at(m->bodies.pos + 4*n->a)));
     if (!later) {
         /* a spring that exists already: what it stored before is unknown, but not lost */
-        o->work += e->n.fresh && n->old ? lost[1] + n->energy[DEMI_E_SHEAR_STORED]
-            : n->energy[DEMI_E_SHEAR_WORK];
+        o->work += known ? n->energy[DEMI_E_SHEAR_WORK]
+            : lost[1] + n->energy[DEMI_E_SHEAR_STORED];
         o->event.impulse += (double)n->force*dt;
         demi_event_lose(w, o, lost, facet);
         return 1;
@@ -29862,8 +29870,10 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
 /* Ends open contact i. Returns 0 if memory ran out. */
 static int demi_event_end(dem_world *w, int i) {
     demi_events *e = &w->events;
-    dem_event event = demi_event_shown(w, &e->open[i], DEM_EVENT_END);
+    dem_event event;
     dem_wall wall;
+    demi_event_regrow(w, &e->open[i], -e->open[i].stored);
+    event = demi_event_shown(w, &e->open[i], DEM_EVENT_END);
     wall.id = event.wall;
     if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
                                            : !demi_event_exists(w, event.b))) event.cut |= 2;
