@@ -1834,7 +1834,8 @@ typedef struct dem_pair {
     /* stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
     DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
     /* 1: bodies and walls of these materials pass through each other. They make no contacts, and
-       laws that act at a distance are not called for them. Mixed: 0. */
+       laws that act at a distance are not called for them. The energy of springs that are in
+       contact when this is set goes to the residual of the ledger. Mixed: 0. */
     int32_t ignored;
 } dem_pair;
 /* Writes the contact properties of two materials to pair. */
@@ -2492,7 +2493,7 @@ DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
 /* ---- rails ---- */
 /* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
-   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs refuse worlds with rails. */
+   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs and periodic cells that deform refuse rails. */
 
 /* The axes of the world that a rail locks, as a sum: of translation, then of rotation. */
 enum { DEM_RAIL_X = 1, DEM_RAIL_Y = 2, DEM_RAIL_Z = 4, DEM_RAIL_SPIN_X = 8, DEM_RAIL_SPIN_Y = 16,
@@ -2774,7 +2775,8 @@ static const dem_cell_desc DEM_CELL_DESC_ZERO = DEM_ZERO;
    (>>stress). Further calls may change everything at any time; contact histories stay. Axes that
    move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
    Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with
-   walls, joints, feeds and outlets. Fields and fills are an error while a cell is sheared. */
+   walls, joints, rails, feeds and outlets. Fields and fills are an error while a cell is sheared.
+   */
 DEM_API dem_result dem_cell_set(dem_world *world, const dem_cell_desc *desc);
 /* What the cell does. */
 typedef struct dem_cell_state {

@@ -272,7 +272,7 @@ DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
 /* ---- rails ---- */
 /* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
-   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs refuse worlds with rails. */
+   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs and periodic cells that deform refuse rails. */
 
 /* The axes of the world that a rail locks, as a sum: of translation, then of rotation. */
 enum { DEM_RAIL_X = 1, DEM_RAIL_Y = 2, DEM_RAIL_Z = 4, DEM_RAIL_SPIN_X = 8, DEM_RAIL_SPIN_Y = 16,

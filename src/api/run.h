@@ -148,7 +148,8 @@ static const dem_cell_desc DEM_CELL_DESC_ZERO = DEM_ZERO;
    (>>stress). Further calls may change everything at any time; contact histories stay. Axes that
    move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
    Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with
-   walls, joints, feeds and outlets. Fields and fills are an error while a cell is sheared. */
+   walls, joints, rails, feeds and outlets. Fields and fills are an error while a cell is sheared.
+   */
 DEM_API dem_result dem_cell_set(dem_world *world, const dem_cell_desc *desc);
 /* What the cell does. */
 typedef struct dem_cell_state {

@@ -246,7 +246,8 @@ typedef struct dem_pair {
     /* stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
     DEM_LAW_COEFFICIENTS(DEM_PROPERTY_FIELD)
     /* 1: bodies and walls of these materials pass through each other. They make no contacts, and
-       laws that act at a distance are not called for them. Mixed: 0. */
+       laws that act at a distance are not called for them. The energy of springs that are in
+       contact when this is set goes to the residual of the ledger. Mixed: 0. */
     int32_t ignored;
 } dem_pair;
 /* Writes the contact properties of two materials to pair. */
