@@ -36865,7 +36865,8 @@ static int demi_rails_check(const demi_reader *r) {
         const demi_rail *a = &r->t->rails[i];
         if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
             a->body.slot > (uint32_t)r->t->bodies.slot_count ||
-            a->state.desc.wall.id < 0 || a->state.desc.wall.id > r->t->wall_count ||
+            a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
+             demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
             !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
             !demi_place(a->turn)) return demi_lie(r, "rail", i);
     }
@@ -37291,8 +37292,8 @@ static int demi_changes_arrays(dem_world *w) {
     return 1;
 }
 /* Continues with the world's own values after a restart with those of the file. ledger: 1 if the
-   file has an account of energy. */
-static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int ledger) {
+   file has an account of energy; growth: 1 if its bodies grow. */
+static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int ledger, int growth) {
     int d, i, j;
     double kinetic, rotational;
     memcpy(w->changes, c->said, sizeof w->changes);
@@ -37315,6 +37316,7 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
         w->booked.removed = w->booked.throughput = 0;
         w->stage.grown = 1;
     }
+    if (!growth) w->clock.grown = w->clock.time;    /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);
     demi_scene_changed(w);
@@ -37330,7 +37332,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     demi_stream s;
     char *bytes = 0;
     size_t size = 0;
-    int ledger;
+    int ledger, growth;
     dem_result result = demi_changes_check(w, allowed);
     if (result == DEM_OK) result = demi_load(w, call, path, &bytes, &size);
     if (result == DEM_OK) result = demi_checkpoint_check(w, path, bytes, size, &head);
@@ -37354,8 +37356,9 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
         w->bodies.backward = demi_integrator_of(w)->backward;
         w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
         ledger = w->desc.ledger;
+        growth = w->desc.growth != 0;
         result = demi_checkpoint_parse(w, path, bytes, size);
-        if (result == DEM_OK) result = demi_changes_apply(w, &c, ledger);
+        if (result == DEM_OK) result = demi_changes_apply(w, &c, ledger, growth);
         else {
             demi_changes_back(w, &c);
             w->bodies.backward = demi_integrator_of(w)->backward;

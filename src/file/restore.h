@@ -440,7 +440,8 @@ static int demi_rails_check(const demi_reader *r) {
         const demi_rail *a = &r->t->rails[i];
         if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
             a->body.slot > (uint32_t)r->t->bodies.slot_count ||
-            a->state.desc.wall.id < 0 || a->state.desc.wall.id > r->t->wall_count ||
+            a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
+             demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
             !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
             !demi_place(a->turn)) return demi_lie(r, "rail", i);
     }

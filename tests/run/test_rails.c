@@ -202,6 +202,16 @@ int main(int argc, char **argv) {
         CHECK(r.work > 1e-6);
         CHECK_NEAR(scene_state(world, paddle).position.z, 0.008, fine ? 1e-15 : 1e-9);
         CHECK(fabs(dem_ledger_get(world).residual) < (fine ? 1e-2 : 5e-2)*dem_ledger_get(world).throughput);
+        {                       /* a wall in the place of one that was removed has a larger id */
+            dem_rail_desc d = rail_of(DEM_RAIL_X, at(0, 0, 0), at(0, 0, 0));
+            dem_material m;
+            m.id = 1;
+            CHECK_EQ(dem_wall_remove(world, dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1))), DEM_OK);
+            d.wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+            CHECK_EQ(dem_body_rail_set(world, paddle, &d), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
+        }
         dem_body_remove(world, paddle);                 /* its rail goes with it */
         CHECK_EQ(scene_step(world, 50), DEM_OK);
         CHECK(dem_body_reaction_get(world, paddle, &r) != DEM_OK);
