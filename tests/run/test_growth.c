@@ -99,7 +99,11 @@ static void lifts(int kind, dem_response response) {
                response == DEM_RESPONSE_IMPULSES ? 1.5e-5 : weight/5e4 + 1e-7);
     l = dem_ledger_get(world);
     if (response == DEM_RESPONSE_SPRINGS) {
-        CHECK_NEAR(l.residual, 0, (sizeof(dem_real) == 8 ? 1e-3 : 5e-2)*l.throughput);
+        /* single precision: the ledger does not see the rounding of the load's height, up to eps/4 of it on average
+           and with the same sign in many steps, against its weight */
+        CHECK_NEAR(l.residual, 0, sizeof(dem_real) == 8 ? 1e-3*l.throughput
+                   : fmin(5e-2*l.throughput, 1.2e-7/4*(double)dem_world_steps_get(world)*z*10*
+                          (double)scene_state(world, load).mass));
         /* the lift, and dashpots that see the centres move apart */
         CHECK_NEAR(l.growth, (double)scene_state(world, load).mass*10*rise, 0.5*l.growth);
     }
