@@ -3511,7 +3511,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
    fields, feeds and outlets always. Contact histories are converted where a law is the same, and
    begin at 0 if a law is user-defined and `law`, `law_memory` or the like differs. A ledger that
    the file lacks begins with the present kinetic energy as `inserted` and the present elastic
-   energy as `growth`. */
+   energy as `growth`, which otherwise receives what springs hold more than in the file. */
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *path,
                                                const char *allowed);
 /* Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as
@@ -37314,8 +37314,8 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
         memset(w->booked.energy, 0, sizeof w->booked.energy);
         w->booked.inserted = kinetic + rotational;
         w->booked.removed = w->booked.throughput = 0;
-        w->stage.grown = 1;
     }
+    w->stage.grown = w->desc.ledger;            /* what springs hold differently is booked there */
     if (!growth) w->clock.grown = w->clock.time;    /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);

@@ -253,7 +253,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
    fields, feeds and outlets always. Contact histories are converted where a law is the same, and
    begin at 0 if a law is user-defined and `law`, `law_memory` or the like differs. A ledger that
    the file lacks begins with the present kinetic energy as `inserted` and the present elastic
-   energy as `growth`. */
+   energy as `growth`, which otherwise receives what springs hold more than in the file. */
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *path,
                                                const char *allowed);
 /* Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as

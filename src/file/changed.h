@@ -162,8 +162,8 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
         memset(w->booked.energy, 0, sizeof w->booked.energy);
         w->booked.inserted = kinetic + rotational;
         w->booked.removed = w->booked.throughput = 0;
-        w->stage.grown = 1;
     }
+    w->stage.grown = w->desc.ledger;            /* what springs hold differently is booked there */
     if (!growth) w->clock.grown = w->clock.time;    /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);

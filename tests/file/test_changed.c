@@ -173,6 +173,27 @@ int main(int argc, char **argv) {
         dem_world_destroy(fresh);
         dem_world_destroy(old);
     }
+    TEST("the ledger books what springs hold more after a restart with a stiffer material") {
+        dem_world_desc desc = settings(DEM_RESPONSE_SPRINGS);
+        dem_material_desc stuff = scene_stuff(5e6, 0.5, 0.4, 0);
+        dem_material m;
+        dem_world *old, *fresh;
+        dem_ledger l;
+        m.id = 1;
+        desc.ledger = 1;
+        old = trough(&desc, 0.4);
+        must(old, dem_world_step(old, 4000));
+        must(old, dem_checkpoint_write(old, saved));
+        fresh = trough(&desc, 0.4);
+        must(fresh, dem_material_set(fresh, m, &stuff));
+        must(fresh, dem_checkpoint_read_changed(fresh, saved, "materials pairs"));
+        must(fresh, dem_world_step(fresh, 1));
+        l = dem_ledger_get(fresh);
+        CHECK(l.growth > 0.01*l.throughput);
+        CHECK_NEAR(l.residual, dem_ledger_get(old).residual, 1e-3*l.throughput);
+        dem_world_destroy(fresh);
+        dem_world_destroy(old);
+    }
     TEST("growth that begins with a restart does not count the time before it") {
         dem_world_desc desc = settings(DEM_RESPONSE_SPRINGS);
         dem_world *old = trough(&desc, 0.4), *fresh;
