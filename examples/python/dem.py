@@ -2167,7 +2167,8 @@ class Pair(Struct):
         ('stiffness_adhesion', Real, 'N/m, kad of the hysteretic law; its kun is stiffness/restitution^2'),
         ('ignored', ctypes.c_int32,
          '1: bodies and walls of these materials pass through each other. They make no contacts, and laws that'
-         ' act at a distance are not called for them. Mixed: 0.'),
+         ' act at a distance are not called for them. The energy of springs that are in contact when this is '
+         'set goes to the residual of the ledger. Mixed: 0.'),
     ]
 
 
@@ -3901,7 +3902,8 @@ class World(WorldBase):
             any value; oscillations that the step does not resolve are damped.
         stiffness_adhesion: N/m, kad of the hysteretic law; its kun is stiffness/restitution^2
         ignored: 1: bodies and walls of these materials pass through each other. They make no contacts, and laws that
-            act at a distance are not called for them. Mixed: 0.
+            act at a distance are not called for them. The energy of springs that are in contact when this is set goes
+            to the residual of the ledger. Mixed: 0.
         """
         pair = self.pair(a, b)
         pair._put({name: value for name, value in (('young_eff', young_eff), ('shear_eff', shear_eff), ('restitution',
@@ -4466,7 +4468,7 @@ class World(WorldBase):
         follows from the contacts (>>stress). Further calls may change everything at any time; contact histories stay.
         Axes that move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
         Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with walls, joints,
-        feeds and outlets. Fields and fills are an error while a cell is sheared.
+        rails, feeds and outlets. Fields and fills are an error while a cell is sheared.
 
         rate: 1/s, strain rate of each axis; positive: the cell becomes longer
         shear: 1/s, shear rate: change of the velocity along x with y
@@ -4984,7 +4986,8 @@ class World(WorldBase):
         boundary, planar, thickness, response, names, shapes, walls, fields, feeds and outlets always. Contact
         histories are converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
         `law_memory` or the like differs. A ledger that the file lacks begins with the present kinetic energy as
-        `inserted` and the present elastic energy as `growth`.
+        `inserted` and the present elastic energy as `growth`, which otherwise receives what springs hold more than in
+        the file.
         """
         self._ok(_lib.dem_checkpoint_read_changed(self._at, os.fsencode(path), allowed.encode()))
 
