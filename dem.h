@@ -1480,7 +1480,7 @@ typedef struct dem_allocator {
 #define DEMI_CLONES
 #endif
 
-enum { DEM_ROW_GROUP = 64/(int)sizeof(dem_real) };    /* contacts of a vector group */
+#define DEM_ROW_GROUP (64/(int)sizeof(dem_real))      /* contacts of a vector group */
 
 #define DEMI_ROW_FIELD(PROPERTY, COEFFICIENT, UNIT) const dem_real *COEFFICIENT;
 /* A row of contacts in columns: c->overlap[q] is the overlap of contact q, c->normal[1][q] the y of
@@ -29839,7 +29839,7 @@ static demi_impacts *demi_impacts_of(dem_world *w, int a, int b) {
 }
 /* Returns the bin of an energy, J: five per decade from 1e-18 J on. */
 static int demi_impact_bin(double energy) {
-    const double at = energy > 0 ? 5*(log10(energy) + 18) : 0;
+    const double at = energy > 0 ? 5*(demi_log(energy)*0.43429448190325183 + 18) : 0;
     return at > 0 ? DEMI_MIN((int)at, DEM_IMPACT_BINS - 1) : 0;
 }
 /* Adds a contact that has ended to the statistics. Returns 0 if memory ran out. */
@@ -35680,7 +35680,7 @@ DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet o
    --------------------------------------------------------------------------------------------- */
 
 /* Returns the lower limit of a bin, J. */
-static double demi_impact_limit(int bin) { return pow(10, bin/5.0 - 18); }
+static double demi_impact_limit(int bin) { return demi_pow(10, bin/5.0 - 18); }
 /* True if the materials x and y (indices) are those of ids a and b, of which 0 means any. */
 static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
     return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||

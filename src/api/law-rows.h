@@ -35,7 +35,7 @@
 #define DEMI_CLONES
 #endif
 
-enum { DEM_ROW_GROUP = 64/(int)sizeof(dem_real) };    /* contacts of a vector group */
+#define DEM_ROW_GROUP (64/(int)sizeof(dem_real))      /* contacts of a vector group */
 
 #define DEMI_ROW_FIELD(PROPERTY, COEFFICIENT, UNIT) const dem_real *COEFFICIENT;
 /* A row of contacts in columns: c->overlap[q] is the overlap of contact q, c->normal[1][q] the y of

@@ -5,7 +5,7 @@
    --------------------------------------------------------------------------------------------- */
 
 /* Returns the lower limit of a bin, J. */
-static double demi_impact_limit(int bin) { return pow(10, bin/5.0 - 18); }
+static double demi_impact_limit(int bin) { return demi_pow(10, bin/5.0 - 18); }
 /* True if the materials x and y (indices) are those of ids a and b, of which 0 means any. */
 static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
     return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||

@@ -657,7 +657,7 @@ def _():
     w.body_id(0).radius_set(w.body_id(0).state.radius)
     w.body_id(0).remove()
     part.remove()
-    same(w.body_counts.removed, 1)
+    same(w.body_counts.removed, 2)
     sets = dem.World(groups="one two")
     m = sets.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)
     sets.spheres(m, [(0, 0, 0), (1, 0, 0), (2, 0, 0)], radius=0.1)
