@@ -715,7 +715,7 @@ def _():
     force, given = dem.ContactForce(), dem.Contact(overlap=1e-4, kn=1e5, kt=1e5, ct=1, kun=2e5, r_eff=0.01, m_eff=1e-3, dt=1e-5,
                                                    slip=(0.1, 0, 0), normal=(0, 0, 1), friction=0.5, friction_static=0.5)
     memory = (dem.Real*8)()
-    for law in ("hertz", "linear", "hysteretic", "viscous", "step", "mindlin", "mindlin_rescaled", "roll_step", "roll_constant"):
+    for law in ("hertz", "linear", "hysteretic", "viscous", "step", "mindlin", "mindlin_rescaled", "roll_step", "roll_constant", "twist"):
         getattr(dem, "law_" + law)(given, memory, force)
     dem.law_load(given, force, 0)
     same(force.normal > 0 and dem.memory_rotate(given, (1, 0, 0)).x == 1, True)
