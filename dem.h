@@ -29331,7 +29331,7 @@ static void demi_field_squares_begin(demi_field *f) {
     const size_t n = DEMI_FLUX*demi_field_cells(f);
     if (f->desc.variance) memcpy(f->sums + demi_field_squares(f) + n, f->sums, n*sizeof(double));
 }
-static void demi_field_squares_add(demi_field *f) {
+static DEMI_APART void demi_field_squares_add(demi_field *f) {      /* see demi_means_add */
     const size_t n = demi_field_cells(f);
     double *square = f->sums + demi_field_squares(f);
     const double *was = square + DEMI_FLUX*n;
@@ -29345,8 +29345,9 @@ static void demi_field_squares_add(demi_field *f) {
 }
 /* Adds a sample to the averages of body i: means[0] counts samples; then come the means of
    velocity, spin and force, and for each the sum of squares about its mean (recursion of [WEL62],
-   exact also for small variances about a large mean). */
-static void demi_means_add(const dem_world *w, int i) {
+   exact also for small variances about a large mean). Not inlined: gcc 12 stops with an internal
+   error at -O2 -flto -march=native otherwise. */
+static DEMI_APART void demi_means_add(const dem_world *w, int i) {
     const demi_bodies *b = &w->bodies;
     const dem_real *const from[3] = {b->vel + 4*i, b->spin + 4*i, b->force + 4*i};
     double *means = b->means + DEMI_MEANS*i;
