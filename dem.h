@@ -497,7 +497,7 @@
        DEM_REAL             double (default) or float: type of the state. All files of a program
                             must agree; dem_world_create returns null otherwise
        DEM_STATIC           makes every function static; use it with DEM_IMPLEMENTATION
-       DEM_LAW              name of your contact law, to have it inlined (docs/extending.md)
+       DEM_LAW              name of your contact law, evaluated by rows (docs/extending.md)
        DEM_NO_OPENMP        never uses OpenMP, even if the compiler offers it
        DEM_THREADS_FIXED    always uses desc.threads threads, also where fewer are faster
        DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits
@@ -4205,7 +4205,7 @@ typedef struct demi_species {
 /* Energies that each work group sums over one step, J; added in the order of work groups.
    DEMI_E_TOLD: what user-defined laws report. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
-      DEMI_E_ROLL,
+       DEMI_E_ROLL,
        DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_CELL, DEMI_E_TOLD, DEMI_E_GROWTH,
        DEMI_ENERGIES };
 

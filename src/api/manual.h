@@ -369,7 +369,7 @@
        DEM_REAL             double (default) or float: type of the state. All files of a program
                             must agree; dem_world_create returns null otherwise
        DEM_STATIC           makes every function static; use it with DEM_IMPLEMENTATION
-       DEM_LAW              name of your contact law, to have it inlined (docs/extending.md)
+       DEM_LAW              name of your contact law, evaluated by rows (docs/extending.md)
        DEM_NO_OPENMP        never uses OpenMP, even if the compiler offers it
        DEM_THREADS_FIXED    always uses desc.threads threads, also where fewer are faster
        DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits

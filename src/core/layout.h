@@ -90,7 +90,7 @@ typedef struct demi_species {
 /* Energies that each work group sums over one step, J; added in the order of work groups.
    DEMI_E_TOLD: what user-defined laws report. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
-      DEMI_E_ROLL,
+       DEMI_E_ROLL,
        DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_CELL, DEMI_E_TOLD, DEMI_E_GROWTH,
        DEMI_ENERGIES };
 
