@@ -4141,6 +4141,14 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
                                                    apart would compete for the same cache lines */
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
+/* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows, rounded
+   up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
+#define DEMI_ROWS(full) { int g, l; \
+    for (g = 0; g < (full); g += DEMI_LANES) { \
+        DEMI_VECTOR \
+        for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
+#define DEMI_ROWS_END }}}
+
 /* Coefficients of one contact, as the built-in laws need them. */
 #define DEMI_COEF_CONSTANT(PROPERTY, COEFFICIENT, UNIT) DEMI_COEF_##COEFFICIENT,
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_MU_SPIN,
@@ -4247,6 +4255,7 @@ typedef struct demi_piece { int32_t shape; dem_vec3 at; dem_quat q; } demi_piece
 typedef struct demi_shape {
     int kind;                      /* of its parts: DEMI_BALL, ...; of a union's first piece */
     int count;                     /* member spheres of a cluster; 0: one part */
+    int lone;                      /* 1: a cluster of one sphere, at its centre of mass */
     dem_real *parts;               /* count x 4: centre, radius, m */
     dem_vec3 axes;                 /* m, semi-axes or other lengths of a single part, by kind */
     int pieces;                    /* of a union; 0: no union */
@@ -4336,6 +4345,9 @@ typedef struct demi_domain {
                                       pairs with later groups; */
     int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
                                       a body that is not a sphere */
+    int near_lone[2];              /* of the pairs inside, and of those with later groups: the
+                                      first ones that are pairs of lone spheres (demi_lone); 0
+                                      unless effects.clustered */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
@@ -6960,6 +6972,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
         demi_put(shape.parts + 4*i,
                  dem_quat_unrotate(shape.frame, demi_sub(demi_at(shape.parts + 4*i),
                                                                         shape.centre)));
+    shape.lone = shape.count == 1 && !(demi_length(demi_at(shape.parts)) > 0);
     shape.centre = demi_add(shape.centre, about);
     demi_cluster_bounds(&shape);
     return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
@@ -7004,6 +7017,12 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
+}
+/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from it
+   by its moments of inertia and an orientation. */
+DEM_INLINE int demi_lone(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape || shape->lone;
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
@@ -7256,23 +7275,6 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-/* Rotates the spheres of one cluster to its present orientation, once a step for all contacts. */
-static void demi_centres_rotate(dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    const dem_real scale = demi_scale_of(w, body, shape);
-    const dem_real *part = shape->parts;
-    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body], R[9];
-    double Q[9];
-    int k, e;
-    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), Q);
-    for (k = 0; k < 9; k++) R[k] = (dem_real)Q[k]*scale;
-    for (k = 0; k < shape->count; k++, sphere += 4, part += 4) {
-        DEMI_UNROLL
-        for (e = 0; e < 3; e++)
-            sphere[e] = R[3*e]*part[0] + R[3*e + 1]*part[1] + R[3*e + 2]*part[2];
-        sphere[3] = part[3]*scale;
-    }
-}
 static void demi_part_matrix(const demi_part *p, double *Q) {
     if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
     else demi_ellipsoid_matrix(p->q, p->axes, Q);
@@ -7384,10 +7386,74 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
    the body in each step; and, where forces need it (effects.clustered), as points in space with a
    velocity and an effective mass (bodies.ball). This part owns both.
    --------------------------------------------------------------------------------------------- */
+/* A tile of bodies in their orientations, as a structure of arrays. */
+typedef struct demi_frames {
+    dem_real q[4][DEMI_ROOM], R[9][DEMI_ROOM];  /* quaternions; their matrices, by rows */
+    dem_real I[3][DEMI_ROOM];                   /* kg m2, principal moments, 0 < I */
+    dem_real free[DEMI_ROOM];                   /* 1, or 0 if W is 0 */
+    dem_real W[6][DEMI_ROOM];                   /* inverse inertia in space, as bodies.yield */
+} demi_frames;
+DEMI_CLONES static void demi_frames_turn(demi_frames *DEMI_RESTRICT f, int full) {
+    DEMI_ROWS(full)
+        const dem_real w = f->q[0][q], x = f->q[1][q], y = f->q[2][q], z = f->q[3][q];
+        f->R[0][q] = 1 - 2*(y*y + z*z);
+        f->R[1][q] = 2*(x*y - w*z);
+        f->R[2][q] = 2*(x*z + w*y);
+        f->R[3][q] = 2*(x*y + w*z);
+        f->R[4][q] = 1 - 2*(x*x + z*z);
+        f->R[5][q] = 2*(y*z - w*x);
+        f->R[6][q] = 2*(x*z - w*y);
+        f->R[7][q] = 2*(y*z + w*x);
+        f->R[8][q] = 1 - 2*(x*x + y*y);
+    DEMI_ROWS_END
+}
+DEM_INLINE dem_real demi_frame_yield(const demi_frames *f, int i, int j, dem_vec3 inv, int q) {
+    return f->R[i][q]*f->R[j][q]*inv.x + f->R[i + 1][q]*f->R[j + 1][q]*inv.y +
+        f->R[i + 2][q]*f->R[j + 2][q]*inv.z;
+}
+DEMI_CLONES static void demi_frames_yield(demi_frames *DEMI_RESTRICT f, int full) {
+    DEMI_ROWS(full)
+        const dem_vec3 inv = demi_v(f->free[q]/f->I[0][q], f->free[q]/f->I[1][q],
+                                    f->free[q]/f->I[2][q]);
+        f->W[0][q] = demi_frame_yield(f, 0, 0, inv, q);
+        f->W[1][q] = demi_frame_yield(f, 3, 3, inv, q);
+        f->W[2][q] = demi_frame_yield(f, 6, 6, inv, q);
+        f->W[3][q] = demi_frame_yield(f, 0, 3, inv, q);
+        f->W[4][q] = demi_frame_yield(f, 0, 6, inv, q);
+        f->W[5][q] = demi_frame_yield(f, 3, 6, inv, q);
+    DEMI_ROWS_END
+}
+/* Rotates the member spheres of those of the listed bodies that have several to their present
+   orientations, once a step for all contacts. who: bodies, at most a tile. */
+static void demi_centres_rotate(const dem_world *w, const int *who, int listed) {
+    int32_t body[DEMI_TILE];
+    demi_frames f;
+    int count = 0, l, k, e;
+    for (l = 0; l < listed; l++)
+        if (!demi_lone(w, who[l]) && demi_shape_of(w, who[l])->count) {
+            for (e = 0; e < 4; e++) f.q[e][count] = w->bodies.orient[4*(size_t)who[l] + (size_t)e];
+            body[count++] = who[l];
+        }
+    for (l = count; l % DEMI_LANES; l++)
+        for (e = 0; e < 4; e++) f.q[e][l] = 0;
+    demi_frames_turn(&f, l);
+    for (l = 0; l < count; l++) {
+        const demi_shape *shape = demi_shape_of(w, body[l]);
+        const dem_real scale = demi_scale_of(w, body[l], shape), *part = shape->parts;
+        dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body[l]], R[9];
+        for (e = 0; e < 9; e++) R[e] = f.R[e][l]*scale;
+        for (k = 0; k < shape->count; k++, sphere += 4, part += 4) {
+            DEMI_UNROLL
+            for (e = 0; e < 3; e++)
+                sphere[e] = R[3*e]*part[0] + R[3*e + 1]*part[1] + R[3*e + 2]*part[2];
+            sphere[3] = part[3]*scale;
+        }
+    }
+}
 /* Computes the spheres of all bodies in their present orientations. Returns 0 if memory ran out. */
 static int demi_centres_lay(dem_world *w) {
     int32_t *start;
-    int i, n = 0;
+    int who[DEMI_TILE], count = 0, i, n = 0;
     if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
     start = w->bodies.centre_start;
     for (i = 0; i < w->bodies.count; i++) {
@@ -7404,29 +7470,34 @@ static int demi_centres_lay(dem_world *w) {
     w->bodies.centres_valid = 1;
     for (i = 0; i < w->bodies.count; i++) {
         dem_real *lone = w->bodies.centre + 4*start[i];
-        if (demi_shape_of(w, i)) {
-            if (demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
-        } else {
+        if (!demi_lone(w, i)) who[count++] = i;
+        else {
             lone[0] = lone[1] = lone[2] = 0;
             lone[3] = w->bodies.pos[4*i + 3];
+        }
+        if (count == DEMI_TILE || i + 1 == w->bodies.count) {
+            demi_centres_rotate(w, who, count);
+            count = 0;
         }
     }
     return 1;
 }
-/* Sets W to the inverse inertia of a body in space, see bodies.yield. */
-static void demi_body_yield(const dem_world *w, int body, dem_real *W) {
-    const dem_real *I = w->bodies.moment + 4*body;
-    double R[9], a, b, c;
-    int k;
-    for (k = 0; k < 6; k++) W[k] = 0;
-    if (!demi_shape_of(w, body) || !(w->bodies.inv_mass[body] > 0)) return;
-    a = 1/(double)I[0]; b = 1/(double)I[1]; c = 1/(double)I[2];
-    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), R);
-    for (k = 0; k < 3; k++)
-        W[k] = (dem_real)(R[3*k]*R[3*k]*a + R[3*k + 1]*R[3*k + 1]*b + R[3*k + 2]*R[3*k + 2]*c);
-    W[3] = (dem_real)(R[0]*R[3]*a + R[1]*R[4]*b + R[2]*R[5]*c);
-    W[4] = (dem_real)(R[0]*R[6]*a + R[1]*R[7]*b + R[2]*R[8]*c);
-    W[5] = (dem_real)(R[3]*R[6]*a + R[4]*R[7]*b + R[5]*R[8]*c);
+/* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a tile. */
+static void demi_yields_turn(const dem_world *w, int begin, int end) {
+    const int count = end - begin, full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_frames f;
+    int l, e;
+    for (l = 0; l < full; l++) {
+        const int i = begin + DEMI_MIN(l, count - 1);
+        const int turns = demi_shape_of(w, i) && w->bodies.inv_mass[i] > 0;
+        f.free[l] = turns;
+        for (e = 0; e < 4; e++) f.q[e][l] = turns ? w->bodies.orient[4*i + e] : 0;
+        for (e = 0; e < 3; e++) f.I[e][l] = turns ? w->bodies.moment[4*i + e] : 1;
+    }
+    demi_frames_turn(&f, full);
+    demi_frames_yield(&f, full);
+    for (l = 0; l < count; l++)
+        for (e = 0; e < 6; e++) w->bodies.yield[6*(begin + l) + e] = f.W[e][l];
 }
 /* Sets the spheres of bodies begin .. end - 1 in space, and what their contacts need of the bodies
    (bodies.ball, bodies.yield). */
@@ -7435,7 +7506,7 @@ static void demi_balls_place(const dem_world *w, int begin, int end) {
     for (i = begin; i < end; i++) {
         const dem_real *x = w->bodies.pos + 4*i;
         const int first = w->bodies.centre_start[i], last = w->bodies.centre_start[i + 1];
-        demi_body_yield(w, i, w->bodies.yield + 6*i);
+        if ((i - begin) % DEMI_TILE == 0) demi_yields_turn(w, i, DEMI_MIN(i + DEMI_TILE, end));
         for (k = first; k < last; k++) {
             const dem_real *arm = w->bodies.centre + 4*k;
             dem_real *ball = w->bodies.ball + 4*k;
@@ -10054,7 +10125,9 @@ typedef struct demi_turning {
     dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
     dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the end of moment_arm */
     dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
+    int round;                     /* 1: the moments of each body are equal */
 } demi_turning;
+enum { DEMI_ROTATION_ROUND = -1 };
 /* Body l of a tile: kicks L by T kick, rotates freely for dt, and predicts spin with L + T after.
    Also stores the squares of its speed and change of speed. */
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
@@ -10064,12 +10137,19 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
     const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
     const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
-                              t->L[2][l] + T.z*kick);
-    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
-        : demi_rotation_rows[rotation].fly(&q, L, I, inv, dt);
-    const dem_vec3 half = dem_quat_rotate(start, mean);
-    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
-    const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
+                              t->L[2][l] + T.z*kick), next = demi_add(L, demi_scale(T, after));
+    dem_vec3 half, spin, by;
+    if (rotation == DEMI_ROTATION_ROUND) {
+        half = demi_scale(L, inv.x);
+        spin = demi_scale(next, inv.x);
+        q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(half, dt)), q));
+    } else {
+        half = dem_quat_rotate(start, rotation == DEM_ROTATION_SPIRAL
+            ? demi_flight_spiral(&q, L, I, inv, dt)
+            : demi_rotation_rows[rotation].fly(&q, L, I, inv, dt));
+        spin = demi_spin_of(q, next, inv);
+    }
+    by = demi_sub(spin, half);                  /* half a step's change */
     t->rate2[l] = demi_dot(half, half);
     t->speed2[l] = t->rate2[l]*t->I[3][l]*t->I[3][l];
     t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
@@ -10081,12 +10161,12 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
 /* The default scheme for a whole tile, without a branch inside, so that it is vectorised. */
 DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real kick, dem_real dt,
                                             dem_real after) {
-    int l, q;
-    for (q = 0; q < count; q += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = 0; l < DEMI_LANES; l++)
-            demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
-    }
+    DEMI_ROWS(count) demi_turning_fly(t, q, DEM_ROTATION_SPIRAL, kick, dt, after); DEMI_ROWS_END
+}
+/* The same for bodies with three equal moments, whose free rotation is a constant spin. */
+DEMI_CLONES static void demi_turning_round(demi_turning *t, int count, dem_real kick, dem_real dt,
+                                           dem_real after) {
+    DEMI_ROWS(count) demi_turning_fly(t, q, DEMI_ROTATION_ROUND, kick, dt, after); DEMI_ROWS_END
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
@@ -10094,14 +10174,22 @@ DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real
 static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
                              dem_real dt, dem_real after) {
     int l;
-    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(t, count, kick, dt, after);
+    if (t->round) demi_turning_round(t, count, kick, dt, after);
+    else if (w->desc.rotation == DEM_ROTATION_SPIRAL)
+        demi_turning_spiral(t, count, kick, dt, after);
     else for (l = 0; l < count; l++)
         demi_turning_fly(t, l, (int)w->desc.rotation, kick, dt, after);
 }
 /* How bodies rotate: over a whole step, with springs; over two halves with a kick in between, with
    impulses; over half a step without a kick, for contact detection with impulses (demi_ahead). */
 enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
-/* Rotates the listed bodies other than spheres, at most a tile. Unless `domain` is null, it
+/* True if the moments of inertia of a body are equal, as those of a ball or a cube, and the default
+   scheme rotates it. */
+DEM_INLINE int demi_turns_round(const dem_world *w, int i) {
+    const dem_real *I = w->bodies.moment + 4*(size_t)i;
+    return I[0] == I[1] && I[1] == I[2] && w->desc.rotation == DEM_ROTATION_SPIRAL;
+}
+/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless `domain` is null, it
    receives the largest speeds of rotation and their changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
@@ -10110,6 +10198,7 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     int l, e;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     dem_real turn = 0, speed = 0, rate = 0, check = 0;
+    t.round = demi_turns_round(w, who[0]);
     for (l = 0; l < full; l++) {                /* padded with copies of the last one */
         size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
         DEMI_ONE_BY_ONE(i);
@@ -10145,13 +10234,12 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
         for (e = 0; e < 3 && how != DEMI_TURN_AHEAD; e++)
             w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
         for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
-        if (w->bodies.centres_valid && how != DEMI_TURN_HALVES &&
-            w->shapes[w->bodies.shape[who[l]] - 1].count) demi_centres_rotate(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
         rate = DEMI_MAX(rate, t.rate2[l]);
         check += t.rate2[l];
     }
+    if (w->bodies.centres_valid && how != DEMI_TURN_HALVES) demi_centres_rotate(w, who, count);
     if (!domain) return;
     domain->turn_rate = DEMI_MAX(domain->turn_rate, (double)rate);
     domain->turn = DEMI_MAX(domain->turn, (double)turn);
@@ -10160,16 +10248,12 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
 }
 /* The same for spheres: q becomes exp(w dt/2) q, with the spin w in the world frame stored in L. */
 DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
-    int l, k;
-    for (k = 0; k < count; k += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = k; l < k + DEMI_LANES; l++) {
-            const dem_quat q = demi_quat_again(dem_quat_multiply(
-                demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
-                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l])));
-            t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
-        }
-    }
+    DEMI_ROWS(count)
+        const dem_quat now = demi_quat_again(dem_quat_multiply(
+            demi_quat_exp(demi_v(t->L[0][q]*dt, t->L[1][q]*dt, t->L[2][q]*dt)),
+            dem_quat_make(t->q[0][q], t->q[1][q], t->q[2][q], t->q[3][q])));
+        t->q[0][q] = now.w; t->q[1][q] = now.x; t->q[2][q] = now.y; t->q[3][q] = now.z;
+    DEMI_ROWS_END
 }
 /* Rotates the listed spheres, at most a tile. */
 static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
@@ -10192,27 +10276,27 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
+static void demi_orient_list(dem_world *w, demi_domain *domain, const int *who, int count, int how,
+                             int shaped) {
+    if (count && shaped) demi_orient_some(w, domain, who, count, how);
+    else if (count) demi_orient_balls(w, who, count, how);
+}
 /* Advances the orientations of bodies begin .. end - 1, and the spins of those that are not
    spheres, by a step; by half a step, for contact detection, if `domain` is null. */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
     const int how = !domain ? DEMI_TURN_AHEAD
         : demi_response_is(w, DEMI_MIDWAY) ? DEMI_TURN_HALVES : DEMI_TURN_STEP;
-    int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
+    int who[3][DEMI_TILE], count[3] = {0, 0, 0}, i, k;      /* spheres, round bodies, others */
     for (i = begin; i < end; i++) {
         if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
-        if (w->bodies.shape[i]) {
-            who[count++] = i;
-            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count, how); count = 0; }
-        } else if (w->desc.orientations) {
-            balls[ball_count++] = i;
-            if (ball_count == DEMI_TILE) {
-                demi_orient_balls(w, balls, ball_count, how);
-                ball_count = 0;
-            }
-        }
+        if (!w->bodies.shape[i] && !w->desc.orientations) continue;
+        k = !w->bodies.shape[i] ? 0 : demi_turns_round(w, i) ? 1 : 2;
+        who[k][count[k]++] = i;
+        if (count[k] < DEMI_TILE) continue;
+        demi_orient_list(w, domain, who[k], count[k], how, k);
+        count[k] = 0;
     }
-    if (count) demi_orient_some(w, domain, who, count, how);
-    if (ball_count) demi_orient_balls(w, balls, ball_count, how);
+    for (k = 0; k < 3; k++) demi_orient_list(w, domain, who[k], count[k], how, k);
 }
 /* Computes spins at the full step from the angular momentum at the half step and the present
    torque. */
@@ -15097,7 +15181,7 @@ static demi_species demi_species_of(const dem_world *w, int body, dem_real radiu
     s.mass = w->bodies.mass[body];
     s.inv_mass = w->bodies.inv_mass[body];
     s.material = w->bodies.material[body];
-    s.shape = demi_shape_of(w, body) ? w->bodies.shape[body] : 0;
+    s.shape = demi_lone(w, body) ? 0 : w->bodies.shape[body];
     return s;
 }
 /* Returns the row of a species in the table, species_count if it has none. Compares every bit: a
@@ -15127,10 +15211,10 @@ static void demi_species_count(dem_world *w) {
     e->species_count = 0;
     for (i = 0; i < w->bodies.count; i++) {
         const demi_shape *shape = demi_shape_of(w, i);
-        const int count = !shape ? 1 : e->clustered ? shape->count : 0;
+        const int lone = demi_lone(w, i), count = lone ? 1 : e->clustered ? shape->count : 0;
         for (k = 0; k < count && e->species_count <= DEMI_SPECIES; k++) {
-            const demi_species s = demi_species_of(w, i, shape
-                ? shape->parts[4*k + 3]*demi_scale_of(w, i, shape) : w->bodies.pos[4*i + 3]);
+            const demi_species s = demi_species_of(w, i, lone ? w->bodies.pos[4*i + 3]
+                : shape->parts[4*k + 3]*demi_scale_of(w, i, shape));
             if (demi_species_find(w, &s) < e->species_count) continue;
             if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = s;
             e->species_count++;
@@ -15419,19 +15503,29 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     }
 }
 
+/* Returns the number of pairs of two lone spheres that entries begin .. end - 1 of a work group's
+   list begin with. */
+static int demi_near_lone(const dem_world *w, int d, int begin, int end) {
+    const int32_t *a = w->near.a + d*w->near.stride, *b = w->near.b + d*w->near.stride;
+    int p = begin;
+    while (w->effects.clustered && p < end && demi_lone(w, a[p]) && demi_lone(w, b[p])) p++;
+    return p - begin;
+}
 /* Completes the pruned list of a work group. Pads it to a multiple of DEMI_LANES with copies of the
-   last pair, whose results are ignored, so that every vector is full. Stores in each candidate its
-   entry in the pruned list. */
+   last pair, whose results are ignored, so that every vector is full. Counts pairs of lone spheres.
+   Stores in each candidate its entry in the pruned list. */
 static void demi_near_adopt(dem_world *w, int d) {
     demi_near *near = &w->near;
-    const demi_domain *domain = &w->domains[d];
+    demi_domain *domain = &w->domains[d];
     const size_t stride = (size_t)near->stride;
     dem_real *memory = w->memory_stride
         ? near->memory + (size_t)d*(size_t)w->memory_stride*stride : 0;
     int l, p, e;
     for (l = 0; l < 2; l++) {
         const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
-        if (end == (l ? domain->near_cross : 0)) continue;
+        const int begin = l ? domain->near_cross : 0;
+        domain->near_lone[l] = demi_near_lone(w, d, begin, end);
+        if (end == begin) continue;
         for (p = end; p%DEMI_LANES; p++) {
             near->a[at + p] = near->a[at + end - 1];
             near->b[at + p] = near->b[at + end - 1];
@@ -15556,6 +15650,22 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     return left;
 }
 
+/* Moves the pairs of two lone spheres to the front of entries first .. end - 1, so that they form
+   tiles of their own. Both kinds keep their order. */
+static void demi_near_lone_first(dem_world *w, const demi_list *list, int d, int first, int end) {
+    const int at = d*w->near.stride;
+    int32_t *column[3], *aside = w->near.hit + at;
+    int e, p, lone, left;
+    column[0] = w->near.ball_a + at; column[1] = w->near.ball_b + at; column[2] = w->near.k + at;
+    for (e = 0; e < 3; e++) {                   /* k last: it tells which are lone */
+        for (p = left = first, lone = 0; p < end; p++) {
+            const int k = w->near.k[at + p], value = column[e][p];
+            if (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])) column[e][left++] = value;
+            else aside[lone++] = value;
+        }
+        for (p = 0; p < lone; p++) column[e][left + p] = aside[p];
+    }
+}
 /* Returns the entry in the previous list of the pair of spheres at index `at` of the present one,
    or -1. Those of one candidate are adjacent. */
 static int demi_near_was(const dem_world *w, const demi_list *list, int d, int at) {
@@ -15584,6 +15694,7 @@ static void demi_domain_near(dem_world *w, int d) {
         p = demi_near_pick(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
         p = demi_near_part(w, list, d, first, p);
+        if (w->effects.clustered) demi_near_lone_first(w, list, d, first, p);
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
             near->a[at] = list->a[k];
@@ -17145,12 +17256,6 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
 /* --- stages: each runs over all pairs of a tile before the next begins. Processors then overlap
    several pairs, instead of waiting for one long chain of roots and divisions. `full` is a multiple
    of DEMI_LANES; the results of pairs that pad the last group are ignored. --- */
-#define DEMI_ROWS(full) { int g, l; \
-    for (g = 0; g < (full); g += DEMI_LANES) { \
-        DEMI_VECTOR \
-        for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
-#define DEMI_ROWS_END }}}
-
 /* Gap, m, up to which a law is called for pair q. */
 DEM_INLINE dem_real demi_tile_range(const demi_tile *t, const demi_same *s, int q, int uniform) {
     return s->range + s->range_radii*(uniform ? 2*s->radius : t->radius[0][q] + t->radius[1][q]);
@@ -17773,8 +17878,12 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     demi_tile_fetch(r, full, t);
     if (w->cell.on) demi_tile_flow(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
-    for (q = 0; q < r->keep; q++)
-        demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
+    for (q = 0; q < r->keep; q++) {             /* not of the pairs behind, which may be others */
+        dem_real *memory = span->memory + (size_t)q*span->stride;
+        demi_row_copy(memory, t->memory[q], span->count/DEMI_LANES*DEMI_LANES);
+        for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
+            memory[k] = t->memory[q][k];
+    }
     if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
     if (r->ledger) demi_tile_book(t, span->count, energy);
     return r;
@@ -17877,8 +17986,9 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
                       t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
                       (double)t->overlap[q], (double)share);
 }
-/* Computes all pairs of a work group: those within it, then those with later ones. note: called
-   for every tile when its forces are known, or null. */
+/* Computes all pairs of a work group: those within it, then those with later ones. With clusters in
+   the world it leaves out those that demi_pairs_members computes. note: called for every tile when
+   its forces are known, or null. */
 DEM_INLINE void demi_pairs_with(dem_world *w, int d,
                                 void (*note)(dem_world *w, int d, demi_tile *t,
                                              const demi_span *span, const demi_run *r)) {
@@ -17895,7 +18005,8 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d,
     demi_tile_begin(w, d, &tile);
     for (l = 0; l < 2; l++) {
         const int begin = l ? domain->near_cross : 0;
-        const int end = l ? domain->near_end : domain->near_own;
+        const int end = w->effects.clustered ? begin + domain->near_lone[l]
+            : l ? domain->near_end : domain->near_own;
         for (p = begin; p < end; p += DEMI_TILE) {
             const int count = DEMI_MIN((int)DEMI_TILE, end - p);
             const demi_span span = demi_span_of(w, d, p, count);
@@ -22823,10 +22934,10 @@ static void demi_cross_gather(dem_world *w, int d) {
    >>members
    Contact forces between spheres that may be members of clusters (springs, effects.clustered). The
    pruned neighbour list then holds pairs of member spheres, and a lone sphere is the only member of
-   its body. A step tests all pairs of the list. Those that touch fill a tile with the relative
-   motion of the two spheres, which are points of their bodies, and the stages of >>respond
-   evaluate the laws as for lone spheres, whose forces have the same bits. Clusters differ in three
-   ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
+   its body. Pairs of lone spheres come first in the list, and >>pairs computes them. A step tests
+   the others. Those that touch fill a tile with the relative motion of the two spheres, which are
+   points of their bodies, and the stages of >>respond evaluate the laws as for lone spheres, whose
+   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
    same two bodies may be merged (>>kept), and a force acts at the centre of a member sphere. Owns
    near.on, near.hit and the slots of its pairs.
    --------------------------------------------------------------------------------------------- */
@@ -22847,14 +22958,21 @@ typedef struct demi_member_tile {
     int count, weighted;           /* contacts; are any merged? */
 } demi_member_tile;
 
+/* Empties a tile. All weights are 1. */
+static void demi_member_clear(demi_member_tile *m) {
+    int q;
+    m->count = m->weighted = 0;
+    for (q = 0; q < DEMI_TILE; q++) {
+        m->t.share[q] = m->t.grip[q] = 1;
+        m->t.lift[q] = 0;
+        m->merged[q] = 0;
+    }
+}
 /* Appends entry p of the pruned list to a tile. c: its weights if it is merged with others of the
-   same two bodies, or null: all weights are 1. */
+   same two bodies, or null. */
 DEM_INLINE void demi_member_add(demi_member_tile *m, int p, const demi_kept *c) {
     const int q = m->count++;
     m->p[q] = p;
-    m->t.share[q] = m->t.grip[q] = 1;
-    m->t.lift[q] = 0;
-    m->merged[q] = 0;
     if (!c) return;
     m->t.share[q] = c->share;
     m->t.grip[q] = c->grip;
@@ -22921,7 +23039,7 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
     if (at_grip == DEMI_MEMORY) return;
     for (q = 0; q < full; q++) {
         const dem_real held = m->t.rows.memory[at_grip][q], now = m->t.grip[q];
-        m->t.rows.memory[at_grip][q] = now;
+        if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* else it stays 0 */
         if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
         for (e = 0; e < keep; e++)
             if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
@@ -23107,7 +23225,7 @@ static void demi_member_begin(const dem_world *w, demi_member_tile *m, int d, de
     m->span.b = m->b;
     m->span.k = m->k;
     m->span.ball = m->ball[0];
-    m->count = m->weighted = 0;
+    demi_member_clear(m);
     demi_tile_begin(w, d, &m->t.rows);
     m->p[0] = demi_near_first(&w->domains[d]);
     demi_member_coefs(w, m, d, DEMI_TILE, 1);
@@ -23174,7 +23292,8 @@ static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int se
     if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
     if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
     if (w->events.n.on) demi_tile_note(w, d, rows, &m->span, &m->run);
-    m->count = m->weighted = 0;
+    if (m->weighted) demi_member_clear(m);
+    m->count = 0;
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
    into w->merging. hit: their entries. Returns them. */
@@ -23225,13 +23344,8 @@ static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit)
     }
     return n;
 }
-/* Returns how many of n hits are of the same two bodies as the first. */
-DEM_INLINE int demi_members_run(const int32_t *k, const int32_t *hit, int n) {
-    int i = 1;
-    while (i < n && k[hit[i]] == k[hit[0]]) i++;
-    return i;
-}
-/* Computes all pairs of a work group: those within it, then those with later ones. */
+/* Computes all pairs of a work group: those of lone spheres, then those within it, then those with
+   later ones. */
 static void demi_pairs_members(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
@@ -23239,19 +23353,20 @@ static void demi_pairs_members(dem_world *w, int d) {
     const int32_t *k = w->near.k + d*w->near.stride;
     int32_t *hit = w->near.hit + d*w->near.stride;
     DEMI_ALIGNED demi_member_tile m;
-    int l, p, n, run;
-    domain->contacts = 0;
-    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
+    int l, p, n, run, i;
+    demi_pairs_with(w, d, w->events.n.on ? demi_tile_note : 0);
+    if (domain->near_own <= domain->near_lone[0] &&
+        domain->near_end <= domain->near_cross + domain->near_lone[1]) return;
     demi_member_begin(w, &m, d, dt);
     for (l = 0; l < 2; l++) {
-        const int begin = l ? domain->near_cross : 0, end = l ? domain->near_end : domain->near_own;
+        const int begin = (l ? domain->near_cross : 0) + domain->near_lone[l];
+        const int end = l ? domain->near_end : domain->near_own;
         for (p = begin; l && p < end; p++)
             if (p == begin || k[p] != k[p - 1]) demi_slot_clear(w, k[p]);
         n = demi_members_touch(w, d, begin, end, hit);
         for (p = 0; p < n; p += run) {
             const demi_kept *c = 0;
-            int i;
-            run = merges ? demi_members_run(k, hit + p, n - p) : 1;
+            for (run = 1; merges && p + run < n && k[hit[p + run]] == k[hit[p]];) run++;
             if (run > 1) c = demi_members_merge(w, d, hit + p, run);
             for (i = 0; i < run; i++) {
                 demi_member_add(&m, hit[p + i], c ? c + i : 0);
@@ -25627,8 +25742,7 @@ static void demi_some_back(dem_world *w, int index) {
         if (!w->bodies.shape[i] || !(w->bodies.inv_mass[i] > 0)) continue;
         demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
             demi_at(w->bodies.angular + 4*i), demi_v(1/I.x, 1/I.y, 1/I.z)));
-        if (w->bodies.centres_valid && w->shapes[w->bodies.shape[i] - 1].count)
-            demi_centres_rotate(w, i);
+        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
@@ -28693,7 +28807,7 @@ static void demi_rails_move(dem_world *w) {
             w->bodies.half_spin[4*i + e] = turn[e];
             w->bodies.spin[4*i + e] = locked >> e & 1 ? turn[e] : spin[e];
         }
-        if (w->bodies.centres_valid && shape->count) demi_centres_rotate(w, i);
+        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
 }
 /* Removes the rails of bodies that were removed, and that of `body`. */
@@ -36730,16 +36844,22 @@ static int demi_balls_own(const dem_world *t, int at) {
          t->near.ball_b[at] >= start[b] && t->near.ball_b[at] < start[b + 1]);
 }
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
-   be among the `count` candidates of this list, ascending. With shaped = 0 all pairs must be of two
+   be among the `count` candidates of this list, ascending, with clusters twice: first the pairs of
+   lone spheres, then the others. With shaped = 0 all pairs must be of two
    spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
    index of the candidate in the list of all domains. */
 static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
                            int end, int shaped) {
     dem_world *t = r->t;
     const int first = d*list->stride;
-    int p, last = -1;
+    int p, last = -1, lone = t->effects.clustered && !shaped;
     for (p = begin; p < end; p++) {
         const int at = d*t->near.stride + p, k = t->near.k[at];
+        if (k < 0 || k >= count) return demi_lie(r, "neighbour pair of domain", d);
+        if (lone && !(demi_lone(t, list->a[first + k]) && demi_lone(t, list->b[first + k]))) {
+            lone = 0;
+            last = -1;
+        }
         if (k < last || (k == last && (shaped || !t->effects.clustered)) || k >= count ||
             t->near.a[at] != list->a[first + k] || t->near.b[at] != list->b[first + k] ||
             shaped == demi_pair_of_balls(t, t->near.a[at], t->near.b[at]) ||
@@ -40617,8 +40737,7 @@ static void demi_lent_take(dem_world *w, int i, const char *from) {
     const int n = demi_lent_arrays(w, array, stride, count);
     for (k = 0; k < n; k++)
         demi_unpack(&from, array[k] + stride[k]*i, (size_t)count[k]*sizeof(dem_real));
-    if (w->bodies.orienting && w->bodies.centres_valid && demi_shape_of(w, i) &&
-        demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
+    if (w->bodies.orienting && w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
 }
 static const demi_record demi_lent = {demi_lent_size, demi_lent_put, demi_lent_take};
 

@@ -74,7 +74,8 @@ typedef struct bench_choice {
     int adhesion;               /* 1: hysteretic law that unloads as steeply as it loads; 2: and sticks */
     int field;                  /* 1: solidicity and velocity sampled every 100 steps; 2: never again */
     int open;                   /* 1: no boundary is periodic                                   */
-    int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere */
+    int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere; 3: the same,
+                                   with its mass a hair off its centre; 4: spheres, but for the last, a cluster */
     int cuts;                   /* parts of each side of DRUM's triangles: cuts^2 triangles each; 0 or 1: one */
     dem_law_fn law;             /* a law of one's own: 3 reals, 1 vector                        */
     dem_law_rows_fn rows;       /* the same for rows of contacts                                */
@@ -327,6 +328,13 @@ STUDY_FN dem_shape bench_shape(dem_world *world, int shaped, dem_real radius) {
     one.count = 1;
     one.positions = centre;
     one.radius = radius;
+    if (shaped == 3) {
+        const dem_real volume = (dem_real)4.18879*radius*radius*radius;
+        one.mass = DEM_CLUSTER_GIVEN;
+        one.volume = volume;
+        one.centre = dem_vec3_make(radius*(dem_real)1e-6, 0, 0);
+        one.inertia[0] = one.inertia[1] = one.inertia[2] = (dem_real)0.4*volume*radius*radius;
+    }
     return shaped == 1 ? dem_shape_ellipsoid_add(world, dem_vec3_make(radius, radius, radius))
                        : dem_shape_cluster_add(world, &one);
 }
@@ -347,7 +355,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     dem_world *world;
     dem_real *x, *v, *r;
     dem_result result;
-    int i, c, ok = 1;
+    int i, c, balls, ok = 1;
     desc.threads = o->threads > 0 ? o->threads : 1;
     desc.skin = (dem_real)o->skin;
     desc.ledger = o->ledger > 0;
@@ -415,9 +423,11 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
         }
     }
     if (o->shaped) shape = bench_shape(world, o->shaped, (dem_real)s->radius);
-    result = !ok ? DEM_ERROR_ARGUMENT
-        : o->shaped ? dem_bodies_add(world, material, shape, count, x, 0, v, 0, 0)
-        : dem_spheres_add(world, material, count, x, v, r, 0);
+    balls = o->shaped == 4 ? count - 1 : o->shaped ? 0 : count;
+    result = ok ? DEM_OK : DEM_ERROR_ARGUMENT;
+    if (result == DEM_OK && balls) result = dem_spheres_add(world, material, balls, x, v, r, 0);
+    if (result == DEM_OK && balls < count)
+        result = dem_bodies_add(world, material, shape, count - balls, x + 3*balls, 0, v + 3*balls, 0, 0);
     for (i = 0; i < count && result == DEM_OK; i++) {
         const double *spin = s->spin + 3*i*every;
         dem_body_state state;

@@ -5,10 +5,74 @@
    the body in each step; and, where forces need it (effects.clustered), as points in space with a
    velocity and an effective mass (bodies.ball). This part owns both.
    --------------------------------------------------------------------------------------------- */
+/* A tile of bodies in their orientations, as a structure of arrays. */
+typedef struct demi_frames {
+    dem_real q[4][DEMI_ROOM], R[9][DEMI_ROOM];  /* quaternions; their matrices, by rows */
+    dem_real I[3][DEMI_ROOM];                   /* kg m2, principal moments, 0 < I */
+    dem_real free[DEMI_ROOM];                   /* 1, or 0 if W is 0 */
+    dem_real W[6][DEMI_ROOM];                   /* inverse inertia in space, as bodies.yield */
+} demi_frames;
+DEMI_CLONES static void demi_frames_turn(demi_frames *DEMI_RESTRICT f, int full) {
+    DEMI_ROWS(full)
+        const dem_real w = f->q[0][q], x = f->q[1][q], y = f->q[2][q], z = f->q[3][q];
+        f->R[0][q] = 1 - 2*(y*y + z*z);
+        f->R[1][q] = 2*(x*y - w*z);
+        f->R[2][q] = 2*(x*z + w*y);
+        f->R[3][q] = 2*(x*y + w*z);
+        f->R[4][q] = 1 - 2*(x*x + z*z);
+        f->R[5][q] = 2*(y*z - w*x);
+        f->R[6][q] = 2*(x*z - w*y);
+        f->R[7][q] = 2*(y*z + w*x);
+        f->R[8][q] = 1 - 2*(x*x + y*y);
+    DEMI_ROWS_END
+}
+DEM_INLINE dem_real demi_frame_yield(const demi_frames *f, int i, int j, dem_vec3 inv, int q) {
+    return f->R[i][q]*f->R[j][q]*inv.x + f->R[i + 1][q]*f->R[j + 1][q]*inv.y +
+        f->R[i + 2][q]*f->R[j + 2][q]*inv.z;
+}
+DEMI_CLONES static void demi_frames_yield(demi_frames *DEMI_RESTRICT f, int full) {
+    DEMI_ROWS(full)
+        const dem_vec3 inv = demi_v(f->free[q]/f->I[0][q], f->free[q]/f->I[1][q],
+                                    f->free[q]/f->I[2][q]);
+        f->W[0][q] = demi_frame_yield(f, 0, 0, inv, q);
+        f->W[1][q] = demi_frame_yield(f, 3, 3, inv, q);
+        f->W[2][q] = demi_frame_yield(f, 6, 6, inv, q);
+        f->W[3][q] = demi_frame_yield(f, 0, 3, inv, q);
+        f->W[4][q] = demi_frame_yield(f, 0, 6, inv, q);
+        f->W[5][q] = demi_frame_yield(f, 3, 6, inv, q);
+    DEMI_ROWS_END
+}
+/* Rotates the member spheres of those of the listed bodies that have several to their present
+   orientations, once a step for all contacts. who: bodies, at most a tile. */
+static void demi_centres_rotate(const dem_world *w, const int *who, int listed) {
+    int32_t body[DEMI_TILE];
+    demi_frames f;
+    int count = 0, l, k, e;
+    for (l = 0; l < listed; l++)
+        if (!demi_lone(w, who[l]) && demi_shape_of(w, who[l])->count) {
+            for (e = 0; e < 4; e++) f.q[e][count] = w->bodies.orient[4*(size_t)who[l] + (size_t)e];
+            body[count++] = who[l];
+        }
+    for (l = count; l % DEMI_LANES; l++)
+        for (e = 0; e < 4; e++) f.q[e][l] = 0;
+    demi_frames_turn(&f, l);
+    for (l = 0; l < count; l++) {
+        const demi_shape *shape = demi_shape_of(w, body[l]);
+        const dem_real scale = demi_scale_of(w, body[l], shape), *part = shape->parts;
+        dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body[l]], R[9];
+        for (e = 0; e < 9; e++) R[e] = f.R[e][l]*scale;
+        for (k = 0; k < shape->count; k++, sphere += 4, part += 4) {
+            DEMI_UNROLL
+            for (e = 0; e < 3; e++)
+                sphere[e] = R[3*e]*part[0] + R[3*e + 1]*part[1] + R[3*e + 2]*part[2];
+            sphere[3] = part[3]*scale;
+        }
+    }
+}
 /* Computes the spheres of all bodies in their present orientations. Returns 0 if memory ran out. */
 static int demi_centres_lay(dem_world *w) {
     int32_t *start;
-    int i, n = 0;
+    int who[DEMI_TILE], count = 0, i, n = 0;
     if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
     start = w->bodies.centre_start;
     for (i = 0; i < w->bodies.count; i++) {
@@ -25,29 +89,34 @@ static int demi_centres_lay(dem_world *w) {
     w->bodies.centres_valid = 1;
     for (i = 0; i < w->bodies.count; i++) {
         dem_real *lone = w->bodies.centre + 4*start[i];
-        if (demi_shape_of(w, i)) {
-            if (demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
-        } else {
+        if (!demi_lone(w, i)) who[count++] = i;
+        else {
             lone[0] = lone[1] = lone[2] = 0;
             lone[3] = w->bodies.pos[4*i + 3];
+        }
+        if (count == DEMI_TILE || i + 1 == w->bodies.count) {
+            demi_centres_rotate(w, who, count);
+            count = 0;
         }
     }
     return 1;
 }
-/* Sets W to the inverse inertia of a body in space, see bodies.yield. */
-static void demi_body_yield(const dem_world *w, int body, dem_real *W) {
-    const dem_real *I = w->bodies.moment + 4*body;
-    double R[9], a, b, c;
-    int k;
-    for (k = 0; k < 6; k++) W[k] = 0;
-    if (!demi_shape_of(w, body) || !(w->bodies.inv_mass[body] > 0)) return;
-    a = 1/(double)I[0]; b = 1/(double)I[1]; c = 1/(double)I[2];
-    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), R);
-    for (k = 0; k < 3; k++)
-        W[k] = (dem_real)(R[3*k]*R[3*k]*a + R[3*k + 1]*R[3*k + 1]*b + R[3*k + 2]*R[3*k + 2]*c);
-    W[3] = (dem_real)(R[0]*R[3]*a + R[1]*R[4]*b + R[2]*R[5]*c);
-    W[4] = (dem_real)(R[0]*R[6]*a + R[1]*R[7]*b + R[2]*R[8]*c);
-    W[5] = (dem_real)(R[3]*R[6]*a + R[4]*R[7]*b + R[5]*R[8]*c);
+/* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a tile. */
+static void demi_yields_turn(const dem_world *w, int begin, int end) {
+    const int count = end - begin, full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_frames f;
+    int l, e;
+    for (l = 0; l < full; l++) {
+        const int i = begin + DEMI_MIN(l, count - 1);
+        const int turns = demi_shape_of(w, i) && w->bodies.inv_mass[i] > 0;
+        f.free[l] = turns;
+        for (e = 0; e < 4; e++) f.q[e][l] = turns ? w->bodies.orient[4*i + e] : 0;
+        for (e = 0; e < 3; e++) f.I[e][l] = turns ? w->bodies.moment[4*i + e] : 1;
+    }
+    demi_frames_turn(&f, full);
+    demi_frames_yield(&f, full);
+    for (l = 0; l < count; l++)
+        for (e = 0; e < 6; e++) w->bodies.yield[6*(begin + l) + e] = f.W[e][l];
 }
 /* Sets the spheres of bodies begin .. end - 1 in space, and what their contacts need of the bodies
    (bodies.ball, bodies.yield). */
@@ -56,7 +125,7 @@ static void demi_balls_place(const dem_world *w, int begin, int end) {
     for (i = begin; i < end; i++) {
         const dem_real *x = w->bodies.pos + 4*i;
         const int first = w->bodies.centre_start[i], last = w->bodies.centre_start[i + 1];
-        demi_body_yield(w, i, w->bodies.yield + 6*i);
+        if ((i - begin) % DEMI_TILE == 0) demi_yields_turn(w, i, DEMI_MIN(i + DEMI_TILE, end));
         for (k = first; k < last; k++) {
             const dem_real *arm = w->bodies.centre + 4*k;
             dem_real *ball = w->bodies.ball + 4*k;

@@ -341,7 +341,9 @@ typedef struct demi_turning {
     dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
     dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the end of moment_arm */
     dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
+    int round;                     /* 1: the moments of each body are equal */
 } demi_turning;
+enum { DEMI_ROTATION_ROUND = -1 };
 /* Body l of a tile: kicks L by T kick, rotates freely for dt, and predicts spin with L + T after.
    Also stores the squares of its speed and change of speed. */
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
@@ -351,12 +353,19 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
     const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
     const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
-                              t->L[2][l] + T.z*kick);
-    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
-        : demi_rotation_rows[rotation].fly(&q, L, I, inv, dt);
-    const dem_vec3 half = dem_quat_rotate(start, mean);
-    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
-    const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
+                              t->L[2][l] + T.z*kick), next = demi_add(L, demi_scale(T, after));
+    dem_vec3 half, spin, by;
+    if (rotation == DEMI_ROTATION_ROUND) {
+        half = demi_scale(L, inv.x);
+        spin = demi_scale(next, inv.x);
+        q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(half, dt)), q));
+    } else {
+        half = dem_quat_rotate(start, rotation == DEM_ROTATION_SPIRAL
+            ? demi_flight_spiral(&q, L, I, inv, dt)
+            : demi_rotation_rows[rotation].fly(&q, L, I, inv, dt));
+        spin = demi_spin_of(q, next, inv);
+    }
+    by = demi_sub(spin, half);                  /* half a step's change */
     t->rate2[l] = demi_dot(half, half);
     t->speed2[l] = t->rate2[l]*t->I[3][l]*t->I[3][l];
     t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
@@ -368,12 +377,12 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
 /* The default scheme for a whole tile, without a branch inside, so that it is vectorised. */
 DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real kick, dem_real dt,
                                             dem_real after) {
-    int l, q;
-    for (q = 0; q < count; q += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = 0; l < DEMI_LANES; l++)
-            demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
-    }
+    DEMI_ROWS(count) demi_turning_fly(t, q, DEM_ROTATION_SPIRAL, kick, dt, after); DEMI_ROWS_END
+}
+/* The same for bodies with three equal moments, whose free rotation is a constant spin. */
+DEMI_CLONES static void demi_turning_round(demi_turning *t, int count, dem_real kick, dem_real dt,
+                                           dem_real after) {
+    DEMI_ROWS(count) demi_turning_fly(t, q, DEMI_ROTATION_ROUND, kick, dt, after); DEMI_ROWS_END
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
@@ -381,14 +390,22 @@ DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real
 static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
                              dem_real dt, dem_real after) {
     int l;
-    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(t, count, kick, dt, after);
+    if (t->round) demi_turning_round(t, count, kick, dt, after);
+    else if (w->desc.rotation == DEM_ROTATION_SPIRAL)
+        demi_turning_spiral(t, count, kick, dt, after);
     else for (l = 0; l < count; l++)
         demi_turning_fly(t, l, (int)w->desc.rotation, kick, dt, after);
 }
 /* How bodies rotate: over a whole step, with springs; over two halves with a kick in between, with
    impulses; over half a step without a kick, for contact detection with impulses (demi_ahead). */
 enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
-/* Rotates the listed bodies other than spheres, at most a tile. Unless `domain` is null, it
+/* True if the moments of inertia of a body are equal, as those of a ball or a cube, and the default
+   scheme rotates it. */
+DEM_INLINE int demi_turns_round(const dem_world *w, int i) {
+    const dem_real *I = w->bodies.moment + 4*(size_t)i;
+    return I[0] == I[1] && I[1] == I[2] && w->desc.rotation == DEM_ROTATION_SPIRAL;
+}
+/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless `domain` is null, it
    receives the largest speeds of rotation and their changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
@@ -397,6 +414,7 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     int l, e;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     dem_real turn = 0, speed = 0, rate = 0, check = 0;
+    t.round = demi_turns_round(w, who[0]);
     for (l = 0; l < full; l++) {                /* padded with copies of the last one */
         size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
         DEMI_ONE_BY_ONE(i);
@@ -432,13 +450,12 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
         for (e = 0; e < 3 && how != DEMI_TURN_AHEAD; e++)
             w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
         for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
-        if (w->bodies.centres_valid && how != DEMI_TURN_HALVES &&
-            w->shapes[w->bodies.shape[who[l]] - 1].count) demi_centres_rotate(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
         rate = DEMI_MAX(rate, t.rate2[l]);
         check += t.rate2[l];
     }
+    if (w->bodies.centres_valid && how != DEMI_TURN_HALVES) demi_centres_rotate(w, who, count);
     if (!domain) return;
     domain->turn_rate = DEMI_MAX(domain->turn_rate, (double)rate);
     domain->turn = DEMI_MAX(domain->turn, (double)turn);
@@ -447,16 +464,12 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
 }
 /* The same for spheres: q becomes exp(w dt/2) q, with the spin w in the world frame stored in L. */
 DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
-    int l, k;
-    for (k = 0; k < count; k += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = k; l < k + DEMI_LANES; l++) {
-            const dem_quat q = demi_quat_again(dem_quat_multiply(
-                demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
-                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l])));
-            t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
-        }
-    }
+    DEMI_ROWS(count)
+        const dem_quat now = demi_quat_again(dem_quat_multiply(
+            demi_quat_exp(demi_v(t->L[0][q]*dt, t->L[1][q]*dt, t->L[2][q]*dt)),
+            dem_quat_make(t->q[0][q], t->q[1][q], t->q[2][q], t->q[3][q])));
+        t->q[0][q] = now.w; t->q[1][q] = now.x; t->q[2][q] = now.y; t->q[3][q] = now.z;
+    DEMI_ROWS_END
 }
 /* Rotates the listed spheres, at most a tile. */
 static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
@@ -479,27 +492,27 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
+static void demi_orient_list(dem_world *w, demi_domain *domain, const int *who, int count, int how,
+                             int shaped) {
+    if (count && shaped) demi_orient_some(w, domain, who, count, how);
+    else if (count) demi_orient_balls(w, who, count, how);
+}
 /* Advances the orientations of bodies begin .. end - 1, and the spins of those that are not
    spheres, by a step; by half a step, for contact detection, if `domain` is null. */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
     const int how = !domain ? DEMI_TURN_AHEAD
         : demi_response_is(w, DEMI_MIDWAY) ? DEMI_TURN_HALVES : DEMI_TURN_STEP;
-    int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
+    int who[3][DEMI_TILE], count[3] = {0, 0, 0}, i, k;      /* spheres, round bodies, others */
     for (i = begin; i < end; i++) {
         if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
-        if (w->bodies.shape[i]) {
-            who[count++] = i;
-            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count, how); count = 0; }
-        } else if (w->desc.orientations) {
-            balls[ball_count++] = i;
-            if (ball_count == DEMI_TILE) {
-                demi_orient_balls(w, balls, ball_count, how);
-                ball_count = 0;
-            }
-        }
+        if (!w->bodies.shape[i] && !w->desc.orientations) continue;
+        k = !w->bodies.shape[i] ? 0 : demi_turns_round(w, i) ? 1 : 2;
+        who[k][count[k]++] = i;
+        if (count[k] < DEMI_TILE) continue;
+        demi_orient_list(w, domain, who[k], count[k], how, k);
+        count[k] = 0;
     }
-    if (count) demi_orient_some(w, domain, who, count, how);
-    if (ball_count) demi_orient_balls(w, balls, ball_count, how);
+    for (k = 0; k < 3; k++) demi_orient_list(w, domain, who[k], count[k], how, k);
 }
 /* Computes spins at the full step from the angular momentum at the half step and the present
    torque. */

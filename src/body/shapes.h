@@ -468,6 +468,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
         demi_put(shape.parts + 4*i,
                  dem_quat_unrotate(shape.frame, demi_sub(demi_at(shape.parts + 4*i),
                                                                         shape.centre)));
+    shape.lone = shape.count == 1 && !(demi_length(demi_at(shape.parts)) > 0);
     shape.centre = demi_add(shape.centre, about);
     demi_cluster_bounds(&shape);
     return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
@@ -512,6 +513,12 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
+}
+/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from it
+   by its moments of inertia and an orientation. */
+DEM_INLINE int demi_lone(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape || shape->lone;
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
@@ -763,23 +770,6 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 /* Returns the rotated spheres of a cluster: rows of centre (from the body's) and radius, m. */
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
-}
-/* Rotates the spheres of one cluster to its present orientation, once a step for all contacts. */
-static void demi_centres_rotate(dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    const dem_real scale = demi_scale_of(w, body, shape);
-    const dem_real *part = shape->parts;
-    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body], R[9];
-    double Q[9];
-    int k, e;
-    demi_rotation_of(demi_quat_at(w->bodies.orient + 4*body), Q);
-    for (k = 0; k < 9; k++) R[k] = (dem_real)Q[k]*scale;
-    for (k = 0; k < shape->count; k++, sphere += 4, part += 4) {
-        DEMI_UNROLL
-        for (e = 0; e < 3; e++)
-            sphere[e] = R[3*e]*part[0] + R[3*e + 1]*part[1] + R[3*e + 2]*part[2];
-        sphere[3] = part[3]*scale;
-    }
 }
 static void demi_part_matrix(const demi_part *p, double *Q) {
     if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);

@@ -2,10 +2,10 @@
    >>members
    Contact forces between spheres that may be members of clusters (springs, effects.clustered). The
    pruned neighbour list then holds pairs of member spheres, and a lone sphere is the only member of
-   its body. A step tests all pairs of the list. Those that touch fill a tile with the relative
-   motion of the two spheres, which are points of their bodies, and the stages of >>respond
-   evaluate the laws as for lone spheres, whose forces have the same bits. Clusters differ in three
-   ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
+   its body. Pairs of lone spheres come first in the list, and >>pairs computes them. A step tests
+   the others. Those that touch fill a tile with the relative motion of the two spheres, which are
+   points of their bodies, and the stages of >>respond evaluate the laws as for lone spheres, whose
+   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
    same two bodies may be merged (>>kept), and a force acts at the centre of a member sphere. Owns
    near.on, near.hit and the slots of its pairs.
    --------------------------------------------------------------------------------------------- */
@@ -26,14 +26,21 @@ typedef struct demi_member_tile {
     int count, weighted;           /* contacts; are any merged? */
 } demi_member_tile;
 
+/* Empties a tile. All weights are 1. */
+static void demi_member_clear(demi_member_tile *m) {
+    int q;
+    m->count = m->weighted = 0;
+    for (q = 0; q < DEMI_TILE; q++) {
+        m->t.share[q] = m->t.grip[q] = 1;
+        m->t.lift[q] = 0;
+        m->merged[q] = 0;
+    }
+}
 /* Appends entry p of the pruned list to a tile. c: its weights if it is merged with others of the
-   same two bodies, or null: all weights are 1. */
+   same two bodies, or null. */
 DEM_INLINE void demi_member_add(demi_member_tile *m, int p, const demi_kept *c) {
     const int q = m->count++;
     m->p[q] = p;
-    m->t.share[q] = m->t.grip[q] = 1;
-    m->t.lift[q] = 0;
-    m->merged[q] = 0;
     if (!c) return;
     m->t.share[q] = c->share;
     m->t.grip[q] = c->grip;
@@ -100,7 +107,7 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
     if (at_grip == DEMI_MEMORY) return;
     for (q = 0; q < full; q++) {
         const dem_real held = m->t.rows.memory[at_grip][q], now = m->t.grip[q];
-        m->t.rows.memory[at_grip][q] = now;
+        if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* else it stays 0 */
         if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
         for (e = 0; e < keep; e++)
             if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
@@ -286,7 +293,7 @@ static void demi_member_begin(const dem_world *w, demi_member_tile *m, int d, de
     m->span.b = m->b;
     m->span.k = m->k;
     m->span.ball = m->ball[0];
-    m->count = m->weighted = 0;
+    demi_member_clear(m);
     demi_tile_begin(w, d, &m->t.rows);
     m->p[0] = demi_near_first(&w->domains[d]);
     demi_member_coefs(w, m, d, DEMI_TILE, 1);
@@ -353,7 +360,8 @@ static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int se
     if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
     if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
     if (w->events.n.on) demi_tile_note(w, d, rows, &m->span, &m->run);
-    m->count = m->weighted = 0;
+    if (m->weighted) demi_member_clear(m);
+    m->count = 0;
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
    into w->merging. hit: their entries. Returns them. */
@@ -404,13 +412,8 @@ static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit)
     }
     return n;
 }
-/* Returns how many of n hits are of the same two bodies as the first. */
-DEM_INLINE int demi_members_run(const int32_t *k, const int32_t *hit, int n) {
-    int i = 1;
-    while (i < n && k[hit[i]] == k[hit[0]]) i++;
-    return i;
-}
-/* Computes all pairs of a work group: those within it, then those with later ones. */
+/* Computes all pairs of a work group: those of lone spheres, then those within it, then those with
+   later ones. */
 static void demi_pairs_members(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
@@ -418,19 +421,20 @@ static void demi_pairs_members(dem_world *w, int d) {
     const int32_t *k = w->near.k + d*w->near.stride;
     int32_t *hit = w->near.hit + d*w->near.stride;
     DEMI_ALIGNED demi_member_tile m;
-    int l, p, n, run;
-    domain->contacts = 0;
-    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
+    int l, p, n, run, i;
+    demi_pairs_with(w, d, w->events.n.on ? demi_tile_note : 0);
+    if (domain->near_own <= domain->near_lone[0] &&
+        domain->near_end <= domain->near_cross + domain->near_lone[1]) return;
     demi_member_begin(w, &m, d, dt);
     for (l = 0; l < 2; l++) {
-        const int begin = l ? domain->near_cross : 0, end = l ? domain->near_end : domain->near_own;
+        const int begin = (l ? domain->near_cross : 0) + domain->near_lone[l];
+        const int end = l ? domain->near_end : domain->near_own;
         for (p = begin; l && p < end; p++)
             if (p == begin || k[p] != k[p - 1]) demi_slot_clear(w, k[p]);
         n = demi_members_touch(w, d, begin, end, hit);
         for (p = 0; p < n; p += run) {
             const demi_kept *c = 0;
-            int i;
-            run = merges ? demi_members_run(k, hit + p, n - p) : 1;
+            for (run = 1; merges && p + run < n && k[hit[p + run]] == k[hit[p]];) run++;
             if (run > 1) c = demi_members_merge(w, d, hit + p, run);
             for (i = 0; i < run; i++) {
                 demi_member_add(&m, hit[p + i], c ? c + i : 0);

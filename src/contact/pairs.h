@@ -338,8 +338,12 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     demi_tile_fetch(r, full, t);
     if (w->cell.on) demi_tile_flow(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
-    for (q = 0; q < r->keep; q++)
-        demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
+    for (q = 0; q < r->keep; q++) {             /* not of the pairs behind, which may be others */
+        dem_real *memory = span->memory + (size_t)q*span->stride;
+        demi_row_copy(memory, t->memory[q], span->count/DEMI_LANES*DEMI_LANES);
+        for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
+            memory[k] = t->memory[q][k];
+    }
     if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
     if (r->ledger) demi_tile_book(t, span->count, energy);
     return r;
@@ -442,8 +446,9 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
                       t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
                       (double)t->overlap[q], (double)share);
 }
-/* Computes all pairs of a work group: those within it, then those with later ones. note: called
-   for every tile when its forces are known, or null. */
+/* Computes all pairs of a work group: those within it, then those with later ones. With clusters in
+   the world it leaves out those that demi_pairs_members computes. note: called for every tile when
+   its forces are known, or null. */
 DEM_INLINE void demi_pairs_with(dem_world *w, int d,
                                 void (*note)(dem_world *w, int d, demi_tile *t,
                                              const demi_span *span, const demi_run *r)) {
@@ -460,7 +465,8 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d,
     demi_tile_begin(w, d, &tile);
     for (l = 0; l < 2; l++) {
         const int begin = l ? domain->near_cross : 0;
-        const int end = l ? domain->near_end : domain->near_own;
+        const int end = w->effects.clustered ? begin + domain->near_lone[l]
+            : l ? domain->near_end : domain->near_own;
         for (p = begin; p < end; p += DEMI_TILE) {
             const int count = DEMI_MIN((int)DEMI_TILE, end - p);
             const demi_span span = demi_span_of(w, d, p, count);

@@ -209,12 +209,6 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
 /* --- stages: each runs over all pairs of a tile before the next begins. Processors then overlap
    several pairs, instead of waiting for one long chain of roots and divisions. `full` is a multiple
    of DEMI_LANES; the results of pairs that pad the last group are ignored. --- */
-#define DEMI_ROWS(full) { int g, l; \
-    for (g = 0; g < (full); g += DEMI_LANES) { \
-        DEMI_VECTOR \
-        for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
-#define DEMI_ROWS_END }}}
-
 /* Gap, m, up to which a law is called for pair q. */
 DEM_INLINE dem_real demi_tile_range(const demi_tile *t, const demi_same *s, int q, int uniform) {
     return s->range + s->range_radii*(uniform ? 2*s->radius : t->radius[0][q] + t->radius[1][q]);

@@ -26,6 +26,14 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
                                                    apart would compete for the same cache lines */
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
+/* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows, rounded
+   up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
+#define DEMI_ROWS(full) { int g, l; \
+    for (g = 0; g < (full); g += DEMI_LANES) { \
+        DEMI_VECTOR \
+        for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
+#define DEMI_ROWS_END }}}
+
 /* Coefficients of one contact, as the built-in laws need them. */
 #define DEMI_COEF_CONSTANT(PROPERTY, COEFFICIENT, UNIT) DEMI_COEF_##COEFFICIENT,
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_MU_SPIN,
@@ -132,6 +140,7 @@ typedef struct demi_piece { int32_t shape; dem_vec3 at; dem_quat q; } demi_piece
 typedef struct demi_shape {
     int kind;                      /* of its parts: DEMI_BALL, ...; of a union's first piece */
     int count;                     /* member spheres of a cluster; 0: one part */
+    int lone;                      /* 1: a cluster of one sphere, at its centre of mass */
     dem_real *parts;               /* count x 4: centre, radius, m */
     dem_vec3 axes;                 /* m, semi-axes or other lengths of a single part, by kind */
     int pieces;                    /* of a union; 0: no union */
@@ -221,6 +230,9 @@ typedef struct demi_domain {
                                       pairs with later groups; */
     int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
                                       a body that is not a sphere */
+    int near_lone[2];              /* of the pairs inside, and of those with later groups: the
+                                      first ones that are pairs of lone spheres (demi_lone); 0
+                                      unless effects.clustered */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */

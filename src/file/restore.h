@@ -304,16 +304,22 @@ static int demi_balls_own(const dem_world *t, int at) {
          t->near.ball_b[at] >= start[b] && t->near.ball_b[at] < start[b + 1]);
 }
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
-   be among the `count` candidates of this list, ascending. With shaped = 0 all pairs must be of two
+   be among the `count` candidates of this list, ascending, with clusters twice: first the pairs of
+   lone spheres, then the others. With shaped = 0 all pairs must be of two
    spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
    index of the candidate in the list of all domains. */
 static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
                            int end, int shaped) {
     dem_world *t = r->t;
     const int first = d*list->stride;
-    int p, last = -1;
+    int p, last = -1, lone = t->effects.clustered && !shaped;
     for (p = begin; p < end; p++) {
         const int at = d*t->near.stride + p, k = t->near.k[at];
+        if (k < 0 || k >= count) return demi_lie(r, "neighbour pair of domain", d);
+        if (lone && !(demi_lone(t, list->a[first + k]) && demi_lone(t, list->b[first + k]))) {
+            lone = 0;
+            last = -1;
+        }
         if (k < last || (k == last && (shaped || !t->effects.clustered)) || k >= count ||
             t->near.a[at] != list->a[first + k] || t->near.b[at] != list->b[first + k] ||
             shaped == demi_pair_of_balls(t, t->near.a[at], t->near.b[at]) ||

@@ -323,8 +323,7 @@ static void demi_some_back(dem_world *w, int index) {
         if (!w->bodies.shape[i] || !(w->bodies.inv_mass[i] > 0)) continue;
         demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
             demi_at(w->bodies.angular + 4*i), demi_v(1/I.x, 1/I.y, 1/I.z)));
-        if (w->bodies.centres_valid && w->shapes[w->bodies.shape[i] - 1].count)
-            demi_centres_rotate(w, i);
+        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead

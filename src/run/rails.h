@@ -186,7 +186,7 @@ static void demi_rails_move(dem_world *w) {
             w->bodies.half_spin[4*i + e] = turn[e];
             w->bodies.spin[4*i + e] = locked >> e & 1 ? turn[e] : spin[e];
         }
-        if (w->bodies.centres_valid && shape->count) demi_centres_rotate(w, i);
+        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
 }
 /* Removes the rails of bodies that were removed, and that of `body`. */

@@ -30,7 +30,7 @@ static demi_species demi_species_of(const dem_world *w, int body, dem_real radiu
     s.mass = w->bodies.mass[body];
     s.inv_mass = w->bodies.inv_mass[body];
     s.material = w->bodies.material[body];
-    s.shape = demi_shape_of(w, body) ? w->bodies.shape[body] : 0;
+    s.shape = demi_lone(w, body) ? 0 : w->bodies.shape[body];
     return s;
 }
 /* Returns the row of a species in the table, species_count if it has none. Compares every bit: a
@@ -60,10 +60,10 @@ static void demi_species_count(dem_world *w) {
     e->species_count = 0;
     for (i = 0; i < w->bodies.count; i++) {
         const demi_shape *shape = demi_shape_of(w, i);
-        const int count = !shape ? 1 : e->clustered ? shape->count : 0;
+        const int lone = demi_lone(w, i), count = lone ? 1 : e->clustered ? shape->count : 0;
         for (k = 0; k < count && e->species_count <= DEMI_SPECIES; k++) {
-            const demi_species s = demi_species_of(w, i, shape
-                ? shape->parts[4*k + 3]*demi_scale_of(w, i, shape) : w->bodies.pos[4*i + 3]);
+            const demi_species s = demi_species_of(w, i, lone ? w->bodies.pos[4*i + 3]
+                : shape->parts[4*k + 3]*demi_scale_of(w, i, shape));
             if (demi_species_find(w, &s) < e->species_count) continue;
             if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = s;
             e->species_count++;
@@ -352,19 +352,29 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     }
 }
 
+/* Returns the number of pairs of two lone spheres that entries begin .. end - 1 of a work group's
+   list begin with. */
+static int demi_near_lone(const dem_world *w, int d, int begin, int end) {
+    const int32_t *a = w->near.a + d*w->near.stride, *b = w->near.b + d*w->near.stride;
+    int p = begin;
+    while (w->effects.clustered && p < end && demi_lone(w, a[p]) && demi_lone(w, b[p])) p++;
+    return p - begin;
+}
 /* Completes the pruned list of a work group. Pads it to a multiple of DEMI_LANES with copies of the
-   last pair, whose results are ignored, so that every vector is full. Stores in each candidate its
-   entry in the pruned list. */
+   last pair, whose results are ignored, so that every vector is full. Counts pairs of lone spheres.
+   Stores in each candidate its entry in the pruned list. */
 static void demi_near_adopt(dem_world *w, int d) {
     demi_near *near = &w->near;
-    const demi_domain *domain = &w->domains[d];
+    demi_domain *domain = &w->domains[d];
     const size_t stride = (size_t)near->stride;
     dem_real *memory = w->memory_stride
         ? near->memory + (size_t)d*(size_t)w->memory_stride*stride : 0;
     int l, p, e;
     for (l = 0; l < 2; l++) {
         const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
-        if (end == (l ? domain->near_cross : 0)) continue;
+        const int begin = l ? domain->near_cross : 0;
+        domain->near_lone[l] = demi_near_lone(w, d, begin, end);
+        if (end == begin) continue;
         for (p = end; p%DEMI_LANES; p++) {
             near->a[at + p] = near->a[at + end - 1];
             near->b[at + p] = near->b[at + end - 1];
@@ -489,6 +499,22 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     return left;
 }
 
+/* Moves the pairs of two lone spheres to the front of entries first .. end - 1, so that they form
+   tiles of their own. Both kinds keep their order. */
+static void demi_near_lone_first(dem_world *w, const demi_list *list, int d, int first, int end) {
+    const int at = d*w->near.stride;
+    int32_t *column[3], *aside = w->near.hit + at;
+    int e, p, lone, left;
+    column[0] = w->near.ball_a + at; column[1] = w->near.ball_b + at; column[2] = w->near.k + at;
+    for (e = 0; e < 3; e++) {                   /* k last: it tells which are lone */
+        for (p = left = first, lone = 0; p < end; p++) {
+            const int k = w->near.k[at + p], value = column[e][p];
+            if (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])) column[e][left++] = value;
+            else aside[lone++] = value;
+        }
+        for (p = 0; p < lone; p++) column[e][left + p] = aside[p];
+    }
+}
 /* Returns the entry in the previous list of the pair of spheres at index `at` of the present one,
    or -1. Those of one candidate are adjacent. */
 static int demi_near_was(const dem_world *w, const demi_list *list, int d, int at) {
@@ -517,6 +543,7 @@ static void demi_domain_near(dem_world *w, int d) {
         p = demi_near_pick(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
         p = demi_near_part(w, list, d, first, p);
+        if (w->effects.clustered) demi_near_lone_first(w, list, d, first, p);
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
             near->a[at] = list->a[k];

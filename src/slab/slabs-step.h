@@ -415,8 +415,7 @@ static void demi_lent_take(dem_world *w, int i, const char *from) {
     const int n = demi_lent_arrays(w, array, stride, count);
     for (k = 0; k < n; k++)
         demi_unpack(&from, array[k] + stride[k]*i, (size_t)count[k]*sizeof(dem_real));
-    if (w->bodies.orienting && w->bodies.centres_valid && demi_shape_of(w, i) &&
-        demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
+    if (w->bodies.orienting && w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
 }
 static const demi_record demi_lent = {demi_lent_size, demi_lent_put, demi_lent_take};
 

@@ -153,6 +153,38 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
+    TEST("a cluster of one sphere whose mass is off its centre is hit as a body, not as a lone sphere") {
+        const double r = 1e-3, c = 3e-4, e = 0.6, speed = 0.1, V = 4.18879*r*r*r, moment = 0.5*V*r*r;
+        const dem_real centre[3] = {0};
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_cluster_desc d = DEM_CLUSTER_DESC;
+        dem_world *w;
+        dem_material m;
+        dem_body loaded, ball;
+        double J, mass;
+        int k;
+        desc.normal_law = DEM_NORMAL_LINEAR;
+        desc.dt = DEM_R(1e-7);
+        w = dem_world_create(&desc);
+        m = scene_material(w, 1e8, e, 0, 0);
+        d.count = 1;
+        d.positions = centre;
+        d.radius = (dem_real)r;
+        d.mass = DEM_CLUSTER_GIVEN;
+        d.volume = (dem_real)V;
+        d.centre = at(0, c, 0);
+        for (k = 0; k < 3; k++) d.inertia[k] = (dem_real)moment;
+        loaded = dem_body_add(w, m, dem_shape_cluster_add(w, &d), at(0, 0, 0), dem_quat_make(1, 0, 0, 0));
+        ball = dem_sphere_add(w, m, (dem_real)r, at(-2.001*r, -c, 0));
+        scene_move(w, ball, at(speed, 0, 0), at(0, 0, 0));
+        CHECK_EQ(scene_step(w, 1000), DEM_OK);
+        CHECK_EQ(dem_counters_get(w).contacts, 0);
+        mass = (double)scene_state(w, ball).mass;
+        J = (1 + e)*speed/(2/mass + c*c*V/(mass*moment));
+        CHECK_NEAR(scene_state(w, loaded).spin.z, J*c*V/(mass*moment), 2e-3*J*c*V/(mass*moment));
+        CHECK_NEAR(scene_state(w, loaded).velocity.x, J/mass, 2e-3*J/mass);
+        dem_world_destroy(w);
+    }
     TEST("forces of listed contacts between spheres, clusters and ellipsoids add up to those on the bodies") {
         int kinds, way;
         for (kinds = 1; kinds < 8; kinds++)
