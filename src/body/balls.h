@@ -109,7 +109,7 @@ static void demi_yields_turn(const dem_world *w, int begin, int end) {
     for (l = 0; l < full; l++) {
         const int i = begin + DEMI_MIN(l, count - 1);
         const int turns = demi_shape_of(w, i) && w->bodies.inv_mass[i] > 0;
-        f.free[l] = turns;
+        f.free[l] = turns ? DEM_R(1) : DEM_R(0);
         for (e = 0; e < 4; e++) f.q[e][l] = turns ? w->bodies.orient[4*i + e] : 0;
         for (e = 0; e < 3; e++) f.I[e][l] = turns ? w->bodies.moment[4*i + e] : 1;
     }
