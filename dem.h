@@ -5328,19 +5328,29 @@ static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
     return -1;
 }
 
-/* Stores the error message of a failed call. If the call builds the scene (demi_builds), the world
-   also remembers its name until the message is read or the call succeeds. */
-static void demi_tell(dem_world *w, const char *format, va_list args) DEMI_FORMAT(2, 0);
-static void demi_tell(dem_world *w, const char *format, va_list args) {
+/* Remembers a failed call that builds the scene, whose name is the first n characters of w->error,
+   until the message is read or the call succeeds. */
+static void demi_refused_note(dem_world *w, size_t n) {
     const size_t calls = sizeof w->refused_calls/sizeof *w->refused_calls;
-    size_t n;
-    vsnprintf(w->error, sizeof w->error, format, args);
-    n = strcspn(w->error, ":");
     if (n >= sizeof *w->refused_calls || !demi_builds(w->error, n)) return;
     if (!w->refused) memcpy(w->refusal, w->error, sizeof w->refusal);
     if (demi_refused_find(w, w->error, n) < 0 && (size_t)w->refused < calls) {
         memcpy(w->refused_calls[w->refused], w->error, n);
         w->refused_calls[w->refused++][n] = 0;
+    }
+}
+/* Stores the error message of a failed call. `call`, unless null, is its name and begins the
+   message. */
+static void demi_tell(dem_world *w, const char *call, const char *format,
+                      va_list args) DEMI_FORMAT(3, 0);
+static void demi_tell(dem_world *w, const char *call, const char *format, va_list args) {
+#if DEMI_OPENMP
+    #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
+#endif
+    {
+        const int n = call ? snprintf(w->error, sizeof w->error, "%s: ", call) : 0;
+        vsnprintf(w->error + n, sizeof w->error - (size_t)n, format, args);
+        demi_refused_note(w, strcspn(w->error, ":"));
     }
 }
 /* Stores an error message and returns `result`. */
@@ -5349,12 +5359,21 @@ static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
     va_list args;
     va_start(args, format);
-#if DEMI_OPENMP
-    #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
-#endif
-    demi_tell(w, format, args);
+    demi_tell(w, 0, format, args);
     va_end(args);
     return result;
+}
+/* Stores the message "call: format" about an argument, or a state of the world, that the call does
+   not accept. The world may be const, because only its message changes. Returns
+   DEM_ERROR_ARGUMENT. */
+static dem_result demi_refuse(const dem_world *w, const char *call, const char *format,
+                              ...) DEMI_FORMAT(3, 4);
+static dem_result demi_refuse(const dem_world *w, const char *call, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    demi_tell((dem_world *)w, call, format, args);
+    va_end(args);
+    return DEM_ERROR_ARGUMENT;
 }
 /* Call this when a call that builds the scene has succeeded: an earlier failure of the same call no
    longer prevents a run. */
@@ -5373,9 +5392,9 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
     char why[sizeof w->refusal];
     if (!w->refused) return DEM_OK;
     memcpy(why, w->refusal, sizeof why);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: did not start, because an earlier call failed "
-                     "and its message has not been read: \"%.320s\"; correct that call, or read "
-                     "dem_world_error_get and continue without it", call, why);
+    return demi_refuse(w, call, "did not start, because an earlier call failed and its message has "
+                       "not been read: \"%.320s\"; correct that call, or read dem_world_error_get "
+                       "and continue without it", why);
 }
 /* Call this before a user-defined function. Calls that change the world fail until demi_called gets
    the value returned here. `who` names the function in messages; `within`: 1 inside a step. */
@@ -5403,16 +5422,15 @@ static void demi_look_called(const dem_world *w, demi_calling was) {
 static int demi_null_look(const dem_world *w, const char *call, const void *pointer,
                           const char *name) {
     if (w && pointer) return 0;
-    if (w) demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: %s is null; give its address", call,
-                     name);
+    if (w) demi_refuse(w, call, "%s is null; give its address", name);
     return 1;
 }
 /* Fails because a user-defined function made a call that it may not make. Returns 1. */
 static int demi_barred(dem_world *w, const char *call) {
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls (law, field, "
-              "motion, region, progress or the like), which may only read the world; make this "
-              "call after %s has returned, or between two steps in an output of kind "
-              "DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
+    demi_refuse(w, call, "called from a function that %s calls (law, field, motion, region, "
+                "progress or the like), which may only read the world; make this call after %s has "
+                "returned, or between two steps in an output of kind DEM_OUTPUT_CALL",
+                w->look.calling.who, w->look.calling.who);
     return 1;
 }
 /* For functions that allocate memory of the world but do not change its state, for example those
@@ -5671,11 +5689,11 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
     if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
     if (demi_row_most(r) < DBL_MAX)
         snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g%s%s, must be %s%s %s%s and %s%s; %s",
-                     call, r->name, of, demi_row_read(r, item, k), gap, r->unit,
-                     r->other > 0 ? "0 or " : "", r->how & DEMI_OVER ? ">" : ">=", least, words,
-                     most, r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
-                     r->refusal ? r->refusal : remedy);
+    return demi_refuse(w, call, "%s%s is %g%s%s, must be %s%s %s%s and %s%s; %s", r->name, of,
+                       demi_row_read(r, item, k), gap, r->unit, r->other > 0 ? "0 or " : "",
+                       r->how & DEMI_OVER ? ">" : ">=", least, words, most,
+                       r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
+                       r->refusal ? r->refusal : remedy);
 }
 /* Copy, or set to 0, the fields that have any of the bits `uses` in `how`. */
 static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
@@ -6129,10 +6147,9 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     if (demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0 && d->restitution > 0 &&
         fabs((double)d->restitution*(double)d->restitution*
              (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
-                         "stiffness_unloading) is %g; give one of the two and leave the other 0",
-                         call, (double)d->restitution,
-                         sqrt((double)d->stiffness/(double)d->stiffness_unloading));
+        return demi_refuse(w, call, "restitution is %g, but sqrt(stiffness/stiffness_unloading) is "
+                           "%g; give one of the two and leave the other 0", (double)d->restitution,
+                           sqrt((double)d->stiffness/(double)d->stiffness_unloading));
     return DEM_OK;
 }
 
@@ -6235,8 +6252,8 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     id.id = 0;
     if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
     if (n == DEMI_MATERIALS) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, which "
-                  "is the limit; reuse one of them", n);
+        demi_refuse(w, "dem_material_add", "there are %d materials already, which is the limit; "
+                    "reuse one of them", n);
         return id;
     }
     w->materials[n] = *desc;
@@ -6255,9 +6272,9 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
 /* Sets *index to the index of a material, or fails in the name of `call`. */
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; "
-                         "add it with dem_material_add and check the id that this returns", call,
-                         (int)m.id, w->material_count);
+        return demi_refuse(w, call, "material %d does not exist, there are %d; add it with "
+                           "dem_material_add and check the id that this returns", (int)m.id,
+                           w->material_count);
     *index = m.id - 1;
     return DEM_OK;
 }
@@ -6280,10 +6297,9 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
         demi_material_check(w, "dem_material_set", desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = w->materials[m];
     if (desc->density < before.density || desc->density > before.density)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_set: density of material %d is %g "
-                         "kg/m3, must stay %g, because masses of bodies were computed from it; "
-                         "add another material", m + 1, (double)desc->density,
-                         (double)before.density);
+        return demi_refuse(w, "dem_material_set", "density of material %d is %g kg/m3, must stay "
+                           "%g, because masses of bodies were computed from it; add another "
+                           "material", m + 1, (double)desc->density, (double)before.density);
     w->materials[m] = *desc;
     if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
@@ -6421,10 +6437,10 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
         !(inertia > 0) || r > DEMI_FARTHEST;
     for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
     if (bad)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the radius of sphere %d is %g m and its mass %g kg, "
-                  "which is too small or too large to calculate with in %s precision; lengths are "
-                  "in metres: check the unit; nothing was added", call, i, r, m,
-                  DEMI_SINGLE ? "single" : "double");
+        demi_refuse(w, call, "the radius of sphere %d is %g m and its mass %g kg, which is too "
+                    "small or too large to calculate with in %s precision; lengths are in metres: "
+                    "check the unit; nothing was added", i, r, m,
+                    DEMI_SINGLE ? "single" : "double");
     return bad;
 }
 
@@ -6441,8 +6457,8 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
         demi_material_index(w, "dem_coefficients_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m; the "
-                         "first must be > 0, the second >= 0 (0 means a wall)", ra, rb);
+        return demi_refuse(w, "dem_coefficients_get", "radii are %g and %g m; the first must be > "
+                           "0, the second >= 0 (0 means a wall)", ra, rb);
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
     m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
@@ -6488,12 +6504,10 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
             fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
-                    i + 1, j + 1,
-                    (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
-                    (double)p->friction,
-                    (double)DEMI_MAX(p->friction, p->friction_static),
-                    (double)p->rolling_friction, (double)p->stiffness,
-                    (double)p->stiffness_ratio);
+                    i + 1, j + 1, (double)p->young_eff, (double)p->shear_eff,
+                    (double)p->restitution, (double)p->friction,
+                    (double)DEMI_MAX(p->friction, p->friction_static), (double)p->rolling_friction,
+                    (double)p->stiffness, (double)p->stiffness_ratio);
             if (!laws)
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);
@@ -25937,8 +25951,8 @@ static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, do
     char why[160];
     demi_size_why(d, lo, hi, why, sizeof why);
     if (!*why) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sizes, %s: %s; start from DEM_SIZES and set what this "
-              "kind needs", call, kind >= 0 && kind < 6 ? names[kind] : "unknown", why);
+    demi_refuse(w, call, "sizes, %s: %s; start from DEM_SIZES and set what this kind needs",
+                kind >= 0 && kind < 6 ? names[kind] : "unknown", why);
     return 0;
 }
 /* Fraction finer than r of the distribution truncated to lo .. hi. */
@@ -25996,7 +26010,7 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
     double lo, hi;
     int i;
     if (count < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0", call, count);
+        return demi_refuse(w, call, "count is %d, must be >= 0", count);
     if (!demi_size_ends(w, call, d, &lo, &hi)) return DEM_ERROR_ARGUMENT;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
     if (!t) return demi_no_memory(w, call);
@@ -26022,8 +26036,7 @@ DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_co
     if (demi_null_look(w, call, d, "sizes") || demi_null_look(w, call, radius, "radius") ||
         demi_null_look(w, call, amount, "amount")) return 0;
     if (class_count < 1 || class_count > DEM_CLASSES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d", call,
-                  class_count, (int)DEM_CLASSES);
+        demi_refuse(w, call, "class_count is %d, must be 1 to %d", class_count, (int)DEM_CLASSES);
         return 0;
     }
     if (!demi_size_ends(w, call, d, &lo, &hi)) return 0;
@@ -26460,21 +26473,20 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
 static int demi_region_check(dem_world *w, const char *call, const dem_region *region,
                              dem_real radius, demi_region *g) {
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z'))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
-                  "axis of the cylinder, or 0 for the whole box", call, region->cylinder);
+        demi_refuse(w, call, "region.cylinder is %d, must be 'x', 'y' or 'z', the axis of the "
+                    "cylinder, or 0 for the whole box", region->cylinder);
     else if (!demi_place(region->box.lo) || !demi_place(region->box.hi))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, "
-                  "must be finite and at most %g m from the origin", call,
-                  (double)region->box.lo.x, (double)region->box.lo.y, (double)region->box.lo.z,
-                  (double)region->box.hi.x, (double)region->box.hi.y, (double)region->box.hi.z,
-                  DEMI_FARTHEST);
+        demi_refuse(w, call, "the box goes from (%g, %g, %g) to (%g, %g, %g) m, must be finite and "
+                    "at most %g m from the origin", (double)region->box.lo.x,
+                    (double)region->box.lo.y, (double)region->box.lo.z, (double)region->box.hi.x,
+                    (double)region->box.hi.y, (double)region->box.hi.z, DEMI_FARTHEST);
     else if (w->cell.offset < 0 || w->cell.offset > 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, its images are "
-                  "displaced by %g m, which the search for room does not see; fill the cell before "
-                  "it is sheared, or add bodies at given positions", call, w->cell.offset);
+        demi_refuse(w, call, "the periodic cell is sheared, its images are displaced by %g m, "
+                    "which the search for room does not see; fill the cell before it is sheared, "
+                    "or add bodies at given positions", w->cell.offset);
     else if (!demi_region_make(w, region, (double)radius, g))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
-                  "give lo below hi by at least a diameter", call, (double)radius);
+        demi_refuse(w, call, "the box is smaller than one sphere of radius %g m; give lo below hi "
+                    "by at least a diameter", (double)radius);
     else return 1;
     return 0;
 }
@@ -26490,8 +26502,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
     if (radii) radius = radii[0];
     if (!(radius > 0) || !demi_finite(radius) || count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count is %d; the radius must be "
-                  "> 0 and finite, the count >= 0", call, (double)radius, count);
+        demi_refuse(w, call, "radius is %g m and count is %d; the radius must be > 0 and finite, "
+                    "the count >= 0", (double)radius, count);
         return 0;
     }
     if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
@@ -26512,12 +26524,12 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
         return 0;
     }
     if (done < count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a free position, "
-                  "clear of other bodies and walls, in %d tries each; enlarge the %s, or %s", call,
-                  done, count, shape < 0 ? "spheres" : "bodies with bounding spheres",
-                  (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
-                  region->inside ? "region" : "box", shape < 0
-                  ? "pack them with dem_spheres_pack" : "place them with dem_bodies_add");
+        demi_refuse(w, call, "%d of %d %s of radius %g m found a free position, clear of other "
+                    "bodies and walls, in %d tries each; enlarge the %s, or %s", done, count,
+                    shape < 0 ? "spheres" : "bodies with bounding spheres",
+                    (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
+                    region->inside ? "region" : "box", shape < 0 ? "pack them with dem_spheres_pack"
+                    : "place them with dem_bodies_add");
     demi_built(w, call);                        /* also if fewer fit: the caller sees the number */
     return done;
 }
@@ -26641,24 +26653,22 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
         return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
         count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m, padding is %g m, count is %d; the "
-                  "radius must be > 0, padding and count >= 0", call, (double)radius,
-                  (double)padding, count);
+        demi_refuse(w, call, "radius is %g m, padding is %g m, count is %d; the radius must be > "
+                    "0, padding and count >= 0", (double)radius, (double)padding, count);
         return 0;
     }
     if (demi_mass_refuse(w, call, m, radius, 0) ||
         !demi_region_check(w, call, &region, radius, &room)) return 0;
     if (!demi_lattice_make(w, &room, radius, padding, &g)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a period is shorter than one sphere of radius %g m "
-                  "with its padding of %g m; lengthen the domain", call, (double)radius,
-                  (double)padding);
+        demi_refuse(w, call, "a period is shorter than one sphere of radius %g m with its padding "
+                    "of %g m; lengthen the domain", (double)radius, (double)padding);
         return 0;
     }
     g.count = count;
     if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has room for about %.3g spheres of radius "
-                  "%g m, must be at most %d, the limit of a world; make the box smaller or give a "
-                  "count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
+        demi_refuse(w, call, "the box has room for about %.3g spheres of radius %g m, must be at "
+                    "most %d, the limit of a world; make the box smaller or give a count",
+                    demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
     done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
@@ -26674,10 +26684,9 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
         return 0;
     }
     if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: stopped after %.3g trial positions, with %d spheres "
-                  "of radius %g m packed; the limits are %d bodies and %g trial positions: make "
-                  "the box smaller", call, g.looked, done, (double)radius, INT_MAX/64,
-                  DEMI_PACK_MOST);
+        demi_refuse(w, call, "stopped after %.3g trial positions, with %d spheres of radius %g m "
+                    "packed; the limits are %d bodies and %g trial positions: make the box smaller",
+                    g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
     demi_built(w, call);
     return done;
 }
@@ -26704,9 +26713,9 @@ DEM_API dem_group dem_group_get(const dem_world *w, const char *name) {
     if (demi_null_look(w, "dem_group_get", name, "name")) return id;
     id.id = 1 + demi_group_find(w, name);
     if (!id.id)
-        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_group_get: there is no group \"%.60s\"; "
-                  "desc.groups names \"%.200s\": add the name there, or correct it", name,
-                  w->desc.groups ? w->desc.groups : "");
+        demi_refuse(w, "dem_group_get", "there is no group \"%.60s\"; desc.groups names "
+                    "\"%.200s\": add the name there, or correct it", name,
+                    w->desc.groups ? w->desc.groups : "");
     return id;
 }
 /* True if body i is in the group, or if its id is 0. */
@@ -26716,8 +26725,8 @@ DEM_INLINE int demi_in_group(const dem_world *w, dem_group group, int i) {
 /* Fails if an id is neither 0, unless `required`, nor that of a group. */
 static dem_result demi_group_check(dem_world *w, const char *call, dem_group group, int required) {
     if (group.id >= !!required && group.id <= w->bodies.group_count) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: group %d does not exist, desc.groups names %d; "
-                     "take the id from dem_group_get", call, (int)group.id, w->bodies.group_count);
+    return demi_refuse(w, call, "group %d does not exist, desc.groups names %d; take the id from "
+                       "dem_group_get", (int)group.id, w->bodies.group_count);
 }
 /* True if x is in the region, on a periodic axis with any of its images. */
 static int demi_region_holds(const dem_world *w, const demi_periods *p, const dem_region *region,
@@ -26737,10 +26746,10 @@ static dem_result demi_selection_check(dem_world *w, const char *call, const dem
         (s->shape.id && demi_shape_index(w, call, s->shape) < 0)) return DEM_ERROR_ARGUMENT;
     if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 ||
         (s->count && !s->bodies))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the selection has radii from %g to %g m and "
-                         "%d bodies%s; radii and count must be >= 0, and a count needs the array",
-                         call, (double)s->radius_min, (double)s->radius_max, s->count,
-                         s->count && !s->bodies ? " in a null array" : "");
+        return demi_refuse(w, call, "the selection has radii from %g to %g m and %d bodies%s; "
+                           "radii and count must be >= 0, and a count needs the array",
+                           (double)s->radius_min, (double)s->radius_max, s->count,
+                           s->count && !s->bodies ? " in a null array" : "");
     if (!s->region) return DEM_OK;
     return demi_region_check(w, call, s->region, 0, g) ? DEM_OK : DEM_ERROR_ARGUMENT;
 }
@@ -26755,10 +26764,10 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
     int i;
     *count = 0;
     if (w->look.calling.who && w->look.calling.within) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls within a step, "
-                  "possibly on several threads, and a selection needs memory of the world; make "
-                  "this call between two steps, for example in an output of kind "
-                  "DEM_OUTPUT_CALL", call, w->look.calling.who);
+        demi_refuse(w, call, "called from a function that %s calls within a step, possibly on "
+                    "several threads, and a selection needs memory of the world; make this call "
+                    "between two steps, for example in an output of kind DEM_OUTPUT_CALL",
+                    w->look.calling.who);
         return 0;
     }
     if (demi_selection_check(w, call, s, &g) != DEM_OK) return 0;
@@ -26839,8 +26848,8 @@ DEM_API int dem_bodies_velocity_set(dem_world *w, const dem_selection *s, dem_ve
                                     dem_vec3 spin) {
     if (demi_null(w, "dem_bodies_velocity_set", s, "selection")) return -1;
     if (!demi_place(velocity) || !demi_place(spin)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bodies_velocity_set: velocity or spin is not finite, "
-                  "or beyond %g m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
+        demi_refuse(w, "dem_bodies_velocity_set", "velocity or spin is not finite, or beyond %g "
+                    "m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
         return -1;
     }
     return demi_selected_set(w, "dem_bodies_velocity_set", s, &velocity, spin, 0);
@@ -26932,11 +26941,10 @@ static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
 static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar) {
     if (demi_place(b.lo) && demi_place(b.hi) && b.hi.x > b.lo.x && b.hi.y > b.lo.y &&
         (b.hi.z > b.lo.z || (planar && b.hi.z >= b.lo.z))) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, must "
-              "be finite with lo below hi on every axis, at most %g m from the origin; as it is "
-              "nothing can be in it: give desc.box two corners that differ", call, (double)b.lo.x,
-              (double)b.lo.y, (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z,
-              DEMI_FARTHEST);
+    demi_refuse(w, call, "the box goes from (%g, %g, %g) to (%g, %g, %g) m, must be finite with lo "
+                "below hi on every axis, at most %g m from the origin; as it is nothing can be in "
+                "it: give desc.box two corners that differ", (double)b.lo.x, (double)b.lo.y,
+                (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z, DEMI_FARTHEST);
     return 1;
 }
 /* True if a box is not finite or lo is above hi; it may be a rectangle, a line or a point. */
@@ -27053,9 +27061,9 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
         if (demi_feed_strange(w, call, d, k)) return id;
         if ((!d->sizes[k] && !(d->radius[k] > 0)) || !demi_finite(d->radius[k]) ||
             !(d->amount[k] > 0) || !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be "
-                      "> 0 and finite; leave out classes that do not occur", call, k,
-                      (double)d->radius[k], d->amount[k]);
+            demi_refuse(w, call, "class %d has radius %g m and amount %g, must be > 0 and finite; "
+                        "leave out classes that do not occur", k, (double)d->radius[k],
+                        d->amount[k]);
             return id;
         }
         if (!demi_feed_sizes(w, call, &feed, k)) return id;
@@ -27063,22 +27071,22 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
         if (d->limited) {
             const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
             if (!(count >= 1 && count < 1e15)) {
-                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has amount %g, which is %.3g grains "
-                          "of %g kg, must be 1 to 1e15; check amount and by_mass", call, k,
-                          d->amount[k], count - 0.5, feed.mass[k]);
+                demi_refuse(w, call, "class %d has amount %g, which is %.3g grains of %g kg, must "
+                            "be 1 to 1e15; check amount and by_mass", k, d->amount[k], count - 0.5,
+                            feed.mass[k]);
                 return id;
             }
             feed.limit[k] = (uint64_t)count;
         }
     }
     if (!(d->rate > 0) && !d->limited) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is 0, which means all grains at once, and such "
-                  "a feed needs `limited`, or it never ends; set limited or a rate", call);
+        demi_refuse(w, call, "rate is 0, which means all grains at once, and such a feed needs "
+                    "`limited`, or it never ends; set limited or a rate");
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; set it to "
-                  "the region of the centres of new grains", call);
+        demi_refuse(w, call, "the box is not finite or lo is above hi; set it to the region of the "
+                    "centres of new grains");
         return id;
     }
     if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
@@ -27288,10 +27296,9 @@ static dem_result demi_world_feed(dem_world *w) {
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
     if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
-                         "exist, ids in this world are 1 to %d; adding it failed or it belongs to "
-                         "another world: check the id that dem_feed_add returned", (int)id.id,
-                         w->feed_count);
+        return demi_refuse(w, "dem_feed_get", "feed %d does not exist, ids in this world are 1 to "
+                           "%d; adding it failed or it belongs to another world: check the id that "
+                           "dem_feed_add returned", (int)id.id, w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
     return DEM_OK;
 }
@@ -27318,9 +27325,9 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wanted is %g to %g m, and there are %d classes; "
-                  "wanted_min must be below wanted_max, and the radii of classes > 0, finite and "
-                  "ascending", call, (double)d->wanted_min, (double)d->wanted_max, d->class_count);
+        demi_refuse(w, call, "wanted is %g to %g m, and there are %d classes; wanted_min must be "
+                    "below wanted_max, and the radii of classes > 0, finite and ascending",
+                    (double)d->wanted_min, (double)d->wanted_max, d->class_count);
         return id;
     }
     if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
@@ -27328,9 +27335,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
     for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
     if (d->keep && kept == DEMI_ZONES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: keep is %d, but %d outlets that keep their grains "
-                  "exist already, which is the limit; count by classes instead", call, d->keep,
-                  kept);
+        demi_refuse(w, call, "keep is %d, but %d outlets that keep their grains exist already, "
+                    "which is the limit; count by classes instead", d->keep, kept);
         return id;
     }
     if ((d->keep && !demi_array_begin(w, DEMI_ZONED, &w->bodies.zoned)) ||
@@ -27447,9 +27453,9 @@ static dem_result demi_outlets_run(dem_world *w) {
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
     if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
-    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, ids in this "
-              "world are 1 to %d; adding it failed or it belongs to another world: check the id "
-              "that dem_outlet_add returned", call, (int)id.id, w->outlet_count);
+    demi_refuse(w, call, "outlet %d does not exist, ids in this world are 1 to %d; adding it "
+                "failed or it belongs to another world: check the id that dem_outlet_add returned",
+                (int)id.id, w->outlet_count);
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
@@ -28222,13 +28228,13 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts of "
-                         "this world are impulses, which have no contact time; choose a step in "
-                         "which grains move by less than a tenth of their radius");
+        return demi_refuse(w, "dem_step_advice_get", "contacts of this world are impulses, which "
+                           "have no contact time; choose a step in which grains move by less than "
+                           "a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
-    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
-                     "grain that can move; add grains before this call");
+    return demi_refuse(w, "dem_step_advice_get", "the world has no grain that can move; add grains "
+                       "before this call");
 }
 /* Fails because the chosen step is so short that the time would not advance. */
 static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
@@ -28344,11 +28350,10 @@ static dem_result demi_speed_check(dem_world *w, double speed) {
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
                      "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
-                     "s, must be at most 1: it would pass through others and walls undetected; "
-                     "use at most %.2g s%s, or find what made it so fast",
+                     "s, must be at most 1: it would pass through others and walls undetected; use "
+                     "at most %.2g s%s, or find what made it so fast",
                      (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
-                     0.1*radius/speed,
-                     foreseen ? ", or a law_range of twice that distance" : "");
+                     0.1*radius/speed, foreseen ? ", or a law_range of twice that distance" : "");
 }
 /* The same for moving walls that are thin. Planes and cylinders are not: a body on their other side
    still touches them. */
@@ -28612,9 +28617,8 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_s
     i = demi_wall_find((dem_world *)world, "dem_wall_servo_get", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
-        return demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "dem_wall_servo_get: the motion "
-                         "of wall %d is not DEM_MOTION_SERVO; set it with dem_wall_motion_set",
-                         (int)id.id);
+        return demi_refuse(world, "dem_wall_servo_get", "the motion of wall %d is not "
+                           "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
     *servo = demi_servo_now(world, i);
     return DEM_OK;
 }
@@ -28832,15 +28836,15 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     if (i < 0 || demi_rows_check(w, call, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
         return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, whose "
-                         "solver has one mass per body for all axes; use DEM_RESPONSE_SPRINGS, or "
-                         "joints (dem_joint_add)", call);
+        return demi_refuse(w, call, "contacts of this world are impulses, whose solver has one "
+                           "mass per body for all axes; use DEM_RESPONSE_SPRINGS, or joints "
+                           "(dem_joint_add)");
     if (w->bodies.inv_mass[i] <= 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is fixed, so all its axes are locked; "
-                         "set `fixed` to 0 with dem_body_set", call, (unsigned)body.slot);
+        return demi_refuse(w, call, "body %u is fixed, so all its axes are locked; set `fixed` to "
+                           "0 with dem_body_set", (unsigned)body.slot);
     if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axes is %d, but a planar world locks Z, "
-                         "SPIN_X and SPIN_Y of all bodies; leave them out", call, d->axes);
+        return demi_refuse(w, call, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y of "
+                           "all bodies; leave them out", d->axes);
     if (d->wall.id && demi_wall_find(w, call, d->wall) < 0) return DEM_ERROR_ARGUMENT;
     if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, call);
     demi_rails_drop(w, body);
@@ -28867,8 +28871,8 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
     if (demi_body_index((dem_world *)w, call, body) < 0) return DEM_ERROR_ARGUMENT;
     r = demi_rail_of(w, body);
     if (!r)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: body %u has no rail; set one "
-                         "with dem_body_rail_set", call, (unsigned)body.slot);
+        return demi_refuse(w, call, "body %u has no rail; set one with dem_body_rail_set",
+                           (unsigned)body.slot);
     *state = r->state;
     return DEM_OK;
 }
@@ -28931,11 +28935,11 @@ DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real rad
     double mass;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (demi_size_bad(w, i, radius, &mass))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_radius_set: the radius of body %u is %g "
-                         "m and its mass %g kg, must be > 0 and neither too small nor too large to "
-                         "calculate with in %s precision; lengths are in metres: check the unit",
-                         (unsigned)body.slot, (double)radius, mass,
-                         DEMI_SINGLE ? "single" : "double");
+        return demi_refuse(w, "dem_body_radius_set", "the radius of body %u is %g m and its mass "
+                           "%g kg, must be > 0 and neither too small nor too large to calculate "
+                           "with in %s precision; lengths are in metres: check the unit",
+                           (unsigned)body.slot, (double)radius, mass,
+                           DEMI_SINGLE ? "single" : "double");
     demi_finish(w);                             /* the open half kick belongs to the old mass */
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_radius_set");
     demi_body_resize(w, i, radius, mass);
@@ -29528,8 +29532,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_rows_check(w, "dem_field_add", demi_field_rows, d, "",
                         "start from DEM_FIELD_DESC and set only what differs")) return id;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, must be at most "
-                  "2^28 in all; choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
+        demi_refuse(w, "dem_field_add", "cells are %d x %d x %d, must be at most 2^28 in all; "
+                    "choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
@@ -29538,9 +29542,9 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     for (k = 0; k < w->field_count && d->bodies; k++)
         if (w->fields[k].desc.bodies) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: bodies is %d, but field %d averages "
-                      "bodies already, and each body has room for one average; set bodies to 0, "
-                      "or use that field", d->bodies, k + 1);
+            demi_refuse(w, "dem_field_add", "bodies is %d, but field %d averages bodies already, "
+                        "and each body has room for one average; set bodies to 0, or use that "
+                        "field", d->bodies, k + 1);
             return id;
         }
     memset(&field, 0, sizeof field);
@@ -29562,8 +29566,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
 /* Returns the field of an id, or null with an error message in the name of `call`. */
 static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
     if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d; check the id "
-              "that dem_field_add returned", call, (int)id.id, w->field_count);
+    demi_refuse(w, call, "field %d does not exist, there are %d; check the id that dem_field_add "
+                "returned", (int)id.id, w->field_count);
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
@@ -29598,8 +29602,8 @@ DEM_API dem_result dem_body_means_get(const dem_world *w, dem_body body, dem_bod
     int i, k;
     if (demi_null_look(w, "dem_body_means_get", out, "means")) return DEM_ERROR_ARGUMENT;
     if (!w->bodies.averaged)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_body_means_get: no field "
-                         "averages bodies; add one with bodies = 1 (dem_field_desc)");
+        return demi_refuse(w, "dem_body_means_get", "no field averages bodies; add one with bodies "
+                           "= 1 (dem_field_desc)");
     i = demi_body_index((dem_world *)w, "dem_body_means_get", body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
@@ -29643,9 +29647,9 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
     dem_field_get(w, id, &d);
     if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_field_cell_get: cell (%d, %d, "
-                         "%d) does not exist, the field has %d x %d x %d cells; indices start at 0",
-                         i, j, k, d.cells[0], d.cells[1], d.cells[2]);
+        return demi_refuse(w, "dem_field_cell_get", "cell (%d, %d, %d) does not exist, the field "
+                           "has %d x %d x %d cells; indices start at 0", i, j, k, d.cells[0],
+                           d.cells[1], d.cells[2]);
     memset(out, 0, sizeof *out);
     if (!d.samples) return DEM_OK;
     c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);
@@ -30127,18 +30131,17 @@ static dem_result demi_events_tell(dem_world *w, const char *call) {
 /* Fails unless contacts are recorded. */
 static dem_result demi_events_needed(dem_world *w, const char *call) {
     if (w->events.n.on) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts are not recorded; call dem_events_record "
-                     "before the run", call);
+    return demi_refuse(w, call, "contacts are not recorded; call dem_events_record before the run");
 }
 DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) {
     const char *call = "dem_events_record";
     if (demi_null(w, call, desc, "desc")) return DEM_ERROR_ARGUMENT;
     if (!w->desc.ledger)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: desc.ledger is 0, must be 1, because contacts "
-                         "only then report what they lose; set it when the world is created", call);
+        return demi_refuse(w, call, "desc.ledger is 0, must be 1, because contacts only then "
+                           "report what they lose; set it when the world is created");
     if (desc->begins < 0 || desc->begins > 1)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: begins is %d, must be 0 or 1; start from "
-                         "DEM_EVENTS_DESC", call, desc->begins);
+        return demi_refuse(w, call, "begins is %d, must be 0 or 1; start from DEM_EVENTS_DESC",
+                           desc->begins);
     w->events.desc = *desc;
     if (!desc->function) w->events.n.pending = 0;
     if (w->events.n.on) return DEM_OK;
@@ -30200,27 +30203,26 @@ static int demi_cell_refuse(dem_world *w, const char *call) {
     int i, walls = 0;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (walls)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
-                  "wall%s, which would not: a grain and its image would touch the same wall at "
-                  "different velocities; remove the walls, or press with a servo wall instead of "
-                  "the cell", call, walls, walls == 1 ? "" : "s");
+        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d wall%s, which would "
+                    "not: a grain and its image would touch the same wall at different velocities; "
+                    "remove the walls, or press with a servo wall instead of the cell", walls,
+                    walls == 1 ? "" : "s");
     else if (w->joint_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
-                  "joint%s, whose anchors would follow the flow of the cell at both ends; remove "
-                  "the joints", call, w->joint_count, w->joint_count == 1 ? "" : "s");
+        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d joint%s, whose "
+                    "anchors would follow the flow of the cell at both ends; remove the joints",
+                    w->joint_count, w->joint_count == 1 ? "" : "s");
     else if (w->rail_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and %d bod%s on rails: "
-                  "velocities in the cell are relative to its flow, those of rails are not; remove "
-                  "the rails (axes 0)", call, w->rail_count,
-                  w->rail_count == 1 ? "y is" : "ies are");
+        demi_refuse(w, call, "the periodic cell deforms, and %d bod%s on rails: velocities in the "
+                    "cell are relative to its flow, those of rails are not; remove the rails (axes "
+                    "0)", w->rail_count, w->rail_count == 1 ? "y is" : "ies are");
     else if (w->feed_count || w->outlet_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the regions of %d "
-                  "feeds and %d outlets would not; fill the cell before it deforms", call,
-                  w->feed_count, w->outlet_count);
+        demi_refuse(w, call, "the periodic cell deforms, and the regions of %d feeds and %d "
+                    "outlets would not; fill the cell before it deforms", w->feed_count,
+                    w->outlet_count);
     else if (slides && w->field_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, so that images are "
-                  "displaced, which the grids of %d field%s do not see; use dem_stress_get", call,
-                  w->field_count, w->field_count == 1 ? "" : "s");
+        demi_refuse(w, call, "the periodic cell is sheared, so that images are displaced, which "
+                    "the grids of %d field%s do not see; use dem_stress_get", w->field_count,
+                    w->field_count == 1 ? "" : "s");
     else return 0;
     return 1;
 }
@@ -30327,14 +30329,13 @@ static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_
         const int sheared = k < 2 && (d->shear < 0 || d->shear > 0);
         *moves |= rated || led || sheared;
         if (rated && led)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis %d has the strain rate %g 1/s and "
-                             "the largest rate %g 1/s towards a stress, one of them must be 0",
-                             call, k, (double)rate[k], (double)most[k]);
+            return demi_refuse(w, call, "axis %d has the strain rate %g 1/s and the largest rate "
+                               "%g 1/s towards a stress, one of them must be 0", k, (double)rate[k],
+                               (double)most[k]);
         if ((rated || led || sheared) && w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis %d is to be %s, but its boundary is "
-                             "not periodic; set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or "
-                             "move walls instead", call, k, rated || led ? "strained" : "sheared",
-                             k);
+            return demi_refuse(w, call, "axis %d is to be %s, but its boundary is not periodic; "
+                               "set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or move walls "
+                               "instead", k, rated || led ? "strained" : "sheared", k);
     }
     return DEM_OK;
 }
@@ -30349,11 +30350,11 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
             "start from DEM_CELL_DESC and set only what differs")) return DEM_ERROR_ARGUMENT;
     c = &w->cell;
     if (!demi_response_is(w, DEMI_LAWS))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, whose "
-                         "solvers do not see the flow of a cell; use DEM_RESPONSE_SPRINGS", call);
+        return demi_refuse(w, call, "contacts of this world are impulses, whose solvers do not see "
+                           "the flow of a cell; use DEM_RESPONSE_SPRINGS");
     if (w->team)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this world is a slab, and borders of slabs do "
-                         "not move; use threads", call);
+        return demi_refuse(w, call, "this world is a slab, and borders of slabs do not move; use "
+                           "threads");
     if (demi_cell_axes(w, call, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = c->desc;
     c->desc = *desc;
@@ -30432,8 +30433,8 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     s->volume = demi_volume(w);
     if (!(s->volume > 0)) {
         s->volume = 0;
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_stress_get: the domain has the "
-                         "volume 0; set desc.domain along all axes");
+        return demi_refuse(w, "dem_stress_get", "the domain has the volume 0; set desc.domain "
+                           "along all axes");
     }
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -31650,10 +31651,10 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
             least = (double)w->bodies.pos[4*i + 3];
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bonds_make: gap is %g m, must be >= 0 and at "
-                         "most %g m, the range of your law for the smallest grains; set a larger "
-                         "law_range or law_range_radii when the world is created", (double)gap,
-                         DEMI_MAX(most, 0)), -1;
+        return demi_refuse(w, "dem_bonds_make", "gap is %g m, must be >= 0 and at most %g m, the "
+                           "range of your law for the smallest grains; set a larger law_range or "
+                           "law_range_radii when the world is created", (double)gap,
+                           DEMI_MAX(most, 0)), -1;
     b.make = make;
     b.user = user;
     b.gap = gap;
@@ -31775,8 +31776,8 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     int d, k, j, body, same, count = 0;
     if (!wall) return -1;
     if (!wall->sieve.kind) {
-        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded_get: wall %d is not a "
-                  "sieve; pass the id that dem_wall_sieve_add returned", (int)sieve.id);
+        demi_refuse(w, "dem_sieve_blinded_get", "wall %d is not a sieve; pass the id that "
+                    "dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
@@ -32019,18 +32020,17 @@ static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box,
     dem_real R[9];
     memset(s, 0, sizeof *s);
     if (!(g > 0) || demi_box_bad(box, 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: gravity is %g m/s2, must not be 0, because "
-                         "it defines the slope; the box must be finite with lo below hi, or both 0",
-                         call, g);
+        return demi_refuse(w, call, "gravity is %g m/s2, must not be 0, because it defines the "
+                           "slope; the box must be finite with lo below hi, or both 0", g);
     s->up = demi_scale(w->desc.gravity, (dem_real)(-1/g));
     demi_frame_of(R, s->up);
     s->along = demi_v(R[0], R[3], R[6]);
     if (demi_dot(axis, axis) > 0) {             /* its horizontal part */
         s->along = demi_sub(axis, demi_scale(s->up, demi_dot(axis, s->up)));
         if (!(demi_dot(s->along, s->along) > DEM_R(0.01)*demi_dot(axis, axis)))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is vertical, must be "
-                             "horizontal; give the axis of rotation of the drum", call,
-                             (double)axis.x, (double)axis.y, (double)axis.z);
+            return demi_refuse(w, call, "axis (%g, %g, %g) is vertical, must be horizontal; give "
+                               "the axis of rotation of the drum", (double)axis.x, (double)axis.y,
+                               (double)axis.z);
         s->along = demi_unit(s->along);
     } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
     s->out = demi_cross(s->up, s->along);       /* motion of the drum at its bottom */
@@ -32047,10 +32047,9 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
         heap += s->root[i] == s->heap;
     }
     if (!good)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the surface of the heap has %d columns of one mean "
-                  "diameter, too few to fit a line, must be some 10; the largest heap has %d of "
-                  "the %d grains: check the box, or add grains", call,
-                  s->top ? s->rows : 0, heap, all);
+        demi_refuse(w, call, "the surface of the heap has %d columns of one mean diameter, too few "
+                    "to fit a line, must be some 10; the largest heap has %d of the %d grains: "
+                    "check the box, or add grains", s->top ? s->rows : 0, heap, all);
     demi_free(w, s->top);
     demi_free(w, s->root);
     return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
@@ -32089,8 +32088,8 @@ DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_
     if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not "
-                         "zero", call, (double)axis.x, (double)axis.y, (double)axis.z);
+        return demi_refuse(w, call, "axis is (%g, %g, %g), must be finite and not zero",
+                           (double)axis.x, (double)axis.y, (double)axis.z);
     result = demi_repose_begin(w, call, box, axis, &s);
     if (result != DEM_OK) return result;
     if (!demi_surface_look(w, &s)) good = -1;
@@ -32296,13 +32295,12 @@ static dem_result demi_mixing_check(dem_world *w, const char *call, const dem_mi
         (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK))
         return DEM_ERROR_ARGUMENT;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: cells are %d x %d x %d, must be at most 2^28 "
-                         "in all; choose longer cells", call, d->cells[0], d->cells[1],
-                         d->cells[2]);
+        return demi_refuse(w, call, "cells are %d x %d x %d, must be at most 2^28 in all; choose "
+                           "longer cells", d->cells[0], d->cells[1], d->cells[2]);
     if (d->material.id || d->radius_min > 0 || d->radius_max > 0) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material, radius_min and radius_max are all 0, so "
-                     "that every grain is of the component; give the material or the radii of one "
-                     "of the two", call);
+    return demi_refuse(w, call, "material, radius_min and radius_max are all 0, so that every "
+                       "grain is of the component; give the material or the radii of one of the "
+                       "two");
 }
 DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *d,
                                   dem_mixing *out) {
@@ -33175,7 +33173,7 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, ch
     dem_result result = DEM_OK;
     *size = 0;
     if (!path)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+        return demi_refuse(w, call, "path is null; give a file name");
     file = demi_open(path);
     length = file ? demi_file_size(file) : 0;
     if (length == DEMI_ENDLESS)
@@ -33218,8 +33216,8 @@ DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void
     if (mesh) memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
     if (!mesh || !data)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_parse: %s is null; give its address",
-                         mesh ? "data" : "mesh");
+        return demi_refuse(world, "dem_mesh_parse", "%s is null; give its address",
+                           mesh ? "data" : "mesh");
     return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
 }
 
@@ -33228,8 +33226,7 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
     if (demi_null_write(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
     if (health) memset(health, 0, sizeof *health);
     if (!mesh)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_read: mesh is null; give its "
-                         "address");
+        return demi_refuse(world, "dem_mesh_read", "mesh is null; give its address");
     memset(mesh, 0, sizeof *mesh);
     return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
 }
@@ -33254,9 +33251,9 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
         : dem_quat_make(1, 0, 0, 0);
     int i;
     if (!(scale > 0) || !demi_finite(scale) || !demi_quat_finite(rotation) || !demi_place(to))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_mesh_place: scale is %g, must be finite and "
-                         "> 0; rotation and translation must be finite, and the translation "
-                         "within 1e15 m", (double)scale);
+        return demi_refuse(w, "dem_mesh_place", "scale is %g, must be finite and > 0; rotation and "
+                           "translation must be finite, and the translation within 1e15 m",
+                           (double)scale);
     for (i = 0; i < mesh->vertex_count; i++)
         demi_put(mesh->vertices + 3*i, demi_add(to,
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
@@ -33290,7 +33287,7 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
     for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
     if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be > 0", call, count);
+        return demi_refuse(w, call, "count is %d, must be > 0", count);
     made = (demi_wall *)demi_alloc(w, (size_t)count, sizeof *made);
     if (!made) return demi_no_memory(w, call);
     for (i = 0; i < count && result == DEM_OK; i++) {
@@ -33346,8 +33343,8 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
     dem_result result;
     if (profile) memset(profile, 0, sizeof *profile);
     if (!profile || !data)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_parse: %s is null; give its "
-                         "address", profile ? "data" : "profile");
+        return demi_refuse(world, "dem_profile_parse", "%s is null; give its address",
+                           profile ? "data" : "profile");
     result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
                         0);
     if (result != DEM_OK) return result;
@@ -33359,8 +33356,7 @@ DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_prof
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
     if (!profile)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_read: profile is null; give its "
-                         "address");
+        return demi_refuse(world, "dem_profile_read", "profile is null; give its address");
     memset(profile, 0, sizeof *profile);
     result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
@@ -33636,9 +33632,9 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
         }
     }
     if (!(moments.one > 1e-6*(hi.x - lo.x)*(hi.y - lo.y)*(hi.z - lo.z)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
-                         "must be more than 1e-6 of its box: it is too thin for spheres; is it a "
-                         "sheet?", call, mesh->triangle_count, moments.one);
+        return demi_refuse(w, call, "the mesh of %d triangles encloses %.3g m3, must be more than "
+                           "1e-6 of its box: it is too thin for spheres; is it a sheet?",
+                           mesh->triangle_count, moments.one);
     memset(&m, 0, sizeof m);
     m.mesh = mesh;
     m.sign = sign;
@@ -33647,10 +33643,10 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     if (!made || !m.picks) {
         demi_mould_free(w, &m);
         demi_free(w, sphere);
-        return made ? demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is thinner than 1/%d of its "
-                                "length everywhere, so no sphere fits; use a polyhedron, or a "
-                                "thicker mesh", call, (int)DEMI_GRAIN_CELLS) : demi_no_memory(w,
-                                call);
+        if (!made) return demi_no_memory(w, call);
+        return demi_refuse(w, call, "the mesh is thinner than 1/%d of its length everywhere, so no "
+                           "sphere fits; use a polyhedron, or a thicker mesh",
+                           (int)DEMI_GRAIN_CELLS);
     }
     for (i = 0; i < count; i++) {
         demi_mould_best(&m, sphere + 4*i);
@@ -33890,10 +33886,9 @@ static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
     if (l->has[0] && l->has[1] && (l->has[DEMI_COLUMN_R] || l->has[DEMI_COLUMN_D])) return DEM_OK;
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: columns x, y and r (radius) or d "
                      "(diameter) are needed; %s%s%s; name them in the first line, or add them to "
-                     "the export",
-                     t->call, t->name, l->has[DEMI_COLUMN_SCALED] ? "xs is a fraction "
-                     "of the box, so dump x y z"
-                     : "not used", g->ignored[0] ? ": " : "", g->ignored);
+                     "the export", t->call, t->name, l->has[DEMI_COLUMN_SCALED]
+                     ? "xs is a fraction of the box, so dump x y z" : "not used",
+                     g->ignored[0] ? ": " : "", g->ignored);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -34681,24 +34676,23 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
     int i, first;
     if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
     if (g->count < 0 || (g->count && (!g->positions || !g->radii)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, or positions or radii are null; "
-                         "count must be >= 0 with both arrays; pass what dem_grains_read filled in",
-                         call, g->count);
+        return demi_refuse(w, call, "count is %d, or positions or radii are null; count must be >= "
+                           "0 with both arrays; pass what dem_grains_read filled in", g->count);
     for (i = 0; i < g->count; i++) {
         dem_material m = material;
         int index = 0;
         if (!m.id && !g->materials)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material is null and the file names no "
-                             "materials; pass an id that dem_material_add returned", call);
+            return demi_refuse(w, call, "material is null and the file names no materials; pass an "
+                               "id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, call, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
             (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
             (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has a radius of %g m; the "
-                             "radius must be > 0, and position, velocity and spin must be finite; "
-                             "no grain was added", call, i, (double)g->radii[i]);
+            return demi_refuse(w, call, "grain %d has a radius of %g m; the radius must be > 0, "
+                               "and position, velocity and spin must be finite; no grain was added",
+                               i, (double)g->radii[i]);
         if (demi_mass_refuse(w, call, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
@@ -34851,7 +34845,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     size_t length;
     FILE *there;
     size_t size;
-    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    if (!path) return demi_refuse(w, call, "path is null; give a file name");
     memset(o, 0, sizeof *o);
     o->world = w;
     o->call = call;
@@ -35520,9 +35514,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
     }
     if (profiles && !(z1 > z0))
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g m and z1 is %g "
-                         "m, but z0 must be below z1 to extrude a profile between them; change "
-                         "them", (double)z0, (double)z1);
+        return demi_refuse(world, "dem_walls_vtp_write", "z0 is %g m and z1 is %g m, but z0 must "
+                           "be below z1 to extrude a profile between them; change them", (double)z0,
+                           (double)z1);
     room[0] = 3*(size_t)points + 1;     /* never 0 */
     room[1] = (size_t)triangles + 1;
     if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
@@ -35559,7 +35553,7 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     char text[2*DEMI_CSV_LINE];
     int n = 0, last = '\n', whole, cause;
     FILE *file;
-    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    if (!path) return demi_refuse(w, call, "path is null; give a file name");
     errno = 0;
     file = fopen(path, "r+b");                  /* does not wait for a pipe, which is an error */
     whole = !file || demi_file_size(file) != DEMI_ENDLESS;
@@ -35595,8 +35589,8 @@ enum { DEMI_LOADS = 9 };
 static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wall, double *value) {
     dem_wall_loads c;
     if (dem_wall_loads_get(w, wall, &c) != DEM_OK)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %ld does not exist; give one that was "
-                         "added and not removed", call, (long)wall.id);
+        return demi_refuse(w, call, "wall %ld does not exist; give one that was added and not "
+                           "removed", (long)wall.id);
     value[0] = (double)c.force.x;
     value[1] = (double)c.force.y;
     value[2] = (double)c.force.z;
@@ -35764,9 +35758,8 @@ DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet o
     from = demi_outlet_find(world, call, outlet);
     if (!from) return DEM_ERROR_ARGUMENT;
     if (!(from->desc.residence_bin > 0))
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "%s: outlet %d has residence_bin 0 s, must be "
-                         "> 0 to measure residence times; set it in its desc", call,
-                         (int)outlet.id);
+        return demi_refuse(world, call, "outlet %d has residence_bin 0 s, must be > 0 to measure "
+                           "residence times; set it in its desc", (int)outlet.id);
     result = demi_out_open(&o, world, call, path);
     if (result != DEM_OK) return result;
     for (k = 0; k < DEM_RESIDENCE_BINS; k++) {
@@ -35808,10 +35801,9 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
     if (demi_null_look(w, call, out, "impacts")) return DEM_ERROR_ARGUMENT;
     if (demi_events_needed(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist; there are %d, and "
-                         "id 0 means any", call,
-                         (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
-                         w->material_count);
+        return demi_refuse(w, call, "material %d does not exist; there are %d, and id 0 means any",
+                           (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
+                           w->material_count);
     memset(out, 0, sizeof *out);
     out->seconds = w->clock.time - w->events.n.since;
     for (k = 0; k <= DEM_IMPACT_BINS; k++) out->bin[k] = demi_impact_limit(k);
@@ -35895,9 +35887,9 @@ DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coeffic
     if (result != DEM_OK) return result;
     if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
         !(hardness > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: coefficient is %g, must be >= 0, and hardness "
-                         "is %g Pa, must be > 0, both finite; steel has about 1e-4 and 2e9 Pa",
-                         call, coefficient, hardness);
+        return demi_refuse(w, call, "coefficient is %g, must be >= 0, and hardness is %g Pa, must "
+                           "be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
+                           hardness);
     memset(wear, 0, sizeof *wear);
     wear->seconds = w->clock.time - w->events.n.since;
     wear->slide = worn ? worn->slide : 0;
@@ -36355,11 +36347,10 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     dem_result result;
     uint64_t sum;
     if (lost >= 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u no longer has a "
-                         "finite position, velocity and force: the run has blown up; go back to "
-                         "an earlier checkpoint; %s was not changed",
-                         (unsigned)w->bodies.slot[lost] + 1,
-                         path ? path : "the file");
+        return demi_refuse(w, "dem_checkpoint_write", "body %u no longer has a finite position, "
+                           "velocity and force: the run has blown up; go back to an earlier "
+                           "checkpoint; %s was not changed", (unsigned)w->bodies.slot[lost] + 1,
+                           path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
     demi_filed_current(w, &w->filed);
@@ -36400,9 +36391,8 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has checkpoint version %u%s, must be "
                          "%d; read it with the dem.h that wrote it", call, path,
-                         (unsigned)head->version,
-                         head->byte_order != 0x01020304u ? " and another byte order" : "",
-                         (int)DEMI_CHECKPOINT_VERSION);
+                         (unsigned)head->version, head->byte_order != 0x01020304u
+                         ? " and another byte order" : "", (int)DEMI_CHECKPOINT_VERSION);
     if (head->real_size != sizeof(dem_real))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, "
                          "must be %u; build with the same precision", call, path,
@@ -36494,11 +36484,10 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
-            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to "
-                             "another scene: the checkpoint has %d %s, this world %d (removed "
-                             "ones count); create the world like the one that wrote it, then read",
-                             path, (int)parts[part], demi_scene_parts[part].many,
-                             (int)counts[part]);
+            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
+                             "scene: the checkpoint has %d %s, this world %d (removed ones count); "
+                             "create the world like the one that wrote it, then read", path,
+                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = gone = 0; i < counts[part]; i++)
             for (r = demi_scene_parts[part].rows; r->name; r++) {
@@ -37317,10 +37306,10 @@ static dem_result demi_changes_check(dem_world *w, const char *allowed) {
         for (r = demi_world_desc_rows; r->name && !(strlen(r->name) == (size_t)n &&
              !strncmp(r->name, at, (size_t)n) && demi_may_change(r)); r++) continue;
         if (r->name) continue;
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_read_changed: \"%.*s\" is not a "
-                         "field of dem_world_desc that may differ, and not \"materials\" or "
-                         "\"pairs\"; domain, boundary, planar, thickness, response and names must "
-                         "agree: create the world with those of the file", DEMI_MIN(n, 60), at);
+        return demi_refuse(w, "dem_checkpoint_read_changed", "\"%.*s\" is not a field of "
+                           "dem_world_desc that may differ, and not \"materials\" or \"pairs\"; "
+                           "domain, boundary, planar, thickness, response and names must agree: "
+                           "create the world with those of the file", DEMI_MIN(n, 60), at);
     }
     return DEM_OK;
 }
@@ -37611,9 +37600,9 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_output_heading(d, heading);
     memset(value, 0, sizeof value);
     if (d->wall.id && !demi_wall_there(w, d->wall))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: output %d writes the loads of "
-                         "wall %d, which was removed; remove the output too (dem_output_remove)",
-                         (int)o->id, (int)d->wall.id);
+        return demi_refuse(w, "dem_world_step", "output %d writes the loads of wall %d, which was "
+                           "removed; remove the output too (dem_output_remove)", (int)o->id,
+                           (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
     else if (demi_output_mixes(d)) {
         count = DEMI_MIXING;
@@ -37805,7 +37794,7 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
         demi_mixing_check(w, call, &desc->mixing) != DEM_OK) return id;
     bad = demi_output_bad(w, desc);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s", call, bad);
+        demi_refuse(w, call, "%s", bad);
         return id;
     }
     if (desc->path) path = demi_text_copy(w, desc->path);
@@ -37837,9 +37826,8 @@ DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
     if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_output_place(w, output.id);
     if (i == w->look.output_count || w->look.outputs[i].id != output.id)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: output %d does not exist; it was removed "
-                         "before or is of another world: give what dem_output_add returned", call,
-                         (int)output.id);
+        return demi_refuse(w, call, "output %d does not exist; it was removed before or is of "
+                           "another world: give what dem_output_add returned", (int)output.id);
     o = w->look.outputs + i;
     demi_free(w, (char *)o->desc.path);
     demi_free(w, (char *)o->desc.columns);
@@ -37905,9 +37893,8 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
-                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?",
-                      i + 1, (double)m->density,
-                      (double)(m->density < 10 ? m->density : m->density/1000));
+                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?", i + 1,
+                      (double)m->density, (double)(m->density < 10 ? m->density : m->density/1000));
         if (!w->desc.law && !(m->stiffness > 0) &&
             (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
@@ -37972,9 +37959,8 @@ static void demi_check_digits(const dem_world *w, demi_findings *f) {
         demi_find(f, worst > 2e-3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "body %d is so far "
                   "from the origin that its position is resolved only to %.2g of its radius: "
                   "contacts lose %s; build the scene around the origin%s",
-                  (int)w->bodies.slot[body] + 1, worst,
-                  worst > 2e-3 ? "their accuracy" : "about 1 % of accuracy",
-                  DEMI_SINGLE ? ", or use double precision" : "");
+                  (int)w->bodies.slot[body] + 1, worst, worst > 2e-3 ? "their accuracy"
+                  : "about 1 % of accuracy", DEMI_SINGLE ? ", or use double precision" : "");
 }
 
 /* Returns the largest coordinate (m) along the unit vector n up to which a wall can stop a body
@@ -38088,10 +38074,9 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
         if (!differs) continue;
         demi_find(f, DEM_SEVERITY_WARNING, "the motion of wall %d gives a %s of (%g, %g, %g) where "
                   "its %s changes by (%g, %g, %g) per second: contacts would create energy; give "
-                  "the derivative or, for a belt, use dem_wall_surface_velocity_set",
-                  (int)wall->id, differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y,
-                  (double)v.z, differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y,
-                  (double)u.z);
+                  "the derivative or, for a belt, use dem_wall_surface_velocity_set", (int)wall->id,
+                  differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y, (double)v.z,
+                  differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y, (double)u.z);
     }
     demi_called(w, was);
 }
@@ -38166,10 +38151,9 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
         }
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
-                  : DEM_SEVERITY_NOTE,
-                      "%d pair%s of grains begin%s with an overlap, bodies %d and %d by %.3g of "
-                  "the smaller radius: they will fly apart; place them with dem_spheres_fill, or "
-                  "farther apart", count, count > 1 ? "s" : "",
+                  : DEM_SEVERITY_NOTE, "%d pair%s of grains begin%s with an overlap, bodies %d and "
+                  "%d by %.3g of the smaller radius: they will fly apart; place them with "
+                  "dem_spheres_fill, or farther apart", count, count > 1 ? "s" : "",
                   count > 1 ? "" : "s", who[0], who[1], worst);
 }
 /* Checks for bodies that overlap walls by more than 1 % of their radius. Detects contacts
@@ -38516,9 +38500,8 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
                   "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
                   (double)a->dt_max, a->binds);
     else if (lasting && demi_press_limit(w, dt) == DEM_OK && w->pressed.least < dt)
-        demi_find(f, DEM_SEVERITY_ERROR,
-                  "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
-                  "contacts: use dt = 0", dt, w->pressed.least,
+        demi_find(f, DEM_SEVERITY_ERROR, "dt is %g s, must be at most %g s for body %d, which is "
+                  "pressed by %.3g contacts: use dt = 0", dt, w->pressed.least,
                   (int)w->bodies.slot[w->pressed.worst] + 1, w->press[w->pressed.worst].contacts);
     else if (lasting && dt < (double)a->dt/20)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
@@ -38886,39 +38869,38 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
     if (!demi_response_is(w, DEMI_LASTING)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts of this world are impulses, "
-                  "but trials vary the steps, stiffnesses and laws of springs; compare runs with "
-                  "other dt, sweeps and tolerance instead");
+        demi_refuse(w, "dem_trials_run", "contacts of this world are impulses, but trials vary the "
+                    "steps, stiffnesses and laws of springs; compare runs with other dt, sweeps "
+                    "and tolerance instead");
         return 1;
     }
     if (demi_rows_check(w, "dem_trials_run", demi_trials_rows, d, "",
                         "start from DEM_TRIALS_DESC and set duration")) return 1;
     if (d->seeds == 1) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: seeds is 1, must be 2 to 16 (0 means 3)");
+        demi_refuse(w, "dem_trials_run", "seeds is 1, must be 2 to 16 (0 means 3)");
         return 1;
     }
     for (e = 0; e < d->observable_count; e++)
         if (!d->observables[e].function || !d->observables[e].name) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: observable %d has no function or no "
-                      "name; give both, as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
+            demi_refuse(w, "dem_trials_run", "observable %d has no function or no name; give both, "
+                        "as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
             return 1;
         }
     for (e = 0; e < d->observable_count; e++)
         if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: the scale of observable %d is %g, "
-                      "must "
-                      "be finite and >= 0; 0 means its own value in the reference", e + 1,
-                      d->observables[e].scale);
+            demi_refuse(w, "dem_trials_run", "the scale of observable %d is %g, must be finite and "
+                        ">= 0; 0 means its own value in the reference", e + 1,
+                        d->observables[e].scale);
             return 1;
         }
     if (lost < 0 && w->bodies.count) return 0;
     if (lost < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: there are no bodies to compare; add "
-                  "some, or run until some are fed");
+        demi_refuse(w, "dem_trials_run", "there are no bodies to compare; add some, or run until "
+                    "some are fed");
     else
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: body %u no longer has a finite "
-                  "position, velocity and force: the run has blown up; go back to an earlier "
-                  "checkpoint", (unsigned)w->bodies.slot[lost] + 1);
+        demi_refuse(w, "dem_trials_run", "body %u no longer has a finite position, velocity and "
+                    "force: the run has blown up; go back to an earlier checkpoint",
+                    (unsigned)w->bodies.slot[lost] + 1);
     return 1;
 }
 /* Shortens out->duration if the trials would otherwise take longer than the budget (s of wall
@@ -38945,14 +38927,14 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
     if (result != DEM_OK) demi_fail(w, result, "dem_trials_run: the scene as it is fails: %.400s",
                                     t->error);
     else if (asked < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, must be at "
-                           "least 64 steps of %g s; set a duration in which the observables settle",
-                           asked, (double)t->clock.dt);
+        result = demi_refuse(w, "dem_trials_run", "duration is %g s, must be at least 64 steps of "
+                             "%g s; set a duration in which the observables settle", asked,
+                             (double)t->clock.dt);
     else if (out->duration < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: %g s of wall time allow %g s "
-                           "of this scene in each trial, must be at least 64 steps of %g s; give "
-                           "a larger budget, fewer seeds, or a smaller part of the scene", budget,
-                           out->duration, (double)t->clock.dt);
+        result = demi_refuse(w, "dem_trials_run", "%g s of wall time allow %g s of this scene in "
+                             "each trial, must be at least 64 steps of %g s; give a larger budget, "
+                             "fewer seeds, or a smaller part of the scene", budget, out->duration,
+                             (double)t->clock.dt);
     demi_twin_free(w, t);
     return result;
 }
@@ -39015,8 +38997,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
             d->progress(w, (k + 1.0)/out->count,
                         (demi_clock() - begun)*(out->count - k - 1)/(k + 1), d->user))
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_trials_run: stopped by the progress "
-                               "function "
-                               "after %d of %d trials", k + 1, out->count);
+                               "function after %d of %d trials", k + 1, out->count);
     }
     demi_called(w, was);
     demi_free(w, state);
@@ -39120,8 +39101,7 @@ static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const
     else if (met == possible) demi_say(e, "%s", what);
     else if (first == second)
         demi_say(e, "%s; material %d has not touched itself so far", what, first);
-    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first,
-                  second);
+    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first, second);
     return !have ? DEM_EFFECT_OFF : met ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
@@ -39249,8 +39229,7 @@ static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     }
     if (!count) return demi_look_off(e, "no wall moves");
     e->missing = count - touched;
-    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? ""
-             : ", never touched");
+    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? "" : ", never touched");
     return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 /* State of periodic faces: active if a pair of the pruned neighbour list crosses one. */
@@ -39594,8 +39573,8 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
     int count;
     if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
     if (!(budget >= 0) || !demi_finite_double(budget)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
-                  "finite; 0 gives only states, and 5 s are enough on a quiet machine", budget);
+        demi_refuse(w, "dem_effects_get", "budget is %g s, must be >= 0 and finite; 0 gives only "
+                    "states, and 5 s are enough on a quiet machine", budget);
         return -1;
     }
     if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
@@ -39756,9 +39735,9 @@ DEM_API void dem_world_destroy(dem_world *w) {
     int chain;
     if (demi_null(w, "dem_world_destroy", w, "world")) return;
     if (w->look.under_way) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_destroy: called from the function of an "
-                  "output (dem_output_add) while the world runs; return 1 from that function to "
-                  "stop the run, then destroy the world");
+        demi_refuse(w, "dem_world_destroy", "called from the function of an output "
+                    "(dem_output_add) while the world runs; return 1 from that function to stop "
+                    "the run, then destroy the world");
         return;
     }
     for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
@@ -39823,10 +39802,9 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
     if (!demi_response_is(w, DEMI_LAWS)) {
-        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
-                "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
-                "tolerance",
-                w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
+        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
+                "included\n           last step: %d sweeps left %.3g m/s; %llu steps did not reach "
+                "their tolerance", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
                 w->margin.reach, w->booked.sweeps, w->booked.residual,
                 (unsigned long long)w->booked.unsolved);
         if (w->solver.limited)
@@ -39845,9 +39823,8 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         if (w->desc.law != DEM_LAW)
             fprintf(out, "           DEM_LAW names another law than desc.law\n");
 #endif
-        fprintf(out, "           %s\n", demi_own_rows(w)
-                ? "contacts of spheres row by row" : w->desc.law_who
-                ? "called contact by contact, because law_who is set: slower"
+        fprintf(out, "           %s\n", demi_own_rows(w) ? "contacts of spheres row by row"
+                : w->desc.law_who ? "called contact by contact, because law_who is set: slower"
                 : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
         return;
     }
@@ -39886,8 +39863,7 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
-                    : "are separate",
-                w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
+                : "are separate", w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
         fprintf(out, "           orientations of spheres are followed, because desc.orientations "
                 "is 1\n");
@@ -39899,9 +39875,8 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
         const dem_wall_loads *ch = &w->walls[i].loads;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
         fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
-                "power %.4g W\n", (int)w->walls[i].id,
-                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
-                (double)ch->torque_axial,
+                "power %.4g W\n", (int)w->walls[i].id, ch->contacts, (double)ch->force.x,
+                (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
                 (double)ch->power);
     }
     for (i = 0; i < w->wall_count; i++) {
@@ -39938,9 +39913,8 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
         fprintf(out, "outlet %-3d %llu grains, %.6g kg%s, of them wanted %llu, %.6g kg\n", i + 1,
-                (unsigned long long)o->total, o->total_mass,
-                demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed",
-                (unsigned long long)o->sorted, o->sorted_mass);
+                (unsigned long long)o->total, o->total_mass, demi_outlet_at(w, i)->zone < 0 ? ""
+                : " came in and stayed", (unsigned long long)o->sorted, o->sorted_mass);
     }
 }
 /* Prints the account of energy. A large residual means that the time step is too large. */
@@ -39981,20 +39955,17 @@ static void demi_report(const dem_world *world, FILE *out) {
     if (w->crew.best && w->crew.best < c.threads)
         snprintf(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
     fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
-            DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
-            DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? ""
-            : "s", few, c.domains,
+            DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
+            DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
     fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
-            "+ %llu left\n", w->bodies.count,
-            (double)w->effects.radius_min, (double)w->effects.radius_max,
-                (unsigned long long)w->bodies.balance.inserted,
+            "+ %llu left\n", w->bodies.count, (double)w->effects.radius_min,
+            (double)w->effects.radius_max, (unsigned long long)w->bodies.balance.inserted,
             (unsigned long long)w->bodies.balance.present,
-                (unsigned long long)w->bodies.balance.removed,
+            (unsigned long long)w->bodies.balance.removed,
             (unsigned long long)w->bodies.balance.left);
     fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
-            (unsigned long long)w->clock.steps, (double)w->clock.dt,
-            demi_integrator_of(w)->name,
+            (unsigned long long)w->clock.steps, (double)w->clock.dt, demi_integrator_of(w)->name,
             demi_integrator_of(w)->order);
     if (demi_response_is(w, DEMI_LASTING))
         fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
@@ -40003,11 +39974,9 @@ static void demi_report(const dem_world *world, FILE *out) {
                 demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
     demi_held_report(w, out);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
-            "candidates, %.2f contacts\n",
-            demi_searches[w->desc.search].name, w->margin.skin,
-                (unsigned long long)w->clock.rebuilds,
-                w->clock.rebuilds
-            ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
+            "candidates, %.2f contacts\n", demi_searches[w->desc.search].name, w->margin.skin,
+            (unsigned long long)w->clock.rebuilds,
+            w->clock.rebuilds ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
@@ -40583,11 +40552,11 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     h->margin.skin = (double)(dem_real)h->margin.skin;        /* rounded as in the slabs */
     s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding loses no ghost */
     if (s->ring && s->cut*s->count > s->period)
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
-                         "%g m thick, must be at least %g m (the largest diameter and the "
-                         "skin%s); use at most %d slabs or a smaller skin", s->count, s->period,
-                         s->period/s->count, s->cut, h->margin.reach > 0
-                         ? " and the law's range" : "", (int)(s->period/s->cut));
+        return demi_refuse(h, "dem_slabs_step", "%d slabs in a period of %g m are %g m thick, must "
+                           "be at least %g m (the largest diameter and the skin%s); use at most %d "
+                           "slabs or a smaller skin", s->count, s->period, s->period/s->count,
+                           s->cut, h->margin.reach > 0 ? " and the law's range" : "",
+                           (int)(s->period/s->cut));
     return DEM_OK;
 }
 
@@ -41077,8 +41046,7 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
     const dem_result result = demi_slabs_usable(s, "dem_slabs_step");
     if (result != DEM_OK) return result;
     if (steps < 0)
-        return demi_fail(&s->head, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
-                         steps);
+        return demi_refuse(&s->head, "dem_slabs_step", "steps is %d, must be >= 0", steps);
     return demi_steps(&s->head, "dem_slabs_step", steps);
 }
 
@@ -41273,48 +41241,47 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     int i;
     for (i = 0; i < w->field_count; i++)
         if (w->fields[i].desc.variance)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d has variance %d, must be 0, "
-                             "because a cell may lie in two slabs, and neither knows the squares "
-                             "of the whole; leave variance out, or use threads", call, i + 1,
-                             w->fields[i].desc.variance);
+            return demi_refuse(w, call, "field %d has variance %d, must be 0, because a cell may "
+                               "lie in two slabs, and neither knows the squares of the whole; "
+                               "leave variance out, or use threads", i + 1,
+                               w->fields[i].desc.variance);
     if (!demi_response_is(w, DEMI_LAWS))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
-                         "cannot be split into slabs; use threads", call);
+        return demi_refuse(w, call, "contacts of this world are impulses, which cannot be split "
+                           "into slabs; use threads");
     if (w->rail_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d bodies are on rails (dem_body_rail_set), "
-                         "whose state slabs do not pass on; use threads, or walls instead of "
-                         "these bodies", call, w->rail_count);
+        return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs "
+                           "do not pass on; use threads, or walls instead of these bodies",
+                           w->rail_count);
     if (w->cell.on || w->cell.side[0] > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell of this world has been "
-                         "deformed (dem_cell_set), but borders of slabs do not move; use threads",
-                         call);
+        return demi_refuse(w, call, "the periodic cell of this world has been deformed "
+                           "(dem_cell_set), but borders of slabs do not move; use threads");
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
-                         "one along which the scene is longest", call, d->axis,
-                         w->desc.planar ? " (for discs, at z = 0, only 0 or 1)" : "");
+        return demi_refuse(w, call, "axis is %d, must be 0, 1 or 2%s; choose the one along which "
+                           "the scene is longest", d->axis,
+                           w->desc.planar ? " (for discs, at z = 0, only 0 or 1)" : "");
     if (d->count < 1 || d->count > DEMI_SLABS)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to %d (required); one "
-                         "slab per processor is a good choice", call, d->count, (int)DEMI_SLABS);
+        return demi_refuse(w, call, "count is %d, must be 1 to %d (required); one slab per "
+                           "processor is a good choice", d->count, (int)DEMI_SLABS);
     if (d->first < 0 || local < 1 || d->first > d->count - local || (!d->local && d->first))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: first and local give slabs %d to %.0f, "
-                         "must lie in 0 to %d; set both, or leave both 0 for all slabs", call,
-                         d->first, (double)d->first + local - 1, d->count - 1);
+        return demi_refuse(w, call, "first and local give slabs %d to %.0f, must lie in 0 to %d; "
+                           "set both, or leave both 0 for all slabs", d->first,
+                           (double)d->first + local - 1, d->count - 1);
     if (!d->transport.exchange_fn != !d->transport.reduce_fn ||
         (local < d->count && !d->transport.exchange_fn))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
-                         "transport lacks exchange_fn or reduce_fn; give both, or hold all slabs",
-                         call, local, d->count);
+        return demi_refuse(w, call, "this process holds %d of %d slabs, but the transport lacks "
+                           "exchange_fn or reduce_fn; give both, or hold all slabs", local,
+                           d->count);
     if (!demi_finite(d->balance) || (d->balance > 0 && d->balance < 1) || d->balance_interval < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval is %d; "
-                         "balance must be 0, >= 1 or < 0 (never), balance_interval >= 0", call,
-                         (double)d->balance, d->balance_interval);
+        return demi_refuse(w, call, "balance is %g and balance_interval is %d; balance must be 0, "
+                           ">= 1 or < 0 (never), balance_interval >= 0", (double)d->balance,
+                           d->balance_interval);
     if (w->events.n.on && local < d->count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
-                         "world records contacts, whose records cannot change processes; hold all "
-                         "slabs, or call dem_events_stop first", call, local, d->count);
+        return demi_refuse(w, call, "this process holds %d of %d slabs, but the world records "
+                           "contacts, whose records cannot change processes; hold all slabs, or "
+                           "call dem_events_stop first", local, d->count);
     if (w->stage.moved)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is in the middle of a step that "
-                         "ran out of memory; finish the step with dem_world_step first", call);
+        return demi_refuse(w, call, "the world is in the middle of a step that ran out of memory; "
+                           "finish the step with dem_world_step first");
     return DEM_OK;
 }
 /* Fails in all processes unless all hold the same scene, with bodies in the same order, all or none
@@ -41341,10 +41308,10 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
     if (v[8] > 0) return demi_no_memory(w, "dem_slabs_create");
     for (k = 0; k < 8; k += 2) differ |= v[k] + v[k + 1] > 0;
     if (!differ && (int)slabs == s->count) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s and together hold %d "
-                     "slabs of %d; build the same world from the same numbers in every process, "
-                     "search or step it in all or none, and assign every slab once", differ
-                     ? "built different scenes" : "do not match", (int)slabs, s->count);
+    return demi_refuse(w, "dem_slabs_create", "processes %s and together hold %d slabs of %d; "
+                       "build the same world from the same numbers in every process, search or "
+                       "step it in all or none, and assign every slab once",
+                       differ ? "built different scenes" : "do not match", (int)slabs, s->count);
 }
 
 /* Fills the head from a world, allocates the arrays of `s` and sets the functions of the team.
@@ -41648,34 +41615,33 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     demi_message_head come = {0, 0, 0, 0};
     int k, i;
     if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations only in %s; collect "
-                         "into the world from which the slabs were created, unchanged, or one "
-                         "built like it", call, w->bodies.orienting ? "the world" : "the slabs");
+        return demi_refuse(h, call, "bodies have orientations only in %s; collect into the world "
+                           "from which the slabs were created, unchanged, or one built like it",
+                           w->bodies.orienting ? "the world" : "the slabs");
     if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
         w->material_count != h->material_count || w->feed_count != h->feed_count ||
         w->field_count != s->slabs[0].world->field_count ||
         w->outlet_count != s->slabs[0].world->outlet_count ||
         demi_body_size(w) != demi_body_size(s->slabs[0].world))
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
-                         "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
-                         "from which they were created, unchanged, or one built like it", call,
-                         w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
-                         s->dealt, h->wall_count, h->material_count, h->feed_count);
+        return demi_refuse(h, call, "the world has %d slots, %d walls, %d materials, %d feeds, the "
+                           "slabs %d, %d, %d, %d; collect into the world from which they were "
+                           "created, unchanged, or one built like it", w->bodies.slot_count,
+                           w->wall_count, w->material_count, w->feed_count, s->dealt, h->wall_count,
+                           h->material_count, h->feed_count);
     for (i = 0; i < w->wall_count; i++) {       /* another wall may have this index now */
         const demi_wall *here = &w->walls[i], *there = &s->slabs[0].world->walls[i];
         const int none = here->kind == DEMI_WALL_NONE, gone = there->kind == DEMI_WALL_NONE;
         if (none == gone && (none || here->id == there->id)) continue;
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: wall %d was %s the world after the slabs were "
-                         "created; collect before adding or removing walls, or create the slabs "
-                         "again afterwards", call, (int)here->id, none ? "removed from"
-                         : "added to");
+        return demi_refuse(h, call, "wall %d was %s the world after the slabs were created; "
+                           "collect before adding or removing walls, or create the slabs again "
+                           "afterwards", (int)here->id, none ? "removed from" : "added to");
     }
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t slot = w->bodies.slot[i];
         if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])
-            return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
-                             "slabs were created; collect before adding grains, or create the "
-                             "slabs again afterwards", call, (unsigned)slot + 1);
+            return demi_refuse(h, call, "body %u was added to the world after the slabs were "
+                               "created; collect before adding grains, or create the slabs again "
+                               "afterwards", (unsigned)slot + 1);
     }
     for (k = 0; k < s->count; k++) {
         const char *from = demi_slabs_find(s, k, &sums);
@@ -41693,9 +41659,9 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
             const uint32_t slot = demi_grain_slot(from);
             from += demi_body_size(w);
             if ((int)slot < w->bodies.slot_count && w->bodies.slot_index[slot] < 0)
-                return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
-                                 "in the world; collect before removing grains, or create the "
-                                 "slabs again afterwards", call, (unsigned)slot + 1, k);
+                return demi_refuse(h, call, "body %u is in slab %d, but no longer in the world; "
+                                   "collect before removing grains, or create the slabs again "
+                                   "afterwards", (unsigned)slot + 1, k);
         }
     }
     if (h->events.n.on && !demi_events_copy(w, h)) return demi_no_memory(h, call);
@@ -41776,10 +41742,9 @@ DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
     if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
-        return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
-                         "here, this process holds slabs %d to %d of %d; make this call in the "
-                         "process that holds it", index, s->first, s->first + s->local - 1,
-                         s->count);
+        return demi_refuse(&s->head, "dem_slab_get", "slab %d is not here, this process holds "
+                           "slabs %d to %d of %d; make this call in the process that holds it",
+                           index, s->first, s->first + s->local - 1, s->count);
     b = &s->slabs[index - s->first];
     out->grains = b->world->bodies.count - b->ghost_count;
     out->ghosts = b->ghost_count;

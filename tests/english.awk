@@ -77,7 +77,7 @@ header && !private {
 }
 function in_manual(line) { return line ~ /^       [^ ]/ && !api }
 # error messages: the strings that begin with the name of a call; names of tests
-/TEST\(|demi_fail\(|"dem_[a-z_]+: |"%s: / { catching = 1 }
+/TEST\(|demi_(fail|refuse)\(|"dem_[a-z_]+: |"%s: / { catching = 1 }
 catching {
     line = $0
     while (match(line, /"([^"\\]|\\.)*"/)) {

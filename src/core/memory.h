@@ -183,19 +183,29 @@ static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
     return -1;
 }
 
-/* Stores the error message of a failed call. If the call builds the scene (demi_builds), the world
-   also remembers its name until the message is read or the call succeeds. */
-static void demi_tell(dem_world *w, const char *format, va_list args) DEMI_FORMAT(2, 0);
-static void demi_tell(dem_world *w, const char *format, va_list args) {
+/* Remembers a failed call that builds the scene, whose name is the first n characters of w->error,
+   until the message is read or the call succeeds. */
+static void demi_refused_note(dem_world *w, size_t n) {
     const size_t calls = sizeof w->refused_calls/sizeof *w->refused_calls;
-    size_t n;
-    vsnprintf(w->error, sizeof w->error, format, args);
-    n = strcspn(w->error, ":");
     if (n >= sizeof *w->refused_calls || !demi_builds(w->error, n)) return;
     if (!w->refused) memcpy(w->refusal, w->error, sizeof w->refusal);
     if (demi_refused_find(w, w->error, n) < 0 && (size_t)w->refused < calls) {
         memcpy(w->refused_calls[w->refused], w->error, n);
         w->refused_calls[w->refused++][n] = 0;
+    }
+}
+/* Stores the error message of a failed call. `call`, unless null, is its name and begins the
+   message. */
+static void demi_tell(dem_world *w, const char *call, const char *format,
+                      va_list args) DEMI_FORMAT(3, 0);
+static void demi_tell(dem_world *w, const char *call, const char *format, va_list args) {
+#if DEMI_OPENMP
+    #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
+#endif
+    {
+        const int n = call ? snprintf(w->error, sizeof w->error, "%s: ", call) : 0;
+        vsnprintf(w->error + n, sizeof w->error - (size_t)n, format, args);
+        demi_refused_note(w, strcspn(w->error, ":"));
     }
 }
 /* Stores an error message and returns `result`. */
@@ -204,12 +214,21 @@ static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
     va_list args;
     va_start(args, format);
-#if DEMI_OPENMP
-    #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
-#endif
-    demi_tell(w, format, args);
+    demi_tell(w, 0, format, args);
     va_end(args);
     return result;
+}
+/* Stores the message "call: format" about an argument, or a state of the world, that the call does
+   not accept. The world may be const, because only its message changes. Returns
+   DEM_ERROR_ARGUMENT. */
+static dem_result demi_refuse(const dem_world *w, const char *call, const char *format,
+                              ...) DEMI_FORMAT(3, 4);
+static dem_result demi_refuse(const dem_world *w, const char *call, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    demi_tell((dem_world *)w, call, format, args);
+    va_end(args);
+    return DEM_ERROR_ARGUMENT;
 }
 /* Call this when a call that builds the scene has succeeded: an earlier failure of the same call no
    longer prevents a run. */
@@ -228,9 +247,9 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
     char why[sizeof w->refusal];
     if (!w->refused) return DEM_OK;
     memcpy(why, w->refusal, sizeof why);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: did not start, because an earlier call failed "
-                     "and its message has not been read: \"%.320s\"; correct that call, or read "
-                     "dem_world_error_get and continue without it", call, why);
+    return demi_refuse(w, call, "did not start, because an earlier call failed and its message has "
+                       "not been read: \"%.320s\"; correct that call, or read dem_world_error_get "
+                       "and continue without it", why);
 }
 /* Call this before a user-defined function. Calls that change the world fail until demi_called gets
    the value returned here. `who` names the function in messages; `within`: 1 inside a step. */
@@ -258,16 +277,15 @@ static void demi_look_called(const dem_world *w, demi_calling was) {
 static int demi_null_look(const dem_world *w, const char *call, const void *pointer,
                           const char *name) {
     if (w && pointer) return 0;
-    if (w) demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: %s is null; give its address", call,
-                     name);
+    if (w) demi_refuse(w, call, "%s is null; give its address", name);
     return 1;
 }
 /* Fails because a user-defined function made a call that it may not make. Returns 1. */
 static int demi_barred(dem_world *w, const char *call) {
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls (law, field, "
-              "motion, region, progress or the like), which may only read the world; make this "
-              "call after %s has returned, or between two steps in an output of kind "
-              "DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
+    demi_refuse(w, call, "called from a function that %s calls (law, field, motion, region, "
+                "progress or the like), which may only read the world; make this call after %s has "
+                "returned, or between two steps in an output of kind DEM_OUTPUT_CALL",
+                w->look.calling.who, w->look.calling.who);
     return 1;
 }
 /* For functions that allocate memory of the world but do not change its state, for example those

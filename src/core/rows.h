@@ -125,11 +125,11 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
     if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
     if (demi_row_most(r) < DBL_MAX)
         snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s%s is %g%s%s, must be %s%s %s%s and %s%s; %s",
-                     call, r->name, of, demi_row_read(r, item, k), gap, r->unit,
-                     r->other > 0 ? "0 or " : "", r->how & DEMI_OVER ? ">" : ">=", least, words,
-                     most, r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
-                     r->refusal ? r->refusal : remedy);
+    return demi_refuse(w, call, "%s%s is %g%s%s, must be %s%s %s%s and %s%s; %s", r->name, of,
+                       demi_row_read(r, item, k), gap, r->unit, r->other > 0 ? "0 or " : "",
+                       r->how & DEMI_OVER ? ">" : ">=", least, words, most,
+                       r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
+                       r->refusal ? r->refusal : remedy);
 }
 /* Copy, or set to 0, the fields that have any of the bits `uses` in `how`. */
 static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {

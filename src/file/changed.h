@@ -44,10 +44,10 @@ static dem_result demi_changes_check(dem_world *w, const char *allowed) {
         for (r = demi_world_desc_rows; r->name && !(strlen(r->name) == (size_t)n &&
              !strncmp(r->name, at, (size_t)n) && demi_may_change(r)); r++) continue;
         if (r->name) continue;
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_read_changed: \"%.*s\" is not a "
-                         "field of dem_world_desc that may differ, and not \"materials\" or "
-                         "\"pairs\"; domain, boundary, planar, thickness, response and names must "
-                         "agree: create the world with those of the file", DEMI_MIN(n, 60), at);
+        return demi_refuse(w, "dem_checkpoint_read_changed", "\"%.*s\" is not a field of "
+                           "dem_world_desc that may differ, and not \"materials\" or \"pairs\"; "
+                           "domain, boundary, planar, thickness, response and names must agree: "
+                           "create the world with those of the file", DEMI_MIN(n, 60), at);
     }
     return DEM_OK;
 }

@@ -433,11 +433,10 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     dem_result result;
     uint64_t sum;
     if (lost >= 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u no longer has a "
-                         "finite position, velocity and force: the run has blown up; go back to "
-                         "an earlier checkpoint; %s was not changed",
-                         (unsigned)w->bodies.slot[lost] + 1,
-                         path ? path : "the file");
+        return demi_refuse(w, "dem_checkpoint_write", "body %u no longer has a finite position, "
+                           "velocity and force: the run has blown up; go back to an earlier "
+                           "checkpoint; %s was not changed", (unsigned)w->bodies.slot[lost] + 1,
+                           path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
     demi_filed_current(w, &w->filed);
@@ -478,9 +477,8 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has checkpoint version %u%s, must be "
                          "%d; read it with the dem.h that wrote it", call, path,
-                         (unsigned)head->version,
-                         head->byte_order != 0x01020304u ? " and another byte order" : "",
-                         (int)DEMI_CHECKPOINT_VERSION);
+                         (unsigned)head->version, head->byte_order != 0x01020304u
+                         ? " and another byte order" : "", (int)DEMI_CHECKPOINT_VERSION);
     if (head->real_size != sizeof(dem_real))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, "
                          "must be %u; build with the same precision", call, path,
@@ -572,11 +570,10 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
-            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to "
-                             "another scene: the checkpoint has %d %s, this world %d (removed "
-                             "ones count); create the world like the one that wrote it, then read",
-                             path, (int)parts[part], demi_scene_parts[part].many,
-                             (int)counts[part]);
+            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
+                             "scene: the checkpoint has %d %s, this world %d (removed ones count); "
+                             "create the world like the one that wrote it, then read", path,
+                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = gone = 0; i < counts[part]; i++)
             for (r = demi_scene_parts[part].rows; r->name; r++) {

@@ -260,9 +260,9 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
         }
     }
     if (!(moments.one > 1e-6*(hi.x - lo.x)*(hi.y - lo.y)*(hi.z - lo.z)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
-                         "must be more than 1e-6 of its box: it is too thin for spheres; is it a "
-                         "sheet?", call, mesh->triangle_count, moments.one);
+        return demi_refuse(w, call, "the mesh of %d triangles encloses %.3g m3, must be more than "
+                           "1e-6 of its box: it is too thin for spheres; is it a sheet?",
+                           mesh->triangle_count, moments.one);
     memset(&m, 0, sizeof m);
     m.mesh = mesh;
     m.sign = sign;
@@ -271,10 +271,10 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     if (!made || !m.picks) {
         demi_mould_free(w, &m);
         demi_free(w, sphere);
-        return made ? demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is thinner than 1/%d of its "
-                                "length everywhere, so no sphere fits; use a polyhedron, or a "
-                                "thicker mesh", call, (int)DEMI_GRAIN_CELLS) : demi_no_memory(w,
-                                call);
+        if (!made) return demi_no_memory(w, call);
+        return demi_refuse(w, call, "the mesh is thinner than 1/%d of its length everywhere, so no "
+                           "sphere fits; use a polyhedron, or a thicker mesh",
+                           (int)DEMI_GRAIN_CELLS);
     }
     for (i = 0; i < count; i++) {
         demi_mould_best(&m, sphere + 4*i);

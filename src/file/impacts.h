@@ -18,10 +18,9 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
     if (demi_null_look(w, call, out, "impacts")) return DEM_ERROR_ARGUMENT;
     if (demi_events_needed(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist; there are %d, and "
-                         "id 0 means any", call,
-                         (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
-                         w->material_count);
+        return demi_refuse(w, call, "material %d does not exist; there are %d, and id 0 means any",
+                           (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
+                           w->material_count);
     memset(out, 0, sizeof *out);
     out->seconds = w->clock.time - w->events.n.since;
     for (k = 0; k <= DEM_IMPACT_BINS; k++) out->bin[k] = demi_impact_limit(k);
@@ -105,9 +104,9 @@ DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coeffic
     if (result != DEM_OK) return result;
     if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
         !(hardness > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: coefficient is %g, must be >= 0, and hardness "
-                         "is %g Pa, must be > 0, both finite; steel has about 1e-4 and 2e9 Pa",
-                         call, coefficient, hardness);
+        return demi_refuse(w, call, "coefficient is %g, must be >= 0, and hardness is %g Pa, must "
+                           "be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
+                           hardness);
     memset(wear, 0, sizeof *wear);
     wear->seconds = w->clock.time - w->events.n.since;
     wear->slide = worn ? worn->slide : 0;

@@ -115,9 +115,9 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_output_heading(d, heading);
     memset(value, 0, sizeof value);
     if (d->wall.id && !demi_wall_there(w, d->wall))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: output %d writes the loads of "
-                         "wall %d, which was removed; remove the output too (dem_output_remove)",
-                         (int)o->id, (int)d->wall.id);
+        return demi_refuse(w, "dem_world_step", "output %d writes the loads of wall %d, which was "
+                           "removed; remove the output too (dem_output_remove)", (int)o->id,
+                           (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
     else if (demi_output_mixes(d)) {
         count = DEMI_MIXING;
@@ -309,7 +309,7 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
         demi_mixing_check(w, call, &desc->mixing) != DEM_OK) return id;
     bad = demi_output_bad(w, desc);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s", call, bad);
+        demi_refuse(w, call, "%s", bad);
         return id;
     }
     if (desc->path) path = demi_text_copy(w, desc->path);
@@ -341,9 +341,8 @@ DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
     if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_output_place(w, output.id);
     if (i == w->look.output_count || w->look.outputs[i].id != output.id)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: output %d does not exist; it was removed "
-                         "before or is of another world: give what dem_output_add returned", call,
-                         (int)output.id);
+        return demi_refuse(w, call, "output %d does not exist; it was removed before or is of "
+                           "another world: give what dem_output_add returned", (int)output.id);
     o = w->look.outputs + i;
     demi_free(w, (char *)o->desc.path);
     demi_free(w, (char *)o->desc.columns);

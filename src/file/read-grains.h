@@ -783,24 +783,23 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
     int i, first;
     if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
     if (g->count < 0 || (g->count && (!g->positions || !g->radii)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, or positions or radii are null; "
-                         "count must be >= 0 with both arrays; pass what dem_grains_read filled in",
-                         call, g->count);
+        return demi_refuse(w, call, "count is %d, or positions or radii are null; count must be >= "
+                           "0 with both arrays; pass what dem_grains_read filled in", g->count);
     for (i = 0; i < g->count; i++) {
         dem_material m = material;
         int index = 0;
         if (!m.id && !g->materials)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material is null and the file names no "
-                             "materials; pass an id that dem_material_add returned", call);
+            return demi_refuse(w, call, "material is null and the file names no materials; pass an "
+                               "id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, call, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
             (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
             (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has a radius of %g m; the "
-                             "radius must be > 0, and position, velocity and spin must be finite; "
-                             "no grain was added", call, i, (double)g->radii[i]);
+            return demi_refuse(w, call, "grain %d has a radius of %g m; the radius must be > 0, "
+                               "and position, velocity and spin must be finite; no grain was added",
+                               i, (double)g->radii[i]);
         if (demi_mass_refuse(w, call, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;

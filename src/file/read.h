@@ -612,7 +612,7 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, ch
     dem_result result = DEM_OK;
     *size = 0;
     if (!path)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+        return demi_refuse(w, call, "path is null; give a file name");
     file = demi_open(path);
     length = file ? demi_file_size(file) : 0;
     if (length == DEMI_ENDLESS)
@@ -655,8 +655,8 @@ DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void
     if (mesh) memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
     if (!mesh || !data)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_parse: %s is null; give its address",
-                         mesh ? "data" : "mesh");
+        return demi_refuse(world, "dem_mesh_parse", "%s is null; give its address",
+                           mesh ? "data" : "mesh");
     return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
 }
 
@@ -665,8 +665,7 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
     if (demi_null_write(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
     if (health) memset(health, 0, sizeof *health);
     if (!mesh)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_read: mesh is null; give its "
-                         "address");
+        return demi_refuse(world, "dem_mesh_read", "mesh is null; give its address");
     memset(mesh, 0, sizeof *mesh);
     return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
 }
@@ -691,9 +690,9 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
         : dem_quat_make(1, 0, 0, 0);
     int i;
     if (!(scale > 0) || !demi_finite(scale) || !demi_quat_finite(rotation) || !demi_place(to))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_mesh_place: scale is %g, must be finite and "
-                         "> 0; rotation and translation must be finite, and the translation "
-                         "within 1e15 m", (double)scale);
+        return demi_refuse(w, "dem_mesh_place", "scale is %g, must be finite and > 0; rotation and "
+                           "translation must be finite, and the translation within 1e15 m",
+                           (double)scale);
     for (i = 0; i < mesh->vertex_count; i++)
         demi_put(mesh->vertices + 3*i, demi_add(to,
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
@@ -727,7 +726,7 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
     for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
     if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be > 0", call, count);
+        return demi_refuse(w, call, "count is %d, must be > 0", count);
     made = (demi_wall *)demi_alloc(w, (size_t)count, sizeof *made);
     if (!made) return demi_no_memory(w, call);
     for (i = 0; i < count && result == DEM_OK; i++) {
@@ -783,8 +782,8 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
     dem_result result;
     if (profile) memset(profile, 0, sizeof *profile);
     if (!profile || !data)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_parse: %s is null; give its "
-                         "address", profile ? "data" : "profile");
+        return demi_refuse(world, "dem_profile_parse", "%s is null; give its address",
+                           profile ? "data" : "profile");
     result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
                         0);
     if (result != DEM_OK) return result;
@@ -796,8 +795,7 @@ DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_prof
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
     if (!profile)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_read: profile is null; give its "
-                         "address");
+        return demi_refuse(world, "dem_profile_read", "profile is null; give its address");
     memset(profile, 0, sizeof *profile);
     result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;

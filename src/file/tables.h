@@ -143,9 +143,8 @@ DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet o
     from = demi_outlet_find(world, call, outlet);
     if (!from) return DEM_ERROR_ARGUMENT;
     if (!(from->desc.residence_bin > 0))
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "%s: outlet %d has residence_bin 0 s, must be "
-                         "> 0 to measure residence times; set it in its desc", call,
-                         (int)outlet.id);
+        return demi_refuse(world, call, "outlet %d has residence_bin 0 s, must be > 0 to measure "
+                           "residence times; set it in its desc", (int)outlet.id);
     result = demi_out_open(&o, world, call, path);
     if (result != DEM_OK) return result;
     for (k = 0; k < DEM_RESIDENCE_BINS; k++) {

@@ -127,7 +127,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     size_t length;
     FILE *there;
     size_t size;
-    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    if (!path) return demi_refuse(w, call, "path is null; give a file name");
     memset(o, 0, sizeof *o);
     o->world = w;
     o->call = call;
@@ -796,9 +796,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
     }
     if (profiles && !(z1 > z0))
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g m and z1 is %g "
-                         "m, but z0 must be below z1 to extrude a profile between them; change "
-                         "them", (double)z0, (double)z1);
+        return demi_refuse(world, "dem_walls_vtp_write", "z0 is %g m and z1 is %g m, but z0 must "
+                           "be below z1 to extrude a profile between them; change them", (double)z0,
+                           (double)z1);
     room[0] = 3*(size_t)points + 1;     /* never 0 */
     room[1] = (size_t)triangles + 1;
     if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
@@ -835,7 +835,7 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     char text[2*DEMI_CSV_LINE];
     int n = 0, last = '\n', whole, cause;
     FILE *file;
-    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    if (!path) return demi_refuse(w, call, "path is null; give a file name");
     errno = 0;
     file = fopen(path, "r+b");                  /* does not wait for a pipe, which is an error */
     whole = !file || demi_file_size(file) != DEMI_ENDLESS;
@@ -871,8 +871,8 @@ enum { DEMI_LOADS = 9 };
 static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wall, double *value) {
     dem_wall_loads c;
     if (dem_wall_loads_get(w, wall, &c) != DEM_OK)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %ld does not exist; give one that was "
-                         "added and not removed", call, (long)wall.id);
+        return demi_refuse(w, call, "wall %ld does not exist; give one that was added and not "
+                           "removed", (long)wall.id);
     value[0] = (double)c.force.x;
     value[1] = (double)c.force.y;
     value[2] = (double)c.force.z;

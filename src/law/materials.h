@@ -58,10 +58,9 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     if (demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0 && d->restitution > 0 &&
         fabs((double)d->restitution*(double)d->restitution*
              (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
-                         "stiffness_unloading) is %g; give one of the two and leave the other 0",
-                         call, (double)d->restitution,
-                         sqrt((double)d->stiffness/(double)d->stiffness_unloading));
+        return demi_refuse(w, call, "restitution is %g, but sqrt(stiffness/stiffness_unloading) is "
+                           "%g; give one of the two and leave the other 0", (double)d->restitution,
+                           sqrt((double)d->stiffness/(double)d->stiffness_unloading));
     return DEM_OK;
 }
 
@@ -164,8 +163,8 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     id.id = 0;
     if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
     if (n == DEMI_MATERIALS) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, which "
-                  "is the limit; reuse one of them", n);
+        demi_refuse(w, "dem_material_add", "there are %d materials already, which is the limit; "
+                    "reuse one of them", n);
         return id;
     }
     w->materials[n] = *desc;
@@ -184,9 +183,9 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
 /* Sets *index to the index of a material, or fails in the name of `call`. */
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; "
-                         "add it with dem_material_add and check the id that this returns", call,
-                         (int)m.id, w->material_count);
+        return demi_refuse(w, call, "material %d does not exist, there are %d; add it with "
+                           "dem_material_add and check the id that this returns", (int)m.id,
+                           w->material_count);
     *index = m.id - 1;
     return DEM_OK;
 }
@@ -209,10 +208,9 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
         demi_material_check(w, "dem_material_set", desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = w->materials[m];
     if (desc->density < before.density || desc->density > before.density)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_set: density of material %d is %g "
-                         "kg/m3, must stay %g, because masses of bodies were computed from it; "
-                         "add another material", m + 1, (double)desc->density,
-                         (double)before.density);
+        return demi_refuse(w, "dem_material_set", "density of material %d is %g kg/m3, must stay "
+                           "%g, because masses of bodies were computed from it; add another "
+                           "material", m + 1, (double)desc->density, (double)before.density);
     w->materials[m] = *desc;
     if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
@@ -350,10 +348,10 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
         !(inertia > 0) || r > DEMI_FARTHEST;
     for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
     if (bad)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the radius of sphere %d is %g m and its mass %g kg, "
-                  "which is too small or too large to calculate with in %s precision; lengths are "
-                  "in metres: check the unit; nothing was added", call, i, r, m,
-                  DEMI_SINGLE ? "single" : "double");
+        demi_refuse(w, call, "the radius of sphere %d is %g m and its mass %g kg, which is too "
+                    "small or too large to calculate with in %s precision; lengths are in metres: "
+                    "check the unit; nothing was added", i, r, m,
+                    DEMI_SINGLE ? "single" : "double");
     return bad;
 }
 
@@ -370,8 +368,8 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
         demi_material_index(w, "dem_coefficients_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m; the "
-                         "first must be > 0, the second >= 0 (0 means a wall)", ra, rb);
+        return demi_refuse(w, "dem_coefficients_get", "radii are %g and %g m; the first must be > "
+                           "0, the second >= 0 (0 means a wall)", ra, rb);
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
     m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
@@ -417,12 +415,10 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
             fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
-                    i + 1, j + 1,
-                    (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
-                    (double)p->friction,
-                    (double)DEMI_MAX(p->friction, p->friction_static),
-                    (double)p->rolling_friction, (double)p->stiffness,
-                    (double)p->stiffness_ratio);
+                    i + 1, j + 1, (double)p->young_eff, (double)p->shear_eff,
+                    (double)p->restitution, (double)p->friction,
+                    (double)DEMI_MAX(p->friction, p->friction_static), (double)p->rolling_friction,
+                    (double)p->stiffness, (double)p->stiffness_ratio);
             if (!laws)
                 fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
                         (double)p->cohesion, (double)p->compliance);

@@ -46,9 +46,8 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
-                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?",
-                      i + 1, (double)m->density,
-                      (double)(m->density < 10 ? m->density : m->density/1000));
+                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?", i + 1,
+                      (double)m->density, (double)(m->density < 10 ? m->density : m->density/1000));
         if (!w->desc.law && !(m->stiffness > 0) &&
             (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
@@ -113,9 +112,8 @@ static void demi_check_digits(const dem_world *w, demi_findings *f) {
         demi_find(f, worst > 2e-3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "body %d is so far "
                   "from the origin that its position is resolved only to %.2g of its radius: "
                   "contacts lose %s; build the scene around the origin%s",
-                  (int)w->bodies.slot[body] + 1, worst,
-                  worst > 2e-3 ? "their accuracy" : "about 1 % of accuracy",
-                  DEMI_SINGLE ? ", or use double precision" : "");
+                  (int)w->bodies.slot[body] + 1, worst, worst > 2e-3 ? "their accuracy"
+                  : "about 1 % of accuracy", DEMI_SINGLE ? ", or use double precision" : "");
 }
 
 /* Returns the largest coordinate (m) along the unit vector n up to which a wall can stop a body
@@ -229,10 +227,9 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
         if (!differs) continue;
         demi_find(f, DEM_SEVERITY_WARNING, "the motion of wall %d gives a %s of (%g, %g, %g) where "
                   "its %s changes by (%g, %g, %g) per second: contacts would create energy; give "
-                  "the derivative or, for a belt, use dem_wall_surface_velocity_set",
-                  (int)wall->id, differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y,
-                  (double)v.z, differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y,
-                  (double)u.z);
+                  "the derivative or, for a belt, use dem_wall_surface_velocity_set", (int)wall->id,
+                  differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y, (double)v.z,
+                  differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y, (double)u.z);
     }
     demi_called(w, was);
 }
@@ -307,10 +304,9 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
         }
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
-                  : DEM_SEVERITY_NOTE,
-                      "%d pair%s of grains begin%s with an overlap, bodies %d and %d by %.3g of "
-                  "the smaller radius: they will fly apart; place them with dem_spheres_fill, or "
-                  "farther apart", count, count > 1 ? "s" : "",
+                  : DEM_SEVERITY_NOTE, "%d pair%s of grains begin%s with an overlap, bodies %d and "
+                  "%d by %.3g of the smaller radius: they will fly apart; place them with "
+                  "dem_spheres_fill, or farther apart", count, count > 1 ? "s" : "",
                   count > 1 ? "" : "s", who[0], who[1], worst);
 }
 /* Checks for bodies that overlap walls by more than 1 % of their radius. Detects contacts
@@ -657,9 +653,8 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
                   "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
                   (double)a->dt_max, a->binds);
     else if (lasting && demi_press_limit(w, dt) == DEM_OK && w->pressed.least < dt)
-        demi_find(f, DEM_SEVERITY_ERROR,
-                  "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
-                  "contacts: use dt = 0", dt, w->pressed.least,
+        demi_find(f, DEM_SEVERITY_ERROR, "dt is %g s, must be at most %g s for body %d, which is "
+                  "pressed by %.3g contacts: use dt = 0", dt, w->pressed.least,
                   (int)w->bodies.slot[w->pressed.worst] + 1, w->press[w->pressed.worst].contacts);
     else if (lasting && dt < (double)a->dt/20)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "

@@ -62,8 +62,7 @@ static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const
     else if (met == possible) demi_say(e, "%s", what);
     else if (first == second)
         demi_say(e, "%s; material %d has not touched itself so far", what, first);
-    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first,
-                  second);
+    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first, second);
     return !have ? DEM_EFFECT_OFF : met ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
@@ -191,8 +190,7 @@ static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     }
     if (!count) return demi_look_off(e, "no wall moves");
     e->missing = count - touched;
-    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? ""
-             : ", never touched");
+    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? "" : ", never touched");
     return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 /* State of periodic faces: active if a pair of the pruned neighbour list crosses one. */
@@ -536,8 +534,8 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
     int count;
     if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
     if (!(budget >= 0) || !demi_finite_double(budget)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
-                  "finite; 0 gives only states, and 5 s are enough on a quiet machine", budget);
+        demi_refuse(w, "dem_effects_get", "budget is %g s, must be >= 0 and finite; 0 gives only "
+                    "states, and 5 s are enough on a quiet machine", budget);
         return -1;
     }
     if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;

@@ -265,39 +265,38 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
     if (!demi_response_is(w, DEMI_LASTING)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts of this world are impulses, "
-                  "but trials vary the steps, stiffnesses and laws of springs; compare runs with "
-                  "other dt, sweeps and tolerance instead");
+        demi_refuse(w, "dem_trials_run", "contacts of this world are impulses, but trials vary the "
+                    "steps, stiffnesses and laws of springs; compare runs with other dt, sweeps "
+                    "and tolerance instead");
         return 1;
     }
     if (demi_rows_check(w, "dem_trials_run", demi_trials_rows, d, "",
                         "start from DEM_TRIALS_DESC and set duration")) return 1;
     if (d->seeds == 1) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: seeds is 1, must be 2 to 16 (0 means 3)");
+        demi_refuse(w, "dem_trials_run", "seeds is 1, must be 2 to 16 (0 means 3)");
         return 1;
     }
     for (e = 0; e < d->observable_count; e++)
         if (!d->observables[e].function || !d->observables[e].name) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: observable %d has no function or no "
-                      "name; give both, as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
+            demi_refuse(w, "dem_trials_run", "observable %d has no function or no name; give both, "
+                        "as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
             return 1;
         }
     for (e = 0; e < d->observable_count; e++)
         if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: the scale of observable %d is %g, "
-                      "must "
-                      "be finite and >= 0; 0 means its own value in the reference", e + 1,
-                      d->observables[e].scale);
+            demi_refuse(w, "dem_trials_run", "the scale of observable %d is %g, must be finite and "
+                        ">= 0; 0 means its own value in the reference", e + 1,
+                        d->observables[e].scale);
             return 1;
         }
     if (lost < 0 && w->bodies.count) return 0;
     if (lost < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: there are no bodies to compare; add "
-                  "some, or run until some are fed");
+        demi_refuse(w, "dem_trials_run", "there are no bodies to compare; add some, or run until "
+                    "some are fed");
     else
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: body %u no longer has a finite "
-                  "position, velocity and force: the run has blown up; go back to an earlier "
-                  "checkpoint", (unsigned)w->bodies.slot[lost] + 1);
+        demi_refuse(w, "dem_trials_run", "body %u no longer has a finite position, velocity and "
+                    "force: the run has blown up; go back to an earlier checkpoint",
+                    (unsigned)w->bodies.slot[lost] + 1);
     return 1;
 }
 /* Shortens out->duration if the trials would otherwise take longer than the budget (s of wall
@@ -324,14 +323,14 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
     if (result != DEM_OK) demi_fail(w, result, "dem_trials_run: the scene as it is fails: %.400s",
                                     t->error);
     else if (asked < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, must be at "
-                           "least 64 steps of %g s; set a duration in which the observables settle",
-                           asked, (double)t->clock.dt);
+        result = demi_refuse(w, "dem_trials_run", "duration is %g s, must be at least 64 steps of "
+                             "%g s; set a duration in which the observables settle", asked,
+                             (double)t->clock.dt);
     else if (out->duration < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: %g s of wall time allow %g s "
-                           "of this scene in each trial, must be at least 64 steps of %g s; give "
-                           "a larger budget, fewer seeds, or a smaller part of the scene", budget,
-                           out->duration, (double)t->clock.dt);
+        result = demi_refuse(w, "dem_trials_run", "%g s of wall time allow %g s of this scene in "
+                             "each trial, must be at least 64 steps of %g s; give a larger budget, "
+                             "fewer seeds, or a smaller part of the scene", budget, out->duration,
+                             (double)t->clock.dt);
     demi_twin_free(w, t);
     return result;
 }
@@ -394,8 +393,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
             d->progress(w, (k + 1.0)/out->count,
                         (demi_clock() - begun)*(out->count - k - 1)/(k + 1), d->user))
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_trials_run: stopped by the progress "
-                               "function "
-                               "after %d of %d trials", k + 1, out->count);
+                               "function after %d of %d trials", k + 1, out->count);
     }
     demi_called(w, was);
     demi_free(w, state);

@@ -123,9 +123,9 @@ DEM_API void dem_world_destroy(dem_world *w) {
     int chain;
     if (demi_null(w, "dem_world_destroy", w, "world")) return;
     if (w->look.under_way) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_destroy: called from the function of an "
-                  "output (dem_output_add) while the world runs; return 1 from that function to "
-                  "stop the run, then destroy the world");
+        demi_refuse(w, "dem_world_destroy", "called from the function of an output "
+                    "(dem_output_add) while the world runs; return 1 from that function to stop "
+                    "the run, then destroy the world");
         return;
     }
     for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
@@ -190,10 +190,9 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
     if (!demi_response_is(w, DEMI_LAWS)) {
-        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
-                "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
-                "tolerance",
-                w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
+        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
+                "included\n           last step: %d sweeps left %.3g m/s; %llu steps did not reach "
+                "their tolerance", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
                 w->margin.reach, w->booked.sweeps, w->booked.residual,
                 (unsigned long long)w->booked.unsolved);
         if (w->solver.limited)
@@ -212,9 +211,8 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         if (w->desc.law != DEM_LAW)
             fprintf(out, "           DEM_LAW names another law than desc.law\n");
 #endif
-        fprintf(out, "           %s\n", demi_own_rows(w)
-                ? "contacts of spheres row by row" : w->desc.law_who
-                ? "called contact by contact, because law_who is set: slower"
+        fprintf(out, "           %s\n", demi_own_rows(w) ? "contacts of spheres row by row"
+                : w->desc.law_who ? "called contact by contact, because law_who is set: slower"
                 : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
         return;
     }
@@ -253,8 +251,7 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
-                    : "are separate",
-                w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
+                : "are separate", w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
         fprintf(out, "           orientations of spheres are followed, because desc.orientations "
                 "is 1\n");
@@ -266,9 +263,8 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
         const dem_wall_loads *ch = &w->walls[i].loads;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
         fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
-                "power %.4g W\n", (int)w->walls[i].id,
-                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
-                (double)ch->torque_axial,
+                "power %.4g W\n", (int)w->walls[i].id, ch->contacts, (double)ch->force.x,
+                (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
                 (double)ch->power);
     }
     for (i = 0; i < w->wall_count; i++) {
@@ -305,9 +301,8 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
         fprintf(out, "outlet %-3d %llu grains, %.6g kg%s, of them wanted %llu, %.6g kg\n", i + 1,
-                (unsigned long long)o->total, o->total_mass,
-                demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed",
-                (unsigned long long)o->sorted, o->sorted_mass);
+                (unsigned long long)o->total, o->total_mass, demi_outlet_at(w, i)->zone < 0 ? ""
+                : " came in and stayed", (unsigned long long)o->sorted, o->sorted_mass);
     }
 }
 /* Prints the account of energy. A large residual means that the time step is too large. */
@@ -348,20 +343,17 @@ static void demi_report(const dem_world *world, FILE *out) {
     if (w->crew.best && w->crew.best < c.threads)
         snprintf(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
     fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
-            DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
-            DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? ""
-            : "s", few, c.domains,
+            DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
+            DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
     fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
-            "+ %llu left\n", w->bodies.count,
-            (double)w->effects.radius_min, (double)w->effects.radius_max,
-                (unsigned long long)w->bodies.balance.inserted,
+            "+ %llu left\n", w->bodies.count, (double)w->effects.radius_min,
+            (double)w->effects.radius_max, (unsigned long long)w->bodies.balance.inserted,
             (unsigned long long)w->bodies.balance.present,
-                (unsigned long long)w->bodies.balance.removed,
+            (unsigned long long)w->bodies.balance.removed,
             (unsigned long long)w->bodies.balance.left);
     fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
-            (unsigned long long)w->clock.steps, (double)w->clock.dt,
-            demi_integrator_of(w)->name,
+            (unsigned long long)w->clock.steps, (double)w->clock.dt, demi_integrator_of(w)->name,
             demi_integrator_of(w)->order);
     if (demi_response_is(w, DEMI_LASTING))
         fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
@@ -370,11 +362,9 @@ static void demi_report(const dem_world *world, FILE *out) {
                 demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
     demi_held_report(w, out);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
-            "candidates, %.2f contacts\n",
-            demi_searches[w->desc.search].name, w->margin.skin,
-                (unsigned long long)w->clock.rebuilds,
-                w->clock.rebuilds
-            ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
+            "candidates, %.2f contacts\n", demi_searches[w->desc.search].name, w->margin.skin,
+            (unsigned long long)w->clock.rebuilds,
+            w->clock.rebuilds ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);

@@ -627,13 +627,13 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts of "
-                         "this world are impulses, which have no contact time; choose a step in "
-                         "which grains move by less than a tenth of their radius");
+        return demi_refuse(w, "dem_step_advice_get", "contacts of this world are impulses, which "
+                           "have no contact time; choose a step in which grains move by less than "
+                           "a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
-    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
-                     "grain that can move; add grains before this call");
+    return demi_refuse(w, "dem_step_advice_get", "the world has no grain that can move; add grains "
+                       "before this call");
 }
 /* Fails because the chosen step is so short that the time would not advance. */
 static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
@@ -749,11 +749,10 @@ static dem_result demi_speed_check(dem_world *w, double speed) {
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
                      "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
-                     "s, must be at most 1: it would pass through others and walls undetected; "
-                     "use at most %.2g s%s, or find what made it so fast",
+                     "s, must be at most 1: it would pass through others and walls undetected; use "
+                     "at most %.2g s%s, or find what made it so fast",
                      (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
-                     0.1*radius/speed,
-                     foreseen ? ", or a law_range of twice that distance" : "");
+                     0.1*radius/speed, foreseen ? ", or a law_range of twice that distance" : "");
 }
 /* The same for moving walls that are thin. Planes and cylinders are not: a body on their other side
    still touches them. */

@@ -454,18 +454,17 @@ static dem_result demi_events_tell(dem_world *w, const char *call) {
 /* Fails unless contacts are recorded. */
 static dem_result demi_events_needed(dem_world *w, const char *call) {
     if (w->events.n.on) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts are not recorded; call dem_events_record "
-                     "before the run", call);
+    return demi_refuse(w, call, "contacts are not recorded; call dem_events_record before the run");
 }
 DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) {
     const char *call = "dem_events_record";
     if (demi_null(w, call, desc, "desc")) return DEM_ERROR_ARGUMENT;
     if (!w->desc.ledger)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: desc.ledger is 0, must be 1, because contacts "
-                         "only then report what they lose; set it when the world is created", call);
+        return demi_refuse(w, call, "desc.ledger is 0, must be 1, because contacts only then "
+                           "report what they lose; set it when the world is created");
     if (desc->begins < 0 || desc->begins > 1)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: begins is %d, must be 0 or 1; start from "
-                         "DEM_EVENTS_DESC", call, desc->begins);
+        return demi_refuse(w, call, "begins is %d, must be 0 or 1; start from DEM_EVENTS_DESC",
+                           desc->begins);
     w->events.desc = *desc;
     if (!desc->function) w->events.n.pending = 0;
     if (w->events.n.on) return DEM_OK;

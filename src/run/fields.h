@@ -302,8 +302,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (demi_rows_check(w, "dem_field_add", demi_field_rows, d, "",
                         "start from DEM_FIELD_DESC and set only what differs")) return id;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, must be at most "
-                  "2^28 in all; choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
+        demi_refuse(w, "dem_field_add", "cells are %d x %d x %d, must be at most 2^28 in all; "
+                    "choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
@@ -312,9 +312,9 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     for (k = 0; k < w->field_count && d->bodies; k++)
         if (w->fields[k].desc.bodies) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: bodies is %d, but field %d averages "
-                      "bodies already, and each body has room for one average; set bodies to 0, "
-                      "or use that field", d->bodies, k + 1);
+            demi_refuse(w, "dem_field_add", "bodies is %d, but field %d averages bodies already, "
+                        "and each body has room for one average; set bodies to 0, or use that "
+                        "field", d->bodies, k + 1);
             return id;
         }
     memset(&field, 0, sizeof field);
@@ -336,8 +336,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
 /* Returns the field of an id, or null with an error message in the name of `call`. */
 static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
     if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d; check the id "
-              "that dem_field_add returned", call, (int)id.id, w->field_count);
+    demi_refuse(w, call, "field %d does not exist, there are %d; check the id that dem_field_add "
+                "returned", (int)id.id, w->field_count);
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
@@ -372,8 +372,8 @@ DEM_API dem_result dem_body_means_get(const dem_world *w, dem_body body, dem_bod
     int i, k;
     if (demi_null_look(w, "dem_body_means_get", out, "means")) return DEM_ERROR_ARGUMENT;
     if (!w->bodies.averaged)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_body_means_get: no field "
-                         "averages bodies; add one with bodies = 1 (dem_field_desc)");
+        return demi_refuse(w, "dem_body_means_get", "no field averages bodies; add one with bodies "
+                           "= 1 (dem_field_desc)");
     i = demi_body_index((dem_world *)w, "dem_body_means_get", body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
@@ -417,9 +417,9 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
     dem_field_get(w, id, &d);
     if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_field_cell_get: cell (%d, %d, "
-                         "%d) does not exist, the field has %d x %d x %d cells; indices start at 0",
-                         i, j, k, d.cells[0], d.cells[1], d.cells[2]);
+        return demi_refuse(w, "dem_field_cell_get", "cell (%d, %d, %d) does not exist, the field "
+                           "has %d x %d x %d cells; indices start at 0", i, j, k, d.cells[0],
+                           d.cells[1], d.cells[2]);
     memset(out, 0, sizeof *out);
     if (!d.samples) return DEM_OK;
     c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);

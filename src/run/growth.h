@@ -56,11 +56,11 @@ DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real rad
     double mass;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (demi_size_bad(w, i, radius, &mass))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_radius_set: the radius of body %u is %g "
-                         "m and its mass %g kg, must be > 0 and neither too small nor too large to "
-                         "calculate with in %s precision; lengths are in metres: check the unit",
-                         (unsigned)body.slot, (double)radius, mass,
-                         DEMI_SINGLE ? "single" : "double");
+        return demi_refuse(w, "dem_body_radius_set", "the radius of body %u is %g m and its mass "
+                           "%g kg, must be > 0 and neither too small nor too large to calculate "
+                           "with in %s precision; lengths are in metres: check the unit",
+                           (unsigned)body.slot, (double)radius, mass,
+                           DEMI_SINGLE ? "single" : "double");
     demi_finish(w);                             /* the open half kick belongs to the old mass */
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_radius_set");
     demi_body_resize(w, i, radius, mass);

@@ -132,10 +132,10 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
             least = (double)w->bodies.pos[4*i + 3];
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bonds_make: gap is %g m, must be >= 0 and at "
-                         "most %g m, the range of your law for the smallest grains; set a larger "
-                         "law_range or law_range_radii when the world is created", (double)gap,
-                         DEMI_MAX(most, 0)), -1;
+        return demi_refuse(w, "dem_bonds_make", "gap is %g m, must be >= 0 and at most %g m, the "
+                           "range of your law for the smallest grains; set a larger law_range or "
+                           "law_range_radii when the world is created", (double)gap,
+                           DEMI_MAX(most, 0)), -1;
     b.make = make;
     b.user = user;
     b.gap = gap;
@@ -257,8 +257,8 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     int d, k, j, body, same, count = 0;
     if (!wall) return -1;
     if (!wall->sieve.kind) {
-        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded_get: wall %d is not a "
-                  "sieve; pass the id that dem_wall_sieve_add returned", (int)sieve.id);
+        demi_refuse(w, "dem_sieve_blinded_get", "wall %d is not a sieve; pass the id that "
+                    "dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
@@ -501,18 +501,17 @@ static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box,
     dem_real R[9];
     memset(s, 0, sizeof *s);
     if (!(g > 0) || demi_box_bad(box, 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: gravity is %g m/s2, must not be 0, because "
-                         "it defines the slope; the box must be finite with lo below hi, or both 0",
-                         call, g);
+        return demi_refuse(w, call, "gravity is %g m/s2, must not be 0, because it defines the "
+                           "slope; the box must be finite with lo below hi, or both 0", g);
     s->up = demi_scale(w->desc.gravity, (dem_real)(-1/g));
     demi_frame_of(R, s->up);
     s->along = demi_v(R[0], R[3], R[6]);
     if (demi_dot(axis, axis) > 0) {             /* its horizontal part */
         s->along = demi_sub(axis, demi_scale(s->up, demi_dot(axis, s->up)));
         if (!(demi_dot(s->along, s->along) > DEM_R(0.01)*demi_dot(axis, axis)))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is vertical, must be "
-                             "horizontal; give the axis of rotation of the drum", call,
-                             (double)axis.x, (double)axis.y, (double)axis.z);
+            return demi_refuse(w, call, "axis (%g, %g, %g) is vertical, must be horizontal; give "
+                               "the axis of rotation of the drum", (double)axis.x, (double)axis.y,
+                               (double)axis.z);
         s->along = demi_unit(s->along);
     } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
     s->out = demi_cross(s->up, s->along);       /* motion of the drum at its bottom */
@@ -529,10 +528,9 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
         heap += s->root[i] == s->heap;
     }
     if (!good)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the surface of the heap has %d columns of one mean "
-                  "diameter, too few to fit a line, must be some 10; the largest heap has %d of "
-                  "the %d grains: check the box, or add grains", call,
-                  s->top ? s->rows : 0, heap, all);
+        demi_refuse(w, call, "the surface of the heap has %d columns of one mean diameter, too few "
+                    "to fit a line, must be some 10; the largest heap has %d of the %d grains: "
+                    "check the box, or add grains", s->top ? s->rows : 0, heap, all);
     demi_free(w, s->top);
     demi_free(w, s->root);
     return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
@@ -571,8 +569,8 @@ DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_
     if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not "
-                         "zero", call, (double)axis.x, (double)axis.y, (double)axis.z);
+        return demi_refuse(w, call, "axis is (%g, %g, %g), must be finite and not zero",
+                           (double)axis.x, (double)axis.y, (double)axis.z);
     result = demi_repose_begin(w, call, box, axis, &s);
     if (result != DEM_OK) return result;
     if (!demi_surface_look(w, &s)) good = -1;

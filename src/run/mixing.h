@@ -142,13 +142,12 @@ static dem_result demi_mixing_check(dem_world *w, const char *call, const dem_mi
         (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK))
         return DEM_ERROR_ARGUMENT;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: cells are %d x %d x %d, must be at most 2^28 "
-                         "in all; choose longer cells", call, d->cells[0], d->cells[1],
-                         d->cells[2]);
+        return demi_refuse(w, call, "cells are %d x %d x %d, must be at most 2^28 in all; choose "
+                           "longer cells", d->cells[0], d->cells[1], d->cells[2]);
     if (d->material.id || d->radius_min > 0 || d->radius_max > 0) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material, radius_min and radius_max are all 0, so "
-                     "that every grain is of the component; give the material or the radii of one "
-                     "of the two", call);
+    return demi_refuse(w, call, "material, radius_min and radius_max are all 0, so that every "
+                       "grain is of the component; give the material or the radii of one of the "
+                       "two");
 }
 DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *d,
                                   dem_mixing *out) {

@@ -211,15 +211,15 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     if (i < 0 || demi_rows_check(w, call, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
         return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, whose "
-                         "solver has one mass per body for all axes; use DEM_RESPONSE_SPRINGS, or "
-                         "joints (dem_joint_add)", call);
+        return demi_refuse(w, call, "contacts of this world are impulses, whose solver has one "
+                           "mass per body for all axes; use DEM_RESPONSE_SPRINGS, or joints "
+                           "(dem_joint_add)");
     if (w->bodies.inv_mass[i] <= 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is fixed, so all its axes are locked; "
-                         "set `fixed` to 0 with dem_body_set", call, (unsigned)body.slot);
+        return demi_refuse(w, call, "body %u is fixed, so all its axes are locked; set `fixed` to "
+                           "0 with dem_body_set", (unsigned)body.slot);
     if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axes is %d, but a planar world locks Z, "
-                         "SPIN_X and SPIN_Y of all bodies; leave them out", call, d->axes);
+        return demi_refuse(w, call, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y of "
+                           "all bodies; leave them out", d->axes);
     if (d->wall.id && demi_wall_find(w, call, d->wall) < 0) return DEM_ERROR_ARGUMENT;
     if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, call);
     demi_rails_drop(w, body);
@@ -246,8 +246,8 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
     if (demi_body_index((dem_world *)w, call, body) < 0) return DEM_ERROR_ARGUMENT;
     r = demi_rail_of(w, body);
     if (!r)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: body %u has no rail; set one "
-                         "with dem_body_rail_set", call, (unsigned)body.slot);
+        return demi_refuse(w, call, "body %u has no rail; set one with dem_body_rail_set",
+                           (unsigned)body.slot);
     *state = r->state;
     return DEM_OK;
 }

@@ -137,9 +137,8 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_s
     i = demi_wall_find((dem_world *)world, "dem_wall_servo_get", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
-        return demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "dem_wall_servo_get: the motion "
-                         "of wall %d is not DEM_MOTION_SERVO; set it with dem_wall_motion_set",
-                         (int)id.id);
+        return demi_refuse(world, "dem_wall_servo_get", "the motion of wall %d is not "
+                           "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
     *servo = demi_servo_now(world, i);
     return DEM_OK;
 }

@@ -27,27 +27,26 @@ static int demi_cell_refuse(dem_world *w, const char *call) {
     int i, walls = 0;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (walls)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
-                  "wall%s, which would not: a grain and its image would touch the same wall at "
-                  "different velocities; remove the walls, or press with a servo wall instead of "
-                  "the cell", call, walls, walls == 1 ? "" : "s");
+        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d wall%s, which would "
+                    "not: a grain and its image would touch the same wall at different velocities; "
+                    "remove the walls, or press with a servo wall instead of the cell", walls,
+                    walls == 1 ? "" : "s");
     else if (w->joint_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the scene has %d "
-                  "joint%s, whose anchors would follow the flow of the cell at both ends; remove "
-                  "the joints", call, w->joint_count, w->joint_count == 1 ? "" : "s");
+        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d joint%s, whose "
+                    "anchors would follow the flow of the cell at both ends; remove the joints",
+                    w->joint_count, w->joint_count == 1 ? "" : "s");
     else if (w->rail_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and %d bod%s on rails: "
-                  "velocities in the cell are relative to its flow, those of rails are not; remove "
-                  "the rails (axes 0)", call, w->rail_count,
-                  w->rail_count == 1 ? "y is" : "ies are");
+        demi_refuse(w, call, "the periodic cell deforms, and %d bod%s on rails: velocities in the "
+                    "cell are relative to its flow, those of rails are not; remove the rails (axes "
+                    "0)", w->rail_count, w->rail_count == 1 ? "y is" : "ies are");
     else if (w->feed_count || w->outlet_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell deforms, and the regions of %d "
-                  "feeds and %d outlets would not; fill the cell before it deforms", call,
-                  w->feed_count, w->outlet_count);
+        demi_refuse(w, call, "the periodic cell deforms, and the regions of %d feeds and %d "
+                    "outlets would not; fill the cell before it deforms", w->feed_count,
+                    w->outlet_count);
     else if (slides && w->field_count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, so that images are "
-                  "displaced, which the grids of %d field%s do not see; use dem_stress_get", call,
-                  w->field_count, w->field_count == 1 ? "" : "s");
+        demi_refuse(w, call, "the periodic cell is sheared, so that images are displaced, which "
+                    "the grids of %d field%s do not see; use dem_stress_get", w->field_count,
+                    w->field_count == 1 ? "" : "s");
     else return 0;
     return 1;
 }
@@ -154,14 +153,13 @@ static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_
         const int sheared = k < 2 && (d->shear < 0 || d->shear > 0);
         *moves |= rated || led || sheared;
         if (rated && led)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis %d has the strain rate %g 1/s and "
-                             "the largest rate %g 1/s towards a stress, one of them must be 0",
-                             call, k, (double)rate[k], (double)most[k]);
+            return demi_refuse(w, call, "axis %d has the strain rate %g 1/s and the largest rate "
+                               "%g 1/s towards a stress, one of them must be 0", k, (double)rate[k],
+                               (double)most[k]);
         if ((rated || led || sheared) && w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis %d is to be %s, but its boundary is "
-                             "not periodic; set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or "
-                             "move walls instead", call, k, rated || led ? "strained" : "sheared",
-                             k);
+            return demi_refuse(w, call, "axis %d is to be %s, but its boundary is not periodic; "
+                               "set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or move walls "
+                               "instead", k, rated || led ? "strained" : "sheared", k);
     }
     return DEM_OK;
 }
@@ -176,11 +174,11 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
             "start from DEM_CELL_DESC and set only what differs")) return DEM_ERROR_ARGUMENT;
     c = &w->cell;
     if (!demi_response_is(w, DEMI_LAWS))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, whose "
-                         "solvers do not see the flow of a cell; use DEM_RESPONSE_SPRINGS", call);
+        return demi_refuse(w, call, "contacts of this world are impulses, whose solvers do not see "
+                           "the flow of a cell; use DEM_RESPONSE_SPRINGS");
     if (w->team)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this world is a slab, and borders of slabs do "
-                         "not move; use threads", call);
+        return demi_refuse(w, call, "this world is a slab, and borders of slabs do not move; use "
+                           "threads");
     if (demi_cell_axes(w, call, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = c->desc;
     c->desc = *desc;
@@ -259,8 +257,8 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     s->volume = demi_volume(w);
     if (!(s->volume > 0)) {
         s->volume = 0;
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_stress_get: the domain has the "
-                         "volume 0; set desc.domain along all axes");
+        return demi_refuse(w, "dem_stress_get", "the domain has the volume 0; set desc.domain "
+                           "along all axes");
     }
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];

@@ -20,11 +20,10 @@ static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
 static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar) {
     if (demi_place(b.lo) && demi_place(b.hi) && b.hi.x > b.lo.x && b.hi.y > b.lo.y &&
         (b.hi.z > b.lo.z || (planar && b.hi.z >= b.lo.z))) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, must "
-              "be finite with lo below hi on every axis, at most %g m from the origin; as it is "
-              "nothing can be in it: give desc.box two corners that differ", call, (double)b.lo.x,
-              (double)b.lo.y, (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z,
-              DEMI_FARTHEST);
+    demi_refuse(w, call, "the box goes from (%g, %g, %g) to (%g, %g, %g) m, must be finite with lo "
+                "below hi on every axis, at most %g m from the origin; as it is nothing can be in "
+                "it: give desc.box two corners that differ", (double)b.lo.x, (double)b.lo.y,
+                (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z, DEMI_FARTHEST);
     return 1;
 }
 /* True if a box is not finite or lo is above hi; it may be a rectangle, a line or a point. */
@@ -141,9 +140,9 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
         if (demi_feed_strange(w, call, d, k)) return id;
         if ((!d->sizes[k] && !(d->radius[k] > 0)) || !demi_finite(d->radius[k]) ||
             !(d->amount[k] > 0) || !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be "
-                      "> 0 and finite; leave out classes that do not occur", call, k,
-                      (double)d->radius[k], d->amount[k]);
+            demi_refuse(w, call, "class %d has radius %g m and amount %g, must be > 0 and finite; "
+                        "leave out classes that do not occur", k, (double)d->radius[k],
+                        d->amount[k]);
             return id;
         }
         if (!demi_feed_sizes(w, call, &feed, k)) return id;
@@ -151,22 +150,22 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
         if (d->limited) {
             const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
             if (!(count >= 1 && count < 1e15)) {
-                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has amount %g, which is %.3g grains "
-                          "of %g kg, must be 1 to 1e15; check amount and by_mass", call, k,
-                          d->amount[k], count - 0.5, feed.mass[k]);
+                demi_refuse(w, call, "class %d has amount %g, which is %.3g grains of %g kg, must "
+                            "be 1 to 1e15; check amount and by_mass", k, d->amount[k], count - 0.5,
+                            feed.mass[k]);
                 return id;
             }
             feed.limit[k] = (uint64_t)count;
         }
     }
     if (!(d->rate > 0) && !d->limited) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is 0, which means all grains at once, and such "
-                  "a feed needs `limited`, or it never ends; set limited or a rate", call);
+        demi_refuse(w, call, "rate is 0, which means all grains at once, and such a feed needs "
+                    "`limited`, or it never ends; set limited or a rate");
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; set it to "
-                  "the region of the centres of new grains", call);
+        demi_refuse(w, call, "the box is not finite or lo is above hi; set it to the region of the "
+                    "centres of new grains");
         return id;
     }
     if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
@@ -376,10 +375,9 @@ static dem_result demi_world_feed(dem_world *w) {
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
     if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
-                         "exist, ids in this world are 1 to %d; adding it failed or it belongs to "
-                         "another world: check the id that dem_feed_add returned", (int)id.id,
-                         w->feed_count);
+        return demi_refuse(w, "dem_feed_get", "feed %d does not exist, ids in this world are 1 to "
+                           "%d; adding it failed or it belongs to another world: check the id that "
+                           "dem_feed_add returned", (int)id.id, w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
     return DEM_OK;
 }
@@ -406,9 +404,9 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wanted is %g to %g m, and there are %d classes; "
-                  "wanted_min must be below wanted_max, and the radii of classes > 0, finite and "
-                  "ascending", call, (double)d->wanted_min, (double)d->wanted_max, d->class_count);
+        demi_refuse(w, call, "wanted is %g to %g m, and there are %d classes; wanted_min must be "
+                    "below wanted_max, and the radii of classes > 0, finite and ascending",
+                    (double)d->wanted_min, (double)d->wanted_max, d->class_count);
         return id;
     }
     if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
@@ -416,9 +414,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
     for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
     if (d->keep && kept == DEMI_ZONES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: keep is %d, but %d outlets that keep their grains "
-                  "exist already, which is the limit; count by classes instead", call, d->keep,
-                  kept);
+        demi_refuse(w, call, "keep is %d, but %d outlets that keep their grains exist already, "
+                    "which is the limit; count by classes instead", d->keep, kept);
         return id;
     }
     if ((d->keep && !demi_array_begin(w, DEMI_ZONED, &w->bodies.zoned)) ||
@@ -535,9 +532,9 @@ static dem_result demi_outlets_run(dem_world *w) {
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
     if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
-    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, ids in this "
-              "world are 1 to %d; adding it failed or it belongs to another world: check the id "
-              "that dem_outlet_add returned", call, (int)id.id, w->outlet_count);
+    demi_refuse(w, call, "outlet %d does not exist, ids in this world are 1 to %d; adding it "
+                "failed or it belongs to another world: check the id that dem_outlet_add returned",
+                (int)id.id, w->outlet_count);
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {

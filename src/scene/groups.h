@@ -20,9 +20,9 @@ DEM_API dem_group dem_group_get(const dem_world *w, const char *name) {
     if (demi_null_look(w, "dem_group_get", name, "name")) return id;
     id.id = 1 + demi_group_find(w, name);
     if (!id.id)
-        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_group_get: there is no group \"%.60s\"; "
-                  "desc.groups names \"%.200s\": add the name there, or correct it", name,
-                  w->desc.groups ? w->desc.groups : "");
+        demi_refuse(w, "dem_group_get", "there is no group \"%.60s\"; desc.groups names "
+                    "\"%.200s\": add the name there, or correct it", name,
+                    w->desc.groups ? w->desc.groups : "");
     return id;
 }
 /* True if body i is in the group, or if its id is 0. */
@@ -32,8 +32,8 @@ DEM_INLINE int demi_in_group(const dem_world *w, dem_group group, int i) {
 /* Fails if an id is neither 0, unless `required`, nor that of a group. */
 static dem_result demi_group_check(dem_world *w, const char *call, dem_group group, int required) {
     if (group.id >= !!required && group.id <= w->bodies.group_count) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: group %d does not exist, desc.groups names %d; "
-                     "take the id from dem_group_get", call, (int)group.id, w->bodies.group_count);
+    return demi_refuse(w, call, "group %d does not exist, desc.groups names %d; take the id from "
+                       "dem_group_get", (int)group.id, w->bodies.group_count);
 }
 /* True if x is in the region, on a periodic axis with any of its images. */
 static int demi_region_holds(const dem_world *w, const demi_periods *p, const dem_region *region,
@@ -53,10 +53,10 @@ static dem_result demi_selection_check(dem_world *w, const char *call, const dem
         (s->shape.id && demi_shape_index(w, call, s->shape) < 0)) return DEM_ERROR_ARGUMENT;
     if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 ||
         (s->count && !s->bodies))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the selection has radii from %g to %g m and "
-                         "%d bodies%s; radii and count must be >= 0, and a count needs the array",
-                         call, (double)s->radius_min, (double)s->radius_max, s->count,
-                         s->count && !s->bodies ? " in a null array" : "");
+        return demi_refuse(w, call, "the selection has radii from %g to %g m and %d bodies%s; "
+                           "radii and count must be >= 0, and a count needs the array",
+                           (double)s->radius_min, (double)s->radius_max, s->count,
+                           s->count && !s->bodies ? " in a null array" : "");
     if (!s->region) return DEM_OK;
     return demi_region_check(w, call, s->region, 0, g) ? DEM_OK : DEM_ERROR_ARGUMENT;
 }
@@ -71,10 +71,10 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
     int i;
     *count = 0;
     if (w->look.calling.who && w->look.calling.within) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls within a step, "
-                  "possibly on several threads, and a selection needs memory of the world; make "
-                  "this call between two steps, for example in an output of kind "
-                  "DEM_OUTPUT_CALL", call, w->look.calling.who);
+        demi_refuse(w, call, "called from a function that %s calls within a step, possibly on "
+                    "several threads, and a selection needs memory of the world; make this call "
+                    "between two steps, for example in an output of kind DEM_OUTPUT_CALL",
+                    w->look.calling.who);
         return 0;
     }
     if (demi_selection_check(w, call, s, &g) != DEM_OK) return 0;
@@ -155,8 +155,8 @@ DEM_API int dem_bodies_velocity_set(dem_world *w, const dem_selection *s, dem_ve
                                     dem_vec3 spin) {
     if (demi_null(w, "dem_bodies_velocity_set", s, "selection")) return -1;
     if (!demi_place(velocity) || !demi_place(spin)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bodies_velocity_set: velocity or spin is not finite, "
-                  "or beyond %g m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
+        demi_refuse(w, "dem_bodies_velocity_set", "velocity or spin is not finite, or beyond %g "
+                    "m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
         return -1;
     }
     return demi_selected_set(w, "dem_bodies_velocity_set", s, &velocity, spin, 0);

@@ -409,21 +409,20 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
 static int demi_region_check(dem_world *w, const char *call, const dem_region *region,
                              dem_real radius, demi_region *g) {
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z'))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
-                  "axis of the cylinder, or 0 for the whole box", call, region->cylinder);
+        demi_refuse(w, call, "region.cylinder is %d, must be 'x', 'y' or 'z', the axis of the "
+                    "cylinder, or 0 for the whole box", region->cylinder);
     else if (!demi_place(region->box.lo) || !demi_place(region->box.hi))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, "
-                  "must be finite and at most %g m from the origin", call,
-                  (double)region->box.lo.x, (double)region->box.lo.y, (double)region->box.lo.z,
-                  (double)region->box.hi.x, (double)region->box.hi.y, (double)region->box.hi.z,
-                  DEMI_FARTHEST);
+        demi_refuse(w, call, "the box goes from (%g, %g, %g) to (%g, %g, %g) m, must be finite and "
+                    "at most %g m from the origin", (double)region->box.lo.x,
+                    (double)region->box.lo.y, (double)region->box.lo.z, (double)region->box.hi.x,
+                    (double)region->box.hi.y, (double)region->box.hi.z, DEMI_FARTHEST);
     else if (w->cell.offset < 0 || w->cell.offset > 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell is sheared, its images are "
-                  "displaced by %g m, which the search for room does not see; fill the cell before "
-                  "it is sheared, or add bodies at given positions", call, w->cell.offset);
+        demi_refuse(w, call, "the periodic cell is sheared, its images are displaced by %g m, "
+                    "which the search for room does not see; fill the cell before it is sheared, "
+                    "or add bodies at given positions", w->cell.offset);
     else if (!demi_region_make(w, region, (double)radius, g))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
-                  "give lo below hi by at least a diameter", call, (double)radius);
+        demi_refuse(w, call, "the box is smaller than one sphere of radius %g m; give lo below hi "
+                    "by at least a diameter", (double)radius);
     else return 1;
     return 0;
 }
@@ -439,8 +438,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
     if (radii) radius = radii[0];
     if (!(radius > 0) || !demi_finite(radius) || count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count is %d; the radius must be "
-                  "> 0 and finite, the count >= 0", call, (double)radius, count);
+        demi_refuse(w, call, "radius is %g m and count is %d; the radius must be > 0 and finite, "
+                    "the count >= 0", (double)radius, count);
         return 0;
     }
     if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
@@ -461,12 +460,12 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
         return 0;
     }
     if (done < count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a free position, "
-                  "clear of other bodies and walls, in %d tries each; enlarge the %s, or %s", call,
-                  done, count, shape < 0 ? "spheres" : "bodies with bounding spheres",
-                  (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
-                  region->inside ? "region" : "box", shape < 0
-                  ? "pack them with dem_spheres_pack" : "place them with dem_bodies_add");
+        demi_refuse(w, call, "%d of %d %s of radius %g m found a free position, clear of other "
+                    "bodies and walls, in %d tries each; enlarge the %s, or %s", done, count,
+                    shape < 0 ? "spheres" : "bodies with bounding spheres",
+                    (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
+                    region->inside ? "region" : "box", shape < 0 ? "pack them with dem_spheres_pack"
+                    : "place them with dem_bodies_add");
     demi_built(w, call);                        /* also if fewer fit: the caller sees the number */
     return done;
 }
@@ -590,24 +589,22 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
         return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
         count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m, padding is %g m, count is %d; the "
-                  "radius must be > 0, padding and count >= 0", call, (double)radius,
-                  (double)padding, count);
+        demi_refuse(w, call, "radius is %g m, padding is %g m, count is %d; the radius must be > "
+                    "0, padding and count >= 0", (double)radius, (double)padding, count);
         return 0;
     }
     if (demi_mass_refuse(w, call, m, radius, 0) ||
         !demi_region_check(w, call, &region, radius, &room)) return 0;
     if (!demi_lattice_make(w, &room, radius, padding, &g)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a period is shorter than one sphere of radius %g m "
-                  "with its padding of %g m; lengthen the domain", call, (double)radius,
-                  (double)padding);
+        demi_refuse(w, call, "a period is shorter than one sphere of radius %g m with its padding "
+                    "of %g m; lengthen the domain", (double)radius, (double)padding);
         return 0;
     }
     g.count = count;
     if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has room for about %.3g spheres of radius "
-                  "%g m, must be at most %d, the limit of a world; make the box smaller or give a "
-                  "count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
+        demi_refuse(w, call, "the box has room for about %.3g spheres of radius %g m, must be at "
+                    "most %d, the limit of a world; make the box smaller or give a count",
+                    demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
     done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
@@ -623,10 +620,9 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
         return 0;
     }
     if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: stopped after %.3g trial positions, with %d spheres "
-                  "of radius %g m packed; the limits are %d bodies and %g trial positions: make "
-                  "the box smaller", call, g.looked, done, (double)radius, INT_MAX/64,
-                  DEMI_PACK_MOST);
+        demi_refuse(w, call, "stopped after %.3g trial positions, with %d spheres of radius %g m "
+                    "packed; the limits are %d bodies and %g trial positions: make the box smaller",
+                    g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
     demi_built(w, call);
     return done;
 }

@@ -125,8 +125,8 @@ static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, do
     char why[160];
     demi_size_why(d, lo, hi, why, sizeof why);
     if (!*why) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sizes, %s: %s; start from DEM_SIZES and set what this "
-              "kind needs", call, kind >= 0 && kind < 6 ? names[kind] : "unknown", why);
+    demi_refuse(w, call, "sizes, %s: %s; start from DEM_SIZES and set what this kind needs",
+                kind >= 0 && kind < 6 ? names[kind] : "unknown", why);
     return 0;
 }
 /* Fraction finer than r of the distribution truncated to lo .. hi. */
@@ -184,7 +184,7 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
     double lo, hi;
     int i;
     if (count < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0", call, count);
+        return demi_refuse(w, call, "count is %d, must be >= 0", count);
     if (!demi_size_ends(w, call, d, &lo, &hi)) return DEM_ERROR_ARGUMENT;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
     if (!t) return demi_no_memory(w, call);
@@ -210,8 +210,7 @@ DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_co
     if (demi_null_look(w, call, d, "sizes") || demi_null_look(w, call, radius, "radius") ||
         demi_null_look(w, call, amount, "amount")) return 0;
     if (class_count < 1 || class_count > DEM_CLASSES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d", call,
-                  class_count, (int)DEM_CLASSES);
+        demi_refuse(w, call, "class_count is %d, must be 1 to %d", class_count, (int)DEM_CLASSES);
         return 0;
     }
     if (!demi_size_ends(w, call, d, &lo, &hi)) return 0;

@@ -189,48 +189,47 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     int i;
     for (i = 0; i < w->field_count; i++)
         if (w->fields[i].desc.variance)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d has variance %d, must be 0, "
-                             "because a cell may lie in two slabs, and neither knows the squares "
-                             "of the whole; leave variance out, or use threads", call, i + 1,
-                             w->fields[i].desc.variance);
+            return demi_refuse(w, call, "field %d has variance %d, must be 0, because a cell may "
+                               "lie in two slabs, and neither knows the squares of the whole; "
+                               "leave variance out, or use threads", i + 1,
+                               w->fields[i].desc.variance);
     if (!demi_response_is(w, DEMI_LAWS))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
-                         "cannot be split into slabs; use threads", call);
+        return demi_refuse(w, call, "contacts of this world are impulses, which cannot be split "
+                           "into slabs; use threads");
     if (w->rail_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d bodies are on rails (dem_body_rail_set), "
-                         "whose state slabs do not pass on; use threads, or walls instead of "
-                         "these bodies", call, w->rail_count);
+        return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs "
+                           "do not pass on; use threads, or walls instead of these bodies",
+                           w->rail_count);
     if (w->cell.on || w->cell.side[0] > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the periodic cell of this world has been "
-                         "deformed (dem_cell_set), but borders of slabs do not move; use threads",
-                         call);
+        return demi_refuse(w, call, "the periodic cell of this world has been deformed "
+                           "(dem_cell_set), but borders of slabs do not move; use threads");
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
-                         "one along which the scene is longest", call, d->axis,
-                         w->desc.planar ? " (for discs, at z = 0, only 0 or 1)" : "");
+        return demi_refuse(w, call, "axis is %d, must be 0, 1 or 2%s; choose the one along which "
+                           "the scene is longest", d->axis,
+                           w->desc.planar ? " (for discs, at z = 0, only 0 or 1)" : "");
     if (d->count < 1 || d->count > DEMI_SLABS)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to %d (required); one "
-                         "slab per processor is a good choice", call, d->count, (int)DEMI_SLABS);
+        return demi_refuse(w, call, "count is %d, must be 1 to %d (required); one slab per "
+                           "processor is a good choice", d->count, (int)DEMI_SLABS);
     if (d->first < 0 || local < 1 || d->first > d->count - local || (!d->local && d->first))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: first and local give slabs %d to %.0f, "
-                         "must lie in 0 to %d; set both, or leave both 0 for all slabs", call,
-                         d->first, (double)d->first + local - 1, d->count - 1);
+        return demi_refuse(w, call, "first and local give slabs %d to %.0f, must lie in 0 to %d; "
+                           "set both, or leave both 0 for all slabs", d->first,
+                           (double)d->first + local - 1, d->count - 1);
     if (!d->transport.exchange_fn != !d->transport.reduce_fn ||
         (local < d->count && !d->transport.exchange_fn))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
-                         "transport lacks exchange_fn or reduce_fn; give both, or hold all slabs",
-                         call, local, d->count);
+        return demi_refuse(w, call, "this process holds %d of %d slabs, but the transport lacks "
+                           "exchange_fn or reduce_fn; give both, or hold all slabs", local,
+                           d->count);
     if (!demi_finite(d->balance) || (d->balance > 0 && d->balance < 1) || d->balance_interval < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval is %d; "
-                         "balance must be 0, >= 1 or < 0 (never), balance_interval >= 0", call,
-                         (double)d->balance, d->balance_interval);
+        return demi_refuse(w, call, "balance is %g and balance_interval is %d; balance must be 0, "
+                           ">= 1 or < 0 (never), balance_interval >= 0", (double)d->balance,
+                           d->balance_interval);
     if (w->events.n.on && local < d->count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
-                         "world records contacts, whose records cannot change processes; hold all "
-                         "slabs, or call dem_events_stop first", call, local, d->count);
+        return demi_refuse(w, call, "this process holds %d of %d slabs, but the world records "
+                           "contacts, whose records cannot change processes; hold all slabs, or "
+                           "call dem_events_stop first", local, d->count);
     if (w->stage.moved)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is in the middle of a step that "
-                         "ran out of memory; finish the step with dem_world_step first", call);
+        return demi_refuse(w, call, "the world is in the middle of a step that ran out of memory; "
+                           "finish the step with dem_world_step first");
     return DEM_OK;
 }
 /* Fails in all processes unless all hold the same scene, with bodies in the same order, all or none
@@ -257,10 +256,10 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
     if (v[8] > 0) return demi_no_memory(w, "dem_slabs_create");
     for (k = 0; k < 8; k += 2) differ |= v[k] + v[k + 1] > 0;
     if (!differ && (int)slabs == s->count) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s and together hold %d "
-                     "slabs of %d; build the same world from the same numbers in every process, "
-                     "search or step it in all or none, and assign every slab once", differ
-                     ? "built different scenes" : "do not match", (int)slabs, s->count);
+    return demi_refuse(w, "dem_slabs_create", "processes %s and together hold %d slabs of %d; "
+                       "build the same world from the same numbers in every process, search or "
+                       "step it in all or none, and assign every slab once",
+                       differ ? "built different scenes" : "do not match", (int)slabs, s->count);
 }
 
 /* Fills the head from a world, allocates the arrays of `s` and sets the functions of the team.
@@ -564,34 +563,33 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     demi_message_head come = {0, 0, 0, 0};
     int k, i;
     if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations only in %s; collect "
-                         "into the world from which the slabs were created, unchanged, or one "
-                         "built like it", call, w->bodies.orienting ? "the world" : "the slabs");
+        return demi_refuse(h, call, "bodies have orientations only in %s; collect into the world "
+                           "from which the slabs were created, unchanged, or one built like it",
+                           w->bodies.orienting ? "the world" : "the slabs");
     if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
         w->material_count != h->material_count || w->feed_count != h->feed_count ||
         w->field_count != s->slabs[0].world->field_count ||
         w->outlet_count != s->slabs[0].world->outlet_count ||
         demi_body_size(w) != demi_body_size(s->slabs[0].world))
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
-                         "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
-                         "from which they were created, unchanged, or one built like it", call,
-                         w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
-                         s->dealt, h->wall_count, h->material_count, h->feed_count);
+        return demi_refuse(h, call, "the world has %d slots, %d walls, %d materials, %d feeds, the "
+                           "slabs %d, %d, %d, %d; collect into the world from which they were "
+                           "created, unchanged, or one built like it", w->bodies.slot_count,
+                           w->wall_count, w->material_count, w->feed_count, s->dealt, h->wall_count,
+                           h->material_count, h->feed_count);
     for (i = 0; i < w->wall_count; i++) {       /* another wall may have this index now */
         const demi_wall *here = &w->walls[i], *there = &s->slabs[0].world->walls[i];
         const int none = here->kind == DEMI_WALL_NONE, gone = there->kind == DEMI_WALL_NONE;
         if (none == gone && (none || here->id == there->id)) continue;
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: wall %d was %s the world after the slabs were "
-                         "created; collect before adding or removing walls, or create the slabs "
-                         "again afterwards", call, (int)here->id, none ? "removed from"
-                         : "added to");
+        return demi_refuse(h, call, "wall %d was %s the world after the slabs were created; "
+                           "collect before adding or removing walls, or create the slabs again "
+                           "afterwards", (int)here->id, none ? "removed from" : "added to");
     }
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t slot = w->bodies.slot[i];
         if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])
-            return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
-                             "slabs were created; collect before adding grains, or create the "
-                             "slabs again afterwards", call, (unsigned)slot + 1);
+            return demi_refuse(h, call, "body %u was added to the world after the slabs were "
+                               "created; collect before adding grains, or create the slabs again "
+                               "afterwards", (unsigned)slot + 1);
     }
     for (k = 0; k < s->count; k++) {
         const char *from = demi_slabs_find(s, k, &sums);
@@ -609,9 +607,9 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
             const uint32_t slot = demi_grain_slot(from);
             from += demi_body_size(w);
             if ((int)slot < w->bodies.slot_count && w->bodies.slot_index[slot] < 0)
-                return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
-                                 "in the world; collect before removing grains, or create the "
-                                 "slabs again afterwards", call, (unsigned)slot + 1, k);
+                return demi_refuse(h, call, "body %u is in slab %d, but no longer in the world; "
+                                   "collect before removing grains, or create the slabs again "
+                                   "afterwards", (unsigned)slot + 1, k);
         }
     }
     if (h->events.n.on && !demi_events_copy(w, h)) return demi_no_memory(h, call);
@@ -692,10 +690,9 @@ DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
     if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
-        return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
-                         "here, this process holds slabs %d to %d of %d; make this call in the "
-                         "process that holds it", index, s->first, s->first + s->local - 1,
-                         s->count);
+        return demi_refuse(&s->head, "dem_slab_get", "slab %d is not here, this process holds "
+                           "slabs %d to %d of %d; make this call in the process that holds it",
+                           index, s->first, s->first + s->local - 1, s->count);
     b = &s->slabs[index - s->first];
     out->grains = b->world->bodies.count - b->ghost_count;
     out->ghosts = b->ghost_count;

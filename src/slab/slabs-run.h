@@ -123,7 +123,6 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
     const dem_result result = demi_slabs_usable(s, "dem_slabs_step");
     if (result != DEM_OK) return result;
     if (steps < 0)
-        return demi_fail(&s->head, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
-                         steps);
+        return demi_refuse(&s->head, "dem_slabs_step", "steps is %d, must be >= 0", steps);
     return demi_steps(&s->head, "dem_slabs_step", steps);
 }

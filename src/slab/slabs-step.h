@@ -261,11 +261,11 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     h->margin.skin = (double)(dem_real)h->margin.skin;        /* rounded as in the slabs */
     s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding loses no ghost */
     if (s->ring && s->cut*s->count > s->period)
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
-                         "%g m thick, must be at least %g m (the largest diameter and the "
-                         "skin%s); use at most %d slabs or a smaller skin", s->count, s->period,
-                         s->period/s->count, s->cut, h->margin.reach > 0
-                         ? " and the law's range" : "", (int)(s->period/s->cut));
+        return demi_refuse(h, "dem_slabs_step", "%d slabs in a period of %g m are %g m thick, must "
+                           "be at least %g m (the largest diameter and the skin%s); use at most %d "
+                           "slabs or a smaller skin", s->count, s->period, s->period/s->count,
+                           s->cut, h->margin.reach > 0 ? " and the law's range" : "",
+                           (int)(s->period/s->cut));
     return DEM_OK;
 }
 
