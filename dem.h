@@ -34894,168 +34894,158 @@ static void demi_out_number(demi_out *o, const void *number, size_t size, int tu
     fwrite(bytes, 1, size, o->file);
 }
 
-/* An array of a VTP or VTK file: `count` rows of `components` numbers. Without data, the rows are
-   the integers first, first + stride, and so on. */
+/* An array of a file: `count` rows of `components` numbers. Without data, the rows are the integers
+   first, first + step, and so on. */
 typedef struct demi_column {
-    const char *section, *name; /* section: the XML element of a VTP file that holds the array    */
-    char type;                  /* r dem_real, i int32, u uint32                                  */
+    const char *section;        /* the XML element of a VTP file that holds the array             */
+    char name[24], type;        /* type: r dem_real, i int32, u uint32                            */
     int components, count;      /* numbers in a row; rows                                         */
-    int stride, first;          /* in numbers: from row to row; to the first row                  */
-    const void *data;           /* or null                                                        */
+    int first, step;
+    void *data;                 /* or null                                                        */
 } demi_column;
-
+/* The columns of a file. They exist until the file is written. */
+enum { DEMI_FILE_COLUMNS = 16 + DEMI_MEMORY + DEM_BODY_REALS };
+typedef struct demi_columns {
+    dem_world *world;
+    const char *call;
+    int count, failed;          /* columns; 1: memory ran out, or there are too many rows         */
+    demi_column column[DEMI_FILE_COLUMNS];
+} demi_columns;
+static void demi_columns_begin(demi_columns *s, dem_world *w, const char *call) {
+    memset(s, 0, sizeof *s);
+    s->world = w;
+    s->call = call;
+}
 static size_t demi_column_size(const demi_column *c) { /* bytes of one number */
     return c->type == 'r' ? sizeof(dem_real) : 4;
 }
-
+/* Adds integers without data. */
+static demi_column *demi_columns_range(demi_columns *s, const char *section, const char *name,
+                                       int64_t count, int first, int step) {
+    demi_column *c = &s->column[s->count++];
+    s->failed |= count > 3*(int64_t)DEMI_ELEMENTS_MAX;
+    c->section = section;
+    snprintf(c->name, sizeof c->name, "%s", name);
+    c->type = 'i';
+    c->components = 1;
+    c->count = s->failed ? 0 : (int)count;
+    c->first = first;
+    c->step = step;
+    return c;
+}
+/* Adds an array, set to 0, and returns it; null after a failure. */
+static void *demi_columns_add(demi_columns *s, const char *section, const char *name, char type,
+                              int components, int64_t count) {
+    demi_column *c = demi_columns_range(s, section, name, count, 0, 0);
+    c->type = type;
+    c->components = components;
+    if (!s->failed)
+        c->data = demi_alloc(s->world, (size_t)count*(size_t)components + 1, demi_column_size(c));
+    s->failed |= !c->data;
+    return c->data;
+}
+static dem_real *demi_columns_reals(demi_columns *s, const char *section, const char *name,
+                                    int components, int64_t count) {
+    return (dem_real *)demi_columns_add(s, section, name, 'r', components, count);
+}
+static int32_t *demi_columns_ints(demi_columns *s, const char *section, const char *name, char type,
+                                  int64_t count) {
+    return (int32_t *)demi_columns_add(s, section, name, type, 1, count);
+}
+/* Adds an array for each user-defined number of bodies. */
+static void demi_columns_own(demi_columns *s, int64_t count, dem_real *own[DEM_BODY_REALS]) {
+    char name[24];
+    int k, length;
+    for (k = 0; k < s->world->bodies.real_count; k++) {
+        const char *word = demi_name(s->world->desc.body_reals, k, &length);
+        sprintf(name, "%.*s", length, word);
+        own[k] = demi_columns_reals(s, "PointData", name, 1, count);
+    }
+}
+static void demi_columns_free(demi_columns *s) {
+    while (s->count > 0) demi_free(s->world, s->column[--s->count].data);
+}
+/* Opens the file. After a failure there is nothing to close or to free. */
+static dem_result demi_columns_open(demi_columns *s, demi_out *o, const char *path) {
+    const dem_result result = !s->failed ? demi_out_open(o, s->world, s->call, path)
+        : demi_fail(s->world, DEM_ERROR_MEMORY, "%s: not enough memory for what is written; free "
+                    "some", s->call);
+    if (result != DEM_OK) demi_columns_free(s);
+    return result;
+}
 static uint64_t demi_column_bytes(const demi_column *c) {
     return (uint64_t)c->count*(uint64_t)c->components*demi_column_size(c);
 }
-
 /* Writes the numbers of an array in binary form, row by row. */
 static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
-    const char *data = (const char *)c->data;
-    size_t size = demi_column_size(c);
-    int i, k;
-    for (i = 0; i < c->count; i++) {
-        if (!data) {
-            const int32_t number = c->first + i*c->stride;
-            demi_out_number(o, &number, sizeof number, turn);
-            continue;
-        }
-        for (k = 0; k < c->components; k++) {
-            size_t at = (size_t)i*(size_t)c->stride + (size_t)(c->first + k);
-            demi_out_number(o, data + at*size, size, turn);
-        }
+    const size_t n = (size_t)c->count*(size_t)c->components, size = demi_column_size(c);
+    size_t i;
+    if (c->data && !turn) { fwrite(c->data, size, n, o->file); return; }
+    for (i = 0; i < n; i++) {
+        const int32_t number = c->first + (int32_t)i*c->step;
+        demi_out_number(o, c->data ? (const char *)c->data + i*size : (const char *)&number, size,
+                        turn);
     }
 }
 
-enum { DEMI_GRAIN_COLUMNS = 11 + DEM_BODY_REALS };
-
-/* The rows that are written for the bodies. If no body has an orientation, these are the world's
-   arrays. Otherwise there is one row for each part, such as a member sphere of a cluster. */
-typedef struct demi_drawing {
-    int count;                                     /* rows */
-    const dem_real *pos, *vel, *spin;              /* count x 4: m, radius (m); m/s; rad/s */
-    const dem_real *orient, *axes;                 /* count x 4; m; null: no orientations */
-    const uint32_t *slots;                         /* of the body */
-    const int32_t *materials, *groups;             /* groups: bits; null: there are none */
-    const dem_real *reals;                         /* count x real_count: user-defined numbers */
-    int real_count;
-    char names[DEM_BODY_REALS][24];                /* of these numbers */
-    dem_real *own;                                 /* rows of parts: count x 20, then reals */
-    int32_t *own_ids;                              /* rows of parts: slots, then materials */
-} demi_drawing;
-/* Fills in a drawing of all bodies, with positions wrapped into a periodic domain. Returns 0 if
-   memory ran out; the caller frees in any case. */
-static int demi_drawing_make(dem_world *w, demi_drawing *g) {
+enum { DEMI_GRAIN_SPIN = 3, DEMI_GRAIN_ID, DEMI_GRAIN_MATERIAL };      /* columns for grains */
+/* Makes the arrays that are written for grains, with a row for each part of a body, such as a
+   member sphere of a cluster. Positions are wrapped into a periodic domain. The last two arrays
+   make each point a cell, without which viewers do not draw it. */
+static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) {
     const dem_real *places = demi_wrapped(w);
-    dem_real *row;
-    size_t reals;
-    int i, k, e, n = 0;
-    memset(g, 0, sizeof *g);
-    g->count = w->bodies.count;
-    g->pos = places; g->vel = w->bodies.vel; g->spin = w->bodies.spin;
-    g->slots = w->bodies.slot; g->materials = w->bodies.material;
-    g->groups = (const int32_t *)w->bodies.groups;
-    g->reals = w->bodies.reals; g->real_count = w->bodies.real_count;
-    for (k = 0; k < g->real_count; k++) {
-        const char *name = demi_name(w->desc.body_reals, k, &n);
-        sprintf(g->names[k], "%.*s", n, name);
+    const demi_bodies *b = &w->bodies;
+    dem_real *pos, *radius, *vel, *spin, *orient = 0, *axes = 0, *own[DEM_BODY_REALS];
+    int32_t *id, *material, *groups = 0;
+    int64_t n = 0;
+    int i, k, e;
+    for (i = 0; i < b->count; i++) n += demi_parts_count(w, i);
+    demi_columns_begin(s, w, call);
+    pos = demi_columns_reals(s, "Points", "position", 3, n);
+    radius = demi_columns_reals(s, "PointData", "radius", 1, n);
+    vel = demi_columns_reals(s, "PointData", "velocity", 3, n);
+    spin = demi_columns_reals(s, "PointData", "spin", 3, n);
+    id = demi_columns_ints(s, "PointData", "id", 'u', n);
+    material = demi_columns_ints(s, "PointData", "material", 'i', n);
+    if (b->orienting) {
+        orient = demi_columns_reals(s, "PointData", "orientation", 4, n);
+        axes = demi_columns_reals(s, "PointData", "semi_axes", 3, n);
     }
-    n = 0;
-    if (!w->bodies.orienting) return 1;
-    g->count = 0;
-    for (i = 0; i < w->bodies.count; i++) g->count += demi_parts_count(w, i);
-    reals = 20*(size_t)g->count;
-    g->own = (dem_real *)demi_alloc(w, reals + (size_t)(g->real_count*g->count) + 1,
-                                    sizeof(dem_real));
-    g->own_ids = (int32_t *)demi_alloc(w, 3*(size_t)g->count + 1, sizeof(int32_t));
-    if (!g->own || !g->own_ids) return 0;
-    for (i = 0; i < w->bodies.count; i++)
+    if (b->groups) groups = demi_columns_ints(s, "PointData", "groups", 'i', n);
+    demi_columns_own(s, n, own);
+    demi_columns_range(s, "Verts", "connectivity", n, 0, 1);
+    demi_columns_range(s, "Verts", "offsets", n, 1, 1);
+    for (i = 0, n = 0; i < b->count && !s->failed; i++)
         for (k = 0; k < demi_parts_count(w, i); k++, n++) {
             const demi_part p = demi_part_of(w, i, k);
-            row = g->own + 4*n;
-            demi_put(row, demi_add(demi_at(places + 4*i), p.centre));
-            row[3] = p.radius;
-            row += 4*(size_t)g->count;
-            demi_put(row, demi_velocity_at(w->bodies.vel, w->bodies.spin, i, p.centre));
-            row += 4*(size_t)g->count;
-            demi_put(row, demi_at(w->bodies.spin + 4*i));
-            row += 4*(size_t)g->count;
-            for (e = 0; e < 4; e++) row[e] = w->bodies.orient[4*i + e];
-            row += 4*(size_t)g->count;
-            row[0] = demi_shape_rows[p.kind].drawn(&p, demi_v(1, 0, 0)).x;     /* semi-axes */
-            row[1] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 1, 0)).y;
-            row[2] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 0, 1)).z;
-            g->own_ids[n] = (int32_t)w->bodies.slot[i];
-            g->own_ids[n + g->count] = w->bodies.material[i];
-            g->own_ids[n + 2*g->count] = g->groups ? (int32_t)w->bodies.groups[i] : 0;
-            for (e = 0; e < g->real_count; e++)
-                g->own[reals + (size_t)(g->real_count*n + e)] = g->reals[g->real_count*i + e];
+            demi_put(pos + 3*n, demi_add(demi_at(places + 4*i), p.centre));
+            radius[n] = p.radius;
+            demi_put(vel + 3*n, demi_velocity_at(b->vel, b->spin, i, p.centre));
+            demi_put(spin + 3*n, demi_at(b->spin + 4*i));
+            id[n] = (int32_t)b->slot[i];
+            material[n] = b->material[i];
+            for (e = 0; e < 4 && orient; e++) orient[4*n + e] = b->orient[4*i + e];
+            if (axes) {
+                axes[3*n] = demi_shape_rows[p.kind].drawn(&p, demi_v(1, 0, 0)).x;
+                axes[3*n + 1] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 1, 0)).y;
+                axes[3*n + 2] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 0, 1)).z;
+            }
+            if (groups) groups[n] = (int32_t)b->groups[i];
+            for (e = 0; e < b->real_count; e++) own[e][n] = b->reals[b->real_count*i + e];
         }
-    g->reals = g->own + reals;
-    g->pos = g->own;
-    g->vel = g->own + 4*(size_t)g->count;
-    g->spin = g->own + 8*(size_t)g->count;
-    g->orient = g->own + 12*(size_t)g->count;
-    g->axes = g->own + 16*(size_t)g->count;
-    g->slots = (const uint32_t *)g->own_ids;
-    g->materials = g->own_ids + g->count;
-    if (g->groups) g->groups = g->own_ids + 2*(size_t)g->count;
-    return 1;
-}
-static void demi_drawing_free(dem_world *w, demi_drawing *g) {
-    if (!w->bodies.orienting) return;
-    demi_free(w, g->own);
-    demi_free(w, g->own_ids);
-}
-/* Frees a drawing for which memory ran out, and returns the error. */
-static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
-    demi_drawing_free(w, g);
-    return demi_fail(w, DEM_ERROR_MEMORY, "%s: not enough memory for the %d parts of the bodies; "
-                     "free some", call, g->count);
 }
 
-/* Lists the arrays that are written for grains, and returns their number. The last two hold no
-   data: they make each point a cell, without which viewers do not draw it. */
-static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
-    const demi_column all[] = {
-        {"Points",    "position",     'r', 3, g->count, 4, 0, g->pos},
-        {"PointData", "radius",       'r', 1, g->count, 4, 3, g->pos},
-        {"PointData", "velocity",     'r', 3, g->count, 4, 0, g->vel},
-        {"PointData", "spin",         'r', 3, g->count, 4, 0, g->spin},
-        {"PointData", "id",           'u', 1, g->count, 1, 0, g->slots},
-        {"PointData", "material",     'i', 1, g->count, 1, 0, g->materials},
-        {"PointData", "orientation",  'r', 4, g->count, 4, 0, g->orient},
-        {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
-        {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
-        {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
-    const demi_column groups = {"PointData", "groups", 'i', 1, g->count, 1, 0, g->groups};
-    int known = g->orient ? 8 : 6, k;
-    memcpy(columns, all, (size_t)known*sizeof *all);
-    if (g->groups) columns[known++] = groups;
-    for (k = 0; k < g->real_count; k++) {
-        const demi_column own = {"PointData", g->names[k], 'r', 1, g->count, g->real_count, k,
-                                 g->reals};
-        columns[known + k] = own;
-    }
-    memcpy(columns + known + k, all + 8, 2*sizeof *all);
-    return known + k + 2;
-}
-
-/* Writes a file in the XML format of VTK. The XML tree describes the arrays. Their numbers follow
-   in binary form, in the byte order of the machine, each array after its size in bytes. The first
-   column holds the points; verts, lines and polys are the numbers of such cells. */
-static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
-                           const demi_column *column, int columns, int verts, int lines,
-                           int polys) {
+/* Writes columns in the XML format of VTK and frees it. The XML tree describes the arrays. Their
+   numbers follow in binary form, in the byte order of the machine, each array after its size in
+   bytes. The first column holds the points; verts, lines and polys are the numbers of such
+   cells. */
+static dem_result demi_vtp(demi_columns *s, const char *path, int verts, int lines, int polys) {
     demi_out o;
     char time[32];
     const char *section = "";
     uint64_t offset = 0, bytes;
     int i;
-    dem_result result = demi_out_open(&o, w, call, path);
+    dem_result result = demi_columns_open(s, &o, path);
     if (result != DEM_OK) return result;
     fprintf(o.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
             "byte_order=\"%s\" header_type=\"UInt64\">\n<PolyData>\n<FieldData><DataArray "
@@ -35063,10 +35053,10 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
             "</DataArray></FieldData>\n<Piece NumberOfPoints=\"%d\" NumberOfVerts=\"%d\" "
             "NumberOfLines=\"%d\" NumberOfStrips=\"0\" NumberOfPolys=\"%d\">\n",
             demi_is_little_endian() ? "LittleEndian" : "BigEndian",
-            demi_format_real(time, dem_world_time_get(w), 17), column[0].count, verts, lines,
-            polys);
-    for (i = 0; i < columns; i++) {
-        const demi_column *c = column + i;
+            demi_format_real(time, dem_world_time_get(s->world), 17), s->column[0].count, verts,
+            lines, polys);
+    for (i = 0; i < s->count; i++) {
+        const demi_column *c = s->column + i;
         if (i > 0 && strcmp(c->section, section) != 0) fprintf(o.file, "</%s>\n", section);
         if (strcmp(c->section, section) != 0) fprintf(o.file, "<%s>\n", c->section);
         section = c->section;
@@ -35077,46 +35067,42 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
         offset += 8 + demi_column_bytes(c);
     }
     fprintf(o.file, "</%s>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_", section);
-    for (i = 0; i < columns; i++) {
-        bytes = demi_column_bytes(column + i);
+    for (i = 0; i < s->count; i++) {
+        bytes = demi_column_bytes(s->column + i);
         demi_out_number(&o, &bytes, sizeof bytes, 0);
-        demi_column_write(&o, column + i, 0);
+        demi_column_write(&o, s->column + i, 0);
     }
     fputs("\n</AppendedData>\n</VTKFile>\n", o.file);
+    demi_columns_free(s);
     return demi_out_close(&o);
 }
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     if (demi_null_write(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
-    demi_column column[DEMI_GRAIN_COLUMNS];
-    demi_drawing g;
-    dem_result result;
-    int n;
-    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtp_write", &g);
-    n = demi_grain_columns(&g, column);
-    result = demi_vtp(world, "dem_vtp_write", path, column, n, column[0].count, 0, 0);
-    demi_drawing_free(world, &g);
-    return result;
+    demi_columns s;
+    demi_grain_columns(&s, world, "dem_vtp_write");
+    return demi_vtp(&s, path, s.column[0].count, 0, 0);
 }
 
-/* Contacts as line segments. A first pass with room 0 counts them; a second fills the arrays. */
+/* Contacts as line segments. Without arrays, only their number is counted. */
 typedef struct demi_lines {
     const dem_world *w;
-    int count, room, stride;                       /* found; allocated; reals of history */
-    dem_real *ends, *force, *overlap, *memory;     /* x 6, m; x 3, N; x 1, m; x stride */
+    int64_t count;
+    int stride;                                    /* reals of history */
+    dem_real *ends, *force, *overlap, *memory[DEMI_MEMORY];    /* x 6, m; x 3, N; x 1, m */
     int32_t *wall;                                 /* id; 0: a contact of two bodies */
 } demi_lines;
 /* Adds a contact: a segment from the centre of a to that of b or to the contact point on a wall. */
 static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *user) {
     demi_lines *l = (demi_lines *)user;
     const demi_periods p = demi_periods_of(l->w);
-    const int n = l->count++;
+    const int64_t n = l->count++;
     dem_body_state a, b;
     dem_vec3 to = c->point;
     dem_real *end;
     int k;
-    if (n >= l->room || dem_body_get(l->w, c->a, &a) != DEM_OK) return;
-    end = l->ends + 6*(size_t)n;
+    if (!l->ends || dem_body_get(l->w, c->a, &a) != DEM_OK) return;
+    end = l->ends + 6*n;
     if (!c->wall && dem_body_get(l->w, c->b, &b) == DEM_OK) to = b.position;
     demi_put(end, a.position);
     if (p.offset < 0 || p.offset > 0) to = demi_add(a.position, demi_nearest(&p,
@@ -35124,98 +35110,76 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     demi_put(end + 3, to);
     for (k = 0; k < 3; k++)                     /* the periodic image of b nearest to a */
         end[3 + k] = end[k] + demi_image(end[3 + k] - end[k], p.half[k], p.period[k]);
-    demi_put(l->force + 3*(size_t)n, c->force);
+    demi_put(l->force + 3*n, c->force);
     l->overlap[n] = c->overlap;
     l->wall[n] = c->wall;
-    for (k = 0; k < l->stride; k++) l->memory[(size_t)(n*l->stride + k)] = memory[k];
+    for (k = 0; k < l->stride; k++) l->memory[k][n] = memory[k];
 }
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     if (demi_null_write(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
-    dem_result result = DEM_ERROR_ARGUMENT;
-    demi_column column[7 + DEMI_MEMORY];
-    char names[DEMI_MEMORY][24];
+    demi_columns s;
     demi_lines l;
-    size_t room;
-    int k, length;
+    char memory[24];
+    int k, n, length;
     memset(&l, 0, sizeof l);
     l.w = world;
-    if (dem_contacts_each(world, demi_line_put, &l) < 0) return DEM_ERROR_ARGUMENT;
-    l.room = l.count;
+    n = dem_contacts_each(world, demi_line_put, &l);
+    if (n < 0) return DEM_ERROR_ARGUMENT;
     l.count = 0;
     l.stride = demi_memory_told(world);
-    room = (size_t)l.room + 1;
-    l.ends = (dem_real *)demi_alloc(world, (10 + (size_t)l.stride)*room, sizeof(dem_real));
-    l.wall = (int32_t *)demi_alloc(world, room, sizeof(int32_t));
-    if (l.ends && l.wall) {
-        l.force = l.ends + 6*room;
-        l.overlap = l.force + 3*room;
-        l.memory = l.overlap + room;
-        dem_contacts_each(world, demi_line_put, &l);
-        const demi_column known[] = {
-            {"Points",   "position",     'r', 3, 2*l.room, 3,        0, l.ends},
-            {"CellData", "force",        'r', 3, l.room,   3,        0, l.force},
-            {"CellData", "overlap",      'r', 1, l.room,   1,        0, l.overlap},
-            {"CellData", "wall",         'i', 1, l.room,   1,        0, l.wall},
-            {"Lines",    "connectivity", 'i', 1, 2*l.room, 1,        0, 0},
-            {"Lines",    "offsets",      'i', 1, l.room,   2,        2, 0}};
-        memcpy(column, known, 4*sizeof *known);
-        for (k = 0; k < l.stride; k++) {
-            const char *name = demi_name(world->desc.law_memory_names, k, &length);
-            const demi_column own = {"CellData", names[k], 'r', 1, l.room, l.stride, k, l.memory};
-            if (demi_response_is(world, DEMI_LAWS) && k == world->laws.at_sliding)
-                sprintf(names[k], "sliding");
-            else if (name) sprintf(names[k], "%.*s", length, name);
-            else sprintf(names[k], "memory%d", k);
-            column[4 + k] = own;
-        }
-        memcpy(column + 4 + k, known + 4, 2*sizeof *known);
-        result = demi_vtp(world, "dem_contacts_vtp_write", path, column, 6 + k, 0, l.room, 0);
-    } else result = demi_no_memory(world, "dem_contacts_vtp_write");
-    demi_free(world, l.ends);
-    demi_free(world, l.wall);
-    return result;
+    demi_columns_begin(&s, world, "dem_contacts_vtp_write");
+    l.ends = demi_columns_reals(&s, "Points", "position", 3, 2*(int64_t)n);
+    l.force = demi_columns_reals(&s, "CellData", "force", 3, n);
+    l.overlap = demi_columns_reals(&s, "CellData", "overlap", 1, n);
+    l.wall = demi_columns_ints(&s, "CellData", "wall", 'i', n);
+    for (k = 0; k < l.stride; k++) {
+        const char *name = demi_name(world->desc.law_memory_names, k, &length);
+        if (demi_response_is(world, DEMI_LAWS) && k == world->laws.at_sliding)
+            sprintf(memory, "sliding");
+        else if (name) sprintf(memory, "%.*s", length, name);
+        else sprintf(memory, "memory%d", k);
+        l.memory[k] = demi_columns_reals(&s, "CellData", memory, 1, n);
+    }
+    demi_columns_range(&s, "Lines", "connectivity", 2*(int64_t)n, 0, 1);
+    demi_columns_range(&s, "Lines", "offsets", n, 2, 2);
+    if (!s.failed) dem_contacts_each(world, demi_line_put, &l);
+    return demi_vtp(&s, path, 0, n, 0);
 }
 
 /* Legacy VTK in its binary form, in which numbers are big-endian. */
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     if (demi_null_write(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
-    demi_column column[DEMI_GRAIN_COLUMNS];
-    demi_out o;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
-    double time = dem_world_time_get(world);
-    int i, n, count, turn = demi_is_little_endian();
-    demi_drawing g;
+    const double time = dem_world_time_get(world);
+    const int turn = demi_is_little_endian();
+    int32_t i, one = 1;
+    demi_columns s;
+    demi_out o;
     dem_result result;
-    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtk_write", &g);
-    result = demi_out_open(&o, world, "dem_vtk_write", path);
-    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
-    n = demi_grain_columns(&g, column);
-    count = column[0].count;
+    demi_grain_columns(&s, world, "dem_vtk_write");
+    result = demi_columns_open(&s, &o, path);
+    if (result != DEM_OK) return result;
     fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
           "TIME 1 1 double\n", o.file);
     demi_out_number(&o, &time, sizeof time, turn);
-    fprintf(o.file, "\nPOINTS %d %s\n", count, real);
-    demi_column_write(&o, column, turn);
-    fprintf(o.file, "\nVERTICES %d %.0f\n", count, 2*(double)count);
-    for (i = 0; i < count; i++) { /* a cell: the number of its points, then their indices */
-        int32_t cell[2];
-        cell[0] = 1;
-        cell[1] = i;
-        demi_out_number(&o, cell, 4, turn);
-        demi_out_number(&o, cell + 1, 4, turn);
+    fprintf(o.file, "\nPOINTS %d %s\n", s.column[0].count, real);
+    demi_column_write(&o, s.column, turn);
+    fprintf(o.file, "\nVERTICES %d %.0f\n", s.column[0].count, 2*(double)s.column[0].count);
+    for (i = 0; i < s.column[0].count; i++) {   /* a cell: number of its points, their indices */
+        demi_out_number(&o, &one, sizeof one, turn);
+        demi_out_number(&o, &i, sizeof i, turn);
     }
-    fprintf(o.file, "\nPOINT_DATA %d\n", count);
-    for (i = 1; i < n - 2; i++) {
-        const demi_column *c = column + i;
+    fprintf(o.file, "\nPOINT_DATA %d\n", s.column[0].count);
+    for (i = 1; i < s.count - 2; i++) {
+        const demi_column *c = s.column + i;
         const char *type = c->type == 'u' ? "unsigned_int" : c->type == 'i' ? "int" : real;
-        if (c->components == 4)
-            fprintf(o.file, "SCALARS %s %s 4\nLOOKUP_TABLE default\n", c->name, type);
-        else if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
-        else fprintf(o.file, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", c->name, type);
+        if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
+        else fprintf(o.file, "SCALARS %s %s %d\nLOOKUP_TABLE default\n", c->name, type,
+                     c->components);
         demi_column_write(&o, c, turn);
         fputs("\n", o.file);
     }
-    demi_drawing_free(world, &g);
+    demi_columns_free(&s);
     return demi_out_close(&o);
 }
 
@@ -35227,21 +35191,22 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
-    demi_drawing g;
-    dem_world_desc desc = dem_world_desc_get(world);
-    dem_box d = desc.domain;
+    const dem_world_desc desc = dem_world_desc_get(world);
+    const dem_box d = desc.domain;
+    demi_columns s;
     double length[3];
     char text[3][32], slant[32];
+    const int32_t *material;
     demi_out o;
-    int i, k;
+    int i, k, e;
     dem_result result;
-    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_xyz_write", &g);
-    result = demi_out_open(&o, world, "dem_xyz_write", path);
-    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
+    demi_grain_columns(&s, world, "dem_xyz_write");
+    result = demi_columns_open(&s, &o, path);
+    if (result != DEM_OK) return result;
     length[0] = (double)(d.hi.x - d.lo.x);
     length[1] = (double)(d.hi.y - d.lo.y);
     length[2] = (double)(d.hi.z - d.lo.z);
-    fprintf(o.file, "%d\n", g.count);
+    fprintf(o.file, "%d\n", s.column[0].count);
     if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
         for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
         demi_format_real(slant, world->cell.offset, 9);     /* of a sheared cell; else 0 */
@@ -35255,27 +35220,25 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
                     k < 2 ? " " : "\" ");
     }
     fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%s",
-            g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "");
-    for (k = 0; k < g.real_count; k++) fprintf(o.file, "%s:R:1:", g.names[k]);
+            world->bodies.orienting ? "orientation:R:4:aspherical_shape:R:3:" : "");
+    for (k = s.count - 2 - world->bodies.real_count; k < s.count - 2; k++)
+        fprintf(o.file, "%s:R:1:", s.column[k].name);
     fprintf(o.file, "id:I:1 Time=%s\n", demi_format_real(text[0], dem_world_time_get(world), 12));
-    for (i = 0; i < g.count; i++) {
-        const char *element = elements + 2*((g.materials[i] - 1) & 63);
+    material = (const int32_t *)s.column[DEMI_GRAIN_MATERIAL].data;
+    for (i = 0; i < s.column[0].count; i++) {
+        const char *element = elements + 2*((material[i] - 1) & 63);
         fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
-        for (k = 0; k < 7; k++) {
-            const dem_real *row = (k < 4 ? g.pos : g.vel) + 4*(size_t)i;
-            fprintf(o.file, " %s", demi_format_real(text[0], (double)row[k < 4 ? k : k - 4], 9));
+        for (k = 0; k < s.count - 2; k++) {
+            const int n = s.column[k].components;
+            const dem_real *x = (const dem_real *)s.column[k].data + (size_t)n*(size_t)i;
+            for (e = 0; e < n && s.column[k].type == 'r' && k != DEMI_GRAIN_SPIN; e++)
+                fprintf(o.file, " %s", demi_format_real(text[0],       /* quaternions: x y z w */
+                                                        (double)x[n == 4 ? (e + 1)%4 : e], 9));
         }
-        for (k = 0; k < 7 && g.orient; k++) {   /* x y z w, then the semi-axes */
-            const dem_real *row = (k < 4 ? g.orient : g.axes) + 4*(size_t)i;
-            fprintf(o.file, " %s", demi_format_real(text[0],
-                    (double)row[k < 4 ? (k + 1)%4 : k - 4], 9));
-        }
-        for (k = 0; k < g.real_count; k++)
-            fprintf(o.file, " %s", demi_format_real(text[0],
-                    (double)g.reals[g.real_count*i + k], 9));
-        fprintf(o.file, " %lu\n", (unsigned long)g.slots[i]);
+        fprintf(o.file, " %lu\n",
+                (unsigned long)((const uint32_t *)s.column[DEMI_GRAIN_ID].data)[i]);
     }
-    demi_drawing_free(world, &g);
+    demi_columns_free(&s);
     return demi_out_close(&o);
 }
 
@@ -35284,23 +35247,26 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
 /* A sphere or ellipsoid is drawn with two poles and rings of points between them. */
 enum { DEMI_ROUND_RINGS = 7, DEMI_ROUND_SIDES = 16,
        DEMI_ROUND_POINTS = 2 + DEMI_ROUND_RINGS*DEMI_ROUND_SIDES };
-/* The polygons of all bodies. A first pass without arrays counts; a second fills the arrays. */
+/* The polygons of all bodies. A first pass without arrays counts; a second fills the arrays. Data
+   of a body are repeated at each of its points. */
 typedef struct demi_surfaces {
     int64_t points, polygons, links;               /* links: corners of all polygons */
-    dem_real *place, *velocity;    /* points x 3: m, m/s */
-    int32_t *body;                 /* points: index of the body */
+    dem_real *place, *velocity, *own[DEM_BODY_REALS]; /* points x 3: m, m/s; user-defined */
+    int32_t *id, *material;        /* points */
     int32_t *link, *end;           /* links: the point; polygons: end of each among the links */
 } demi_surfaces;
 /* Adds a point at `arm` (m) from the body's centre. */
 static void demi_surface_point(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
                                dem_vec3 arm) {
-    if (s->place) {
-        demi_put(s->place + 3*s->points, demi_add(centre, arm));
-        demi_put(s->velocity + 3*s->points,
-                 demi_velocity_at(w->bodies.vel, w->bodies.spin, body, arm));
-        s->body[s->points] = body;
-    }
-    s->points++;
+    const int64_t n = s->points++;
+    int k;
+    if (!s->place) return;
+    demi_put(s->place + 3*n, demi_add(centre, arm));
+    demi_put(s->velocity + 3*n, demi_velocity_at(w->bodies.vel, w->bodies.spin, body, arm));
+    s->id[n] = (int32_t)w->bodies.slot[body];
+    s->material[n] = w->bodies.material[body];
+    for (k = 0; k < w->bodies.real_count; k++)
+        s->own[k][n] = w->bodies.reals[w->bodies.real_count*body + k];
 }
 /* Adds a polygon; corners are counted from point `first`. */
 static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t *corners,
@@ -35372,71 +35338,23 @@ static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
             else demi_surface_round(s, w, i, demi_at(places + 4*i), &p);
         }
 }
-/* Allocates arrays for the elements counted and sets their numbers to 0. Data of a body are
-   repeated at each of its points: `told` holds slots, then materials. Returns 0 if memory ran out
-   or there are too many elements. */
-static int demi_surfaces_room(dem_world *w, demi_surfaces *s, dem_real **reals, int32_t **told) {
-    const size_t points = (size_t)s->points + 1, n = (size_t)w->bodies.real_count;
-    if (s->points >= DEMI_ELEMENTS_MAX || s->links >= DEMI_ELEMENTS_MAX) return 0;
-    s->place = (dem_real *)demi_alloc(w, 6*points, sizeof(dem_real));
-    s->body = (int32_t *)demi_alloc(w, points, sizeof(int32_t));
-    s->link = (int32_t *)demi_alloc(w, (size_t)s->links + 1, sizeof(int32_t));
-    s->end = (int32_t *)demi_alloc(w, (size_t)s->polygons + 1, sizeof(int32_t));
-    *reals = (dem_real *)demi_alloc(w, n*points + 1, sizeof(dem_real));
-    *told = (int32_t *)demi_alloc(w, 2*points, sizeof(int32_t));
-    if (s->place) s->velocity = s->place + 3*points;
-    s->points = s->polygons = s->links = 0;
-    return s->place && s->body && s->link && s->end && *reals && *told;
-}
 DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
-    const char *call = "dem_surfaces_vtp_write";
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    const int n = world->bodies.real_count;
-    char names[DEM_BODY_REALS][24];
-    demi_column column[7 + DEM_BODY_REALS];
+    if (demi_null_write(world, "dem_surfaces_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    demi_columns columns;
     demi_surfaces s;
-    dem_real *reals = 0;
-    int32_t *told = 0;
-    dem_result result;
-    int i, k, length = 0, count = 0;
     memset(&s, 0, sizeof s);
     demi_surfaces_draw(world, &s);
-    if (demi_surfaces_room(world, &s, &reals, &told)) {
-        demi_surfaces_draw(world, &s);
-        for (i = 0; i < s.points; i++) {
-            told[i] = (int32_t)world->bodies.slot[s.body[i]];
-            told[s.points + i] = world->bodies.material[s.body[i]];
-            for (k = 0; k < n; k++)
-                reals[(size_t)n*(size_t)i + (size_t)k] = world->bodies.reals[n*s.body[i] + k];
-        }
-        {
-            const int points = (int)s.points;
-            const demi_column all[] = {
-                {"Points",    "position",     'r', 3, points, 3, 0, s.place},
-                {"PointData", "velocity",     'r', 3, points, 3, 0, s.velocity},
-                {"PointData", "id",           'u', 1, points, 1, 0, told},
-                {"PointData", "material",     'i', 1, points, 1, 0, told + s.points},
-                {"Polys",     "connectivity", 'i', 1, (int)s.links, 1, 0, s.link},
-                {"Polys",     "offsets",      'i', 1, (int)s.polygons, 1, 0, s.end}};
-            for (; count < 4; count++) column[count] = all[count];
-            for (k = 0; k < n; k++) {
-                const demi_column own = {"PointData", names[k], 'r', 1, points, n, k, reals};
-                const char *name = demi_name(world->desc.body_reals, k, &length);
-                sprintf(names[k], "%.*s", length, name);
-                column[count++] = own;
-            }
-            for (k = 4; k < 6; k++) column[count++] = all[k];
-        }
-        result = demi_vtp(world, call, path, column, count, 0, 0, (int)s.polygons);
-    } else result = demi_fail(world, DEM_ERROR_MEMORY, "%s: not enough memory for the surfaces of "
-                              "%d bodies; free some", call, world->bodies.count);
-    demi_free(world, s.place);
-    demi_free(world, s.body);
-    demi_free(world, s.link);
-    demi_free(world, s.end);
-    demi_free(world, reals);
-    demi_free(world, told);
-    return result;
+    demi_columns_begin(&columns, world, "dem_surfaces_vtp_write");
+    s.place = demi_columns_reals(&columns, "Points", "position", 3, s.points);
+    s.velocity = demi_columns_reals(&columns, "PointData", "velocity", 3, s.points);
+    s.id = demi_columns_ints(&columns, "PointData", "id", 'u', s.points);
+    s.material = demi_columns_ints(&columns, "PointData", "material", 'i', s.points);
+    demi_columns_own(&columns, s.points, s.own);
+    s.link = demi_columns_ints(&columns, "Polys", "connectivity", 'i', s.links);
+    s.end = demi_columns_ints(&columns, "Polys", "offsets", 'i', s.polygons);
+    s.points = s.polygons = s.links = 0;
+    if (!columns.failed) demi_surfaces_draw(world, &s);
+    return demi_vtp(&columns, path, 0, 0, (int)s.polygons);
 }
 
 /* ---- walls and their loads ---- */
@@ -35502,13 +35420,11 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
                                        dem_real z1) {
     if (demi_null_write(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
     int64_t points = 0, triangles = 0, p = 0, t = 0;
-    dem_real z[2], *place = 0;
-    int32_t *corners = 0, *id = 0;
-    size_t room[2];
+    const dem_real z[2] = {z0, z1};
+    dem_real *place;
+    int32_t *corners, *id;
+    demi_columns s;
     int i, profiles = 0;
-    dem_result result;
-    z[0] = z0;
-    z[1] = z1;
     for (i = 0; i < world->wall_count; i++) {
         demi_wall_draw(world, i, z, &points, &triangles, 0, 0, 0);
         profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
@@ -35517,31 +35433,14 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         return demi_refuse(world, "dem_walls_vtp_write", "z0 is %g m and z1 is %g m, but z0 must "
                            "be below z1 to extrude a profile between them; change them", (double)z0,
                            (double)z1);
-    room[0] = 3*(size_t)points + 1;     /* never 0 */
-    room[1] = (size_t)triangles + 1;
-    if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
-        place = (dem_real *)demi_alloc(world, room[0], sizeof(dem_real));
-        corners = (int32_t *)demi_alloc(world, 3*room[1], sizeof(int32_t));
-        id = (int32_t *)demi_alloc(world, room[1], sizeof(int32_t));
-    }
-    if (place && corners && id) {
-        for (i = 0; i < world->wall_count; i++)
-            demi_wall_draw(world, i, z, &p, &t, place, corners, id);
-        const demi_column column[] = {
-            {"Points",   "position",     'r', 3, (int)points,      3, 0, place},
-            {"CellData", "wall",         'i', 1, (int)triangles,   1, 0, id},
-            {"Polys",    "connectivity", 'i', 1, (int)triangles*3, 1, 0, corners},
-            {"Polys",    "offsets",      'i', 1, (int)triangles,   3, 3, 0}};
-        result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, 0, (int)triangles);
-    } else {
-        result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: not enough memory for "
-                           "%.0f points and %.0f triangles; free some", (double)points,
-                           (double)triangles);
-    }
-    demi_free(world, place);
-    demi_free(world, corners);
-    demi_free(world, id);
-    return result;
+    demi_columns_begin(&s, world, "dem_walls_vtp_write");
+    place = demi_columns_reals(&s, "Points", "position", 3, points);
+    id = demi_columns_ints(&s, "CellData", "wall", 'i', triangles);
+    corners = demi_columns_ints(&s, "Polys", "connectivity", 'i', 3*triangles);
+    demi_columns_range(&s, "Polys", "offsets", triangles, 3, 3);
+    for (i = 0; i < world->wall_count && !s.failed; i++)
+        demi_wall_draw(world, i, z, &p, &t, place, corners, id);
+    return demi_vtp(&s, path, 0, 0, (int)triangles);
 }
 
 /* Appends a line to a CSV file, and before it the heading if the file is new or empty. There is no
