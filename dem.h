@@ -37774,21 +37774,28 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     va_end(arguments);
 }
 
+/* Computes the sets of materials of grains, those of feeds included, and of walls: bit i is
+   material of index i. */
+static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
+    int i, k;
+    *grains = *walls = 0;
+    for (i = 0; i < w->bodies.count; i++) *grains |= UINT64_C(1) << (w->bodies.material[i] - 1);
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) *grains |= UINT64_C(1) << demi_feed_material(d, k);
+    }
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
+}
 /* Checks materials: values that suggest other units, materials without use; and the number of
    threads. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
-    int used[DEMI_MATERIALS], i, k;
-    memset(used, 0, sizeof used);
-    for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
-    for (i = 0; i < w->wall_count; i++)
-        if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
-    for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
-        for (k = 0; k < d->class_count; k++) used[demi_feed_material(d, k)] = 1;
-    }
+    uint64_t grains, walls;
+    int i;
+    demi_made_of(w, &grains, &walls);
     for (i = 0; i < w->material_count; i++) {
         const dem_material_desc *m = &w->materials[i];
-        if (!used[i])
+        if (!((grains | walls) >> i & 1))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
@@ -38126,10 +38133,10 @@ static int demi_probe_compare(const void *a, const void *b) {
 /* Adds the point x (m) and its periodic images, those of them in the box of the surface. box: m,
    lowest and highest corner of the surface at `home`, the pose at the start of its motion; points
    are transformed from the present pose to that one. A wall that repeats periodically may be any
-   number of periods away from x: the images tested are those around the middle of the wall. room:
-   capacity of p->at. Returns 0 if memory runs out. */
-static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
-                          const double *box, dem_vec3 x, int feed) {
+   number of periods away from x: the images tested are those around the middle of the wall. Returns
+   0 if memory runs out. */
+static int demi_probe_add(dem_world *w, demi_probes *p, const demi_wall *wall, const double *box,
+                          dem_vec3 x, int feed) {
     dem_real mid[3], to_mid[3];
     int n, k;
     for (k = 0; k < 3; k++) mid[k] = (dem_real)((box[k] + box[3 + k])/2);
@@ -38153,14 +38160,7 @@ static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi
         for (k = 0; k < 3; k++)
             near = near && (!s[k] || w->wall_period[k] > 0) && c[k] >= box[k] && c[k] <= box[3 + k];
         if (!near) continue;
-        if ((size_t)p->count == *room) {
-            demi_probe *more = (demi_probe *)demi_alloc(w, 2*(*room + 32), sizeof *more);
-            if (!more) return 0;
-            if (p->count) memcpy(more, p->at, (size_t)p->count*sizeof *more);
-            demi_free(w, p->at);
-            p->at = more;
-            *room = 2*(*room + 32);
-        }
+        if (!demi_grow(w, DEMI_LOOSE, &p->at, sizeof *p->at, (size_t)p->count + 1)) return 0;
         to = p->at + p->count++;
         memcpy(to->x, c, sizeof c);
         to->odd = to->turn = 0;
@@ -38178,14 +38178,13 @@ static void demi_probes_free(dem_world *w, demi_probes *p) {
    are in the box of a surface, sorted by y. Returns 0 if memory runs out. */
 static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
                             const double *box) {
-    size_t room = 0;
     int i, n, ok = 1;
     memset(p, 0, sizeof *p);
     for (i = 0; i < w->bodies.count && ok; i++) {
         if (!(w->bodies.inv_mass[i] > 0) ||
             demi_ignores(w, w->bodies.material[i] - 1, wall->material)) continue;
         p->grains++;
-        ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
+        ok = demi_probe_add(w, p, wall, box, demi_at(w->bodies.pos + 4*i), 0);
     }
     for (i = 0; i < w->feed_count && ok; i++) {
         const demi_feed *feed = demi_feed_at(w, i);
@@ -38198,7 +38197,7 @@ static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
             dem_vec3 x;
             if (!demi_region_at(&g, at, (dem_real)feed->lo[0], &x)) continue;
             p->places++;
-            ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
+            ok = demi_probe_add(w, p, wall, box, x, i + 1);
         }
     }
     if (!ok || !p->count) return ok;
@@ -38951,28 +38950,22 @@ enum { DEMI_EFFECT_TURNS = 41, DEMI_EFFECT_STEPS = 24 };
    touched). */
 typedef dem_effect_state (*demi_look_fn)(const dem_world *w, dem_effect *e);
 
-DEMI_FORMAT(2, 3) static void demi_say(dem_effect *e, const char *format, ...) {
+/* Writes e->text, and returns the state of an effect that the scene contains. */
+DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, const char *format,
+                                                   ...) {
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(e->text, sizeof e->text, format, arguments);
     va_end(arguments);
+    return happened ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
+    demi_say(e, 0, "%s", why);
+    return DEM_EFFECT_OFF;
 }
 /* True if materials i and j have touched so far. */
 DEM_INLINE int demi_met(const dem_world *w, int i, int j) {
     return (int)(w->booked.met[DEMI_MIN(i, j)] >> DEMI_MAX(i, j) & 1);
-}
-/* Computes the sets of materials of grains, those of feeds included, and of walls: bit i is
-   material of index i. */
-static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
-    int i, k;
-    *grains = *walls = 0;
-    for (i = 0; i < w->bodies.count; i++) *grains |= UINT64_C(1) << (w->bodies.material[i] - 1);
-    for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
-        for (k = 0; k < d->class_count; k++) *grains |= UINT64_C(1) << demi_feed_material(d, k);
-    }
-    for (i = 0; i < w->wall_count; i++)
-        if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
 }
 /* State of an effect that is a property of pairs of materials. `of` returns the property, > 0 if
    the pair has the effect. Off if no pair has it, idle if none of those that have it has touched
@@ -38995,17 +38988,12 @@ static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const
             second = j + 1;
         }
     e->missing = possible - met;
-    if (!have) demi_say(e, "no pair of materials has it");
-    else if (!possible) demi_say(e, "%s; no two materials that can touch have it", what);
-    else if (met == possible) demi_say(e, "%s", what);
-    else if (first == second)
-        demi_say(e, "%s; material %d has not touched itself so far", what, first);
-    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first, second);
-    return !have ? DEM_EFFECT_OFF : met ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
-}
-static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
-    demi_say(e, "%s", why);
-    return DEM_EFFECT_OFF;
+    if (!have) return demi_look_off(e, "no pair of materials has it");
+    if (!possible) return demi_say(e, 0, "%s; no two materials that can touch have it", what);
+    if (met == possible) return demi_say(e, 1, "%s", what);
+    if (first == second)
+        return demi_say(e, met, "%s; material %d has not touched itself so far", what, first);
+    return demi_say(e, met, "%s; materials %d and %d have not touched so far", what, first, second);
 }
 /* Properties of pairs, for `of` above. */
 static dem_real demi_any(const dem_pair *p) { (void)p; return 1; }
@@ -39065,8 +39053,7 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
                                                   w->clock.time, w->desc.force_user));
         pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
     }
-    demi_say(e, "acts on %d of %d bodies now", pushed, w->bodies.count);
-    return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, pushed, "acts on %d of %d bodies now", pushed, w->bodies.count);
 }
 /* State of desc.growth: active if some radius changes now. Calls the user's function for every
    body. */
@@ -39081,8 +39068,7 @@ static dem_effect_state demi_look_growth(const dem_world *w, dem_effect *e) {
         rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user);
         moving += rate < 0 || rate > 0;
     }
-    demi_say(e, "the radii of %d of %d bodies change now", moving, w->bodies.count);
-    return moving ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, moving, "the radii of %d of %d bodies change now", moving, w->bodies.count);
 }
 /* State of user-defined numbers of bodies: active if contacts change them on some body now, or if
    body_reals_fn may. */
@@ -39090,18 +39076,15 @@ static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
     const int n = w->bodies.real_count;
     int i, k, moving = 0;
     if (!n) return demi_look_off(e, "desc.body_reals is null");
-    if (!demi_exchanges(w) && !w->desc.body_reals_fn) {
-        demi_say(e, "%s: constant; no law gives rates (law_who), and body_reals_fn is null",
-                 w->real_names);
-        return DEM_EFFECT_IDLE;
-    }
+    if (!demi_exchanges(w) && !w->desc.body_reals_fn)
+        return demi_say(e, 0, "%s: constant; no law gives rates (law_who), and body_reals_fn is "
+                        "null", w->real_names);
     for (i = 0; i < w->bodies.count; i++) {
         for (k = 0; k < n && !(DEMI_ABS(w->bodies.rates[n*i + k]) > 0);) k++;
         moving += k < n;
     }
-    demi_say(e, "%s: contacts change them on %d of %d bodies now", w->real_names, moving,
-             w->bodies.count);
-    return moving || w->desc.body_reals_fn ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, moving || w->desc.body_reals_fn, "%s: contacts change them on %d of %d "
+                    "bodies now", w->real_names, moving, w->bodies.count);
 }
 static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
     int i, count = 0, touched = 0, some = 0;
@@ -39113,10 +39096,9 @@ static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
     }
     if (!count) return demi_look_off(e, "there are none");
     e->missing = count - touched;
-    if (touched == count) demi_say(e, "%d", count);
-    else demi_say(e, "%d; wall %d%s never touched", count, some,
-                  count - touched == 1 ? " was" : " and others were");
-    return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    if (touched == count) return demi_say(e, 1, "%d", count);
+    return demi_say(e, touched, "%d; wall %d%s never touched", count, some,
+                    count - touched == 1 ? " was" : " and others were");
 }
 static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     int i, count = 0, touched = 0;
@@ -39128,8 +39110,8 @@ static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     }
     if (!count) return demi_look_off(e, "no wall moves");
     e->missing = count - touched;
-    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? "" : ", never touched");
-    return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, touched, "%d wall%s%s", count, count == 1 ? "" : "s",
+                    touched ? "" : ", never touched");
 }
 /* State of periodic faces: active if a pair of the pruned neighbour list crosses one. */
 static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
@@ -39146,56 +39128,49 @@ static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
             across += demi_dot(demi_at(shift), demi_at(shift)) > 0;
         }
     }
-    if (across) demi_say(e, "along %d ax%s; %d neighbour pairs cross a face", faces,
-                         faces == 1 ? "is" : "es", across);
-    else demi_say(e, "along %d ax%s; no neighbour pair crosses a face now",
-                  faces, faces == 1 ? "is" : "es");
-    return across ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    if (across) return demi_say(e, 1, "along %d ax%s; %d neighbour pairs cross a face", faces,
+                                faces == 1 ? "is" : "es", across);
+    return demi_say(e, 0, "along %d ax%s; no neighbour pair crosses a face now", faces,
+                    faces == 1 ? "is" : "es");
 }
 static dem_effect_state demi_look_cell(const dem_world *w, dem_effect *e) {
     if (!w->cell.on) return demi_look_off(e, "the sides of the domain do not move");
-    demi_say(e, "strain rates %.3g %.3g %.3g, shear rate %.3g 1/s", w->cell.rate[0],
-             w->cell.rate[1], w->cell.rate[2], w->cell.shear);
-    return DEM_EFFECT_ACTIVE;
+    return demi_say(e, 1, "strain rates %.3g %.3g %.3g, shear rate %.3g 1/s", w->cell.rate[0],
+                    w->cell.rate[1], w->cell.rate[2], w->cell.shear);
 }
 static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
     if (w->effects.uniform || !w->bodies.count)
         return demi_look_off(e, "all bodies are alike: coefficients are computed once");
-    demi_say(e, "%s", demi_many_species(w) ? "coefficients per neighbour pair"
-             : "coefficients per pair of species");
-    return DEM_EFFECT_ACTIVE;
+    return demi_say(e, 1, "%s", demi_many_species(w) ? "coefficients per neighbour pair"
+                    : "coefficients per pair of species");
 }
 static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
     if (!w->bodies.shaped) return demi_look_off(e, "all bodies are spheres");
-    demi_say(e, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
-    return DEM_EFFECT_ACTIVE;
+    return demi_say(e, 1, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
     if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
     if (!w->bodies.orienting) return demi_look_off(e, "desc.orientations is 0");
-    demi_say(e, "followed because desc.orientations is 1; no force depends on them");
-    return DEM_EFFECT_ACTIVE;
+    return demi_say(e, 1, "followed because desc.orientations is 1; no force depends on them");
 }
 static dem_effect_state demi_look_ledger(const dem_world *w, dem_effect *e) {
     if (!w->desc.ledger) return demi_look_off(e, "desc.ledger is 0");
-    demi_say(e, "every contact reports where its energy goes");
-    return DEM_EFFECT_ACTIVE;
+    return demi_say(e, 1, "every contact reports where its energy goes");
 }
 static dem_effect_state demi_look_feeds(const dem_world *w, dem_effect *e) {
     uint64_t came = 0;
     int i;
     if (!w->feed_count) return demi_look_off(e, "there are none");
     for (i = 0; i < w->feed_count; i++) came += demi_feed_at(w, i)->state.total;
-    demi_say(e, "%d; %llu grains so far", w->feed_count, (unsigned long long)came);
-    return came ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, came > 0, "%d; %llu grains so far", w->feed_count, (unsigned long long)came);
 }
 static dem_effect_state demi_look_outlets(const dem_world *w, dem_effect *e) {
     uint64_t went = 0;
     int i;
     if (!w->outlet_count) return demi_look_off(e, "there are none");
     for (i = 0; i < w->outlet_count; i++) went += demi_outlet_at(w, i)->state.total;
-    demi_say(e, "%d; %llu grains so far", w->outlet_count, (unsigned long long)went);
-    return went ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, went > 0, "%d; %llu grains so far", w->outlet_count,
+                    (unsigned long long)went);
 }
 static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
     const demi_event_counts *n = &w->events.n;
@@ -39203,8 +39178,7 @@ static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
     int i;
     if (!n->on) return demi_look_off(e, "contacts are not recorded (dem_events_record)");
     for (i = 0; i < n->pairs; i++) ended += w->events.pairs[i].ended;
-    demi_say(e, "%.0f contacts have ended, %d exist", ended, n->open);
-    return ended > 0 || n->open ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+    return demi_say(e, ended > 0 || n->open, "%.0f contacts have ended, %d exist", ended, n->open);
 }
 
 /* --- copies without an effect --- */
@@ -39212,7 +39186,7 @@ static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
 /* User data of the functions below, which stand in for the user's law and force fields in a copy.
    They call the original `times` times, once or twice, and use only the last result. desc: of the
    original world; memory: reals in the contact history of its law. */
-typedef struct demi_again { dem_world_desc desc; int times, memory; } demi_again;
+typedef struct demi_again { dem_world_desc desc; int memory, times; } demi_again;
 /* Switches an effect off in the copy t, or makes it call the user's functions through *own. */
 typedef void (*demi_leave_fn)(dem_world *t, demi_again *own);
 /* Rolling friction goes too: there are loops for neither, for friction, and for both. */
@@ -39384,15 +39358,10 @@ static int demi_double_compare(const void *a, const void *b) {
    the same state. turn: odd turns time the copy with the effect first, even turns the other. */
 static double demi_effect_turn(dem_world *w, const char *state, size_t size,
                                const demi_effect_row *row, int turn) {
-    demi_again once, twice;
+    demi_again once = {w->desc, w->desc.law_memory, 1}, twice = {w->desc, w->desc.law_memory, 2};
     dem_world *with, *without;
     dem_result result = DEM_OK;
     double first, second, ratio = 0;
-    once.desc = w->desc;
-    once.memory = w->desc.law_memory;
-    once.times = 1;
-    twice = once;
-    twice.times = 2;
     with = demi_effect_twin(w, state, size, row->twice ? row->leave : 0, &once);
     without = with ? demi_effect_twin(w, state, size, row->leave, &twice) : 0;
     if (without) {

@@ -28,21 +28,28 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     va_end(arguments);
 }
 
+/* Computes the sets of materials of grains, those of feeds included, and of walls: bit i is
+   material of index i. */
+static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
+    int i, k;
+    *grains = *walls = 0;
+    for (i = 0; i < w->bodies.count; i++) *grains |= UINT64_C(1) << (w->bodies.material[i] - 1);
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) *grains |= UINT64_C(1) << demi_feed_material(d, k);
+    }
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
+}
 /* Checks materials: values that suggest other units, materials without use; and the number of
    threads. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
-    int used[DEMI_MATERIALS], i, k;
-    memset(used, 0, sizeof used);
-    for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
-    for (i = 0; i < w->wall_count; i++)
-        if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
-    for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
-        for (k = 0; k < d->class_count; k++) used[demi_feed_material(d, k)] = 1;
-    }
+    uint64_t grains, walls;
+    int i;
+    demi_made_of(w, &grains, &walls);
     for (i = 0; i < w->material_count; i++) {
         const dem_material_desc *m = &w->materials[i];
-        if (!used[i])
+        if (!((grains | walls) >> i & 1))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
@@ -380,10 +387,10 @@ static int demi_probe_compare(const void *a, const void *b) {
 /* Adds the point x (m) and its periodic images, those of them in the box of the surface. box: m,
    lowest and highest corner of the surface at `home`, the pose at the start of its motion; points
    are transformed from the present pose to that one. A wall that repeats periodically may be any
-   number of periods away from x: the images tested are those around the middle of the wall. room:
-   capacity of p->at. Returns 0 if memory runs out. */
-static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
-                          const double *box, dem_vec3 x, int feed) {
+   number of periods away from x: the images tested are those around the middle of the wall. Returns
+   0 if memory runs out. */
+static int demi_probe_add(dem_world *w, demi_probes *p, const demi_wall *wall, const double *box,
+                          dem_vec3 x, int feed) {
     dem_real mid[3], to_mid[3];
     int n, k;
     for (k = 0; k < 3; k++) mid[k] = (dem_real)((box[k] + box[3 + k])/2);
@@ -407,14 +414,7 @@ static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi
         for (k = 0; k < 3; k++)
             near = near && (!s[k] || w->wall_period[k] > 0) && c[k] >= box[k] && c[k] <= box[3 + k];
         if (!near) continue;
-        if ((size_t)p->count == *room) {
-            demi_probe *more = (demi_probe *)demi_alloc(w, 2*(*room + 32), sizeof *more);
-            if (!more) return 0;
-            if (p->count) memcpy(more, p->at, (size_t)p->count*sizeof *more);
-            demi_free(w, p->at);
-            p->at = more;
-            *room = 2*(*room + 32);
-        }
+        if (!demi_grow(w, DEMI_LOOSE, &p->at, sizeof *p->at, (size_t)p->count + 1)) return 0;
         to = p->at + p->count++;
         memcpy(to->x, c, sizeof c);
         to->odd = to->turn = 0;
@@ -432,14 +432,13 @@ static void demi_probes_free(dem_world *w, demi_probes *p) {
    are in the box of a surface, sorted by y. Returns 0 if memory runs out. */
 static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
                             const double *box) {
-    size_t room = 0;
     int i, n, ok = 1;
     memset(p, 0, sizeof *p);
     for (i = 0; i < w->bodies.count && ok; i++) {
         if (!(w->bodies.inv_mass[i] > 0) ||
             demi_ignores(w, w->bodies.material[i] - 1, wall->material)) continue;
         p->grains++;
-        ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
+        ok = demi_probe_add(w, p, wall, box, demi_at(w->bodies.pos + 4*i), 0);
     }
     for (i = 0; i < w->feed_count && ok; i++) {
         const demi_feed *feed = demi_feed_at(w, i);
@@ -452,7 +451,7 @@ static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
             dem_vec3 x;
             if (!demi_region_at(&g, at, (dem_real)feed->lo[0], &x)) continue;
             p->places++;
-            ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
+            ok = demi_probe_add(w, p, wall, box, x, i + 1);
         }
     }
     if (!ok || !p->count) return ok;
