@@ -37175,9 +37175,9 @@ static const char demi_changes_never[] = " domain boundary planar thickness resp
 /* What a restart may change, and what it has changed. */
 typedef struct demi_changes {
     const char *allowed;           /* words */
-    dem_world_desc desc, asked;    /* of the world */
-    dem_material_desc *materials;  /* null unless allowed */
-    demi_pair *pairs;              /* likewise */
+    const dem_world *own;          /* the world before: its descs and materials */
+    int materials;                 /* 1: materials may differ */
+    demi_pair *pairs;              /* of the world before; null unless they may differ */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
 } demi_changes;
@@ -37272,11 +37272,11 @@ static void demi_changes_back(dem_world *w, const demi_changes *c) {
         const size_t size = r->type == 'p' && !(r->how & DEMI_FREE) ? sizeof(void (*)(void))
             : r->size;
         if (!demi_may_change(r) || !demi_word_in(c->allowed, r->name, strlen(r->name))) continue;
-        memcpy((char *)&w->desc + r->offset, (const char *)&c->desc + r->offset, size);
-        memcpy((char *)&w->asked + r->offset, (const char *)&c->asked + r->offset, size);
+        memcpy((char *)&w->desc + r->offset, (const char *)&c->own->desc + r->offset, size);
+        memcpy((char *)&w->asked + r->offset, (const char *)&c->own->asked + r->offset, size);
     }
-    w->desc.integrator = c->desc.integrator;    /* of impulses, chosen when the world was created */
-    if (c->materials) memcpy(w->materials, c->materials, sizeof w->materials);
+    w->desc.integrator = c->own->desc.integrator;  /* of impulses: chosen at creation */
+    if (c->materials) memcpy(w->materials, c->own->materials, sizeof w->materials);
     if (c->pairs)
         memcpy(w->pairs, c->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof *w->pairs);
 }
@@ -37336,6 +37336,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     const char *call = "dem_checkpoint_read_changed";
     const size_t pairs = (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair);
     if (demi_null(w, call, allowed, "allowed")) return DEM_ERROR_ARGUMENT;
+    const dem_world own = *w;
     demi_checkpoint_head head;
     demi_changes c;
     demi_stream s;
@@ -37348,17 +37349,14 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     memset(&c, 0, sizeof c);
     memset(&s, 0, sizeof s);
     c.allowed = allowed;
-    c.desc = w->desc;
-    c.asked = w->asked;
-    if (demi_word_in(allowed, "materials", 9))
-        c.materials = (dem_material_desc *)demi_alloc(w, 1, sizeof w->materials);
-    if (demi_word_in(allowed, "pairs", 5)) c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
-    if (result == DEM_OK && ((demi_word_in(allowed, "materials", 9) && !c.materials) ||
-                             (demi_word_in(allowed, "pairs", 5) && !c.pairs)))
-        result = demi_no_memory(w, call);
-    if (result == DEM_OK) {
-        if (c.materials) memcpy(c.materials, w->materials, sizeof w->materials);
+    c.own = &own;
+    c.materials = demi_word_in(allowed, "materials", 9);
+    if (result == DEM_OK && demi_word_in(allowed, "pairs", 5)) {
+        c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
         if (c.pairs) memcpy(c.pairs, w->pairs, pairs);
+        else result = demi_no_memory(w, call);
+    }
+    if (result == DEM_OK) {
         s.from = bytes + sizeof head;
         s.left = (size_t)head.body_size;
         demi_changes_take(w, &c, &s);
@@ -37375,7 +37373,6 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
         }
         if (result == DEM_ERROR_MEMORY) demi_no_memory(w, call);
     }
-    demi_free(w, c.materials);
     demi_free(w, c.pairs);
     demi_free(w, bytes);
     return result;
