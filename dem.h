@@ -31643,7 +31643,7 @@ static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *us
 }
 DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
     if (demi_null(w, "dem_bonds_make", make ? w : 0, "make")) return -1;
-    demi_bonds b;
+    demi_bonds b = {make, user, gap, 0};
     double least = -1, most;
     int i;
     for (i = 0; i < w->bodies.count; i++)
@@ -31655,10 +31655,6 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
                            "range of your law for the smallest grains; set a larger law_range or "
                            "law_range_radii when the world is created", (double)gap,
                            DEMI_MAX(most, 0)), -1;
-    b.make = make;
-    b.user = user;
-    b.gap = gap;
-    b.count = 0;
     return dem_contacts_each(w, demi_bond_make, &b) < 0 ? -1 : b.count;
 }
 
@@ -33210,34 +33206,32 @@ static dem_result demi_read(dem_world *w, const char *call, const char *path, si
     return result;
 }
 
-DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
-                          dem_mesh *mesh, dem_mesh_health *health) {
-    if (demi_null_write(world, "dem_mesh_parse", world, "world")) return DEM_ERROR_ARGUMENT;
+/* Empties a mesh and its health. Returns 1, and fails, if there is no world or no mesh. */
+static int demi_mesh_begin(dem_world *w, const char *call, dem_mesh *mesh,
+                           dem_mesh_health *health) {
+    if (demi_null_write(w, call, w, "world")) return 1;
     if (mesh) memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
-    if (!mesh || !data)
-        return demi_refuse(world, "dem_mesh_parse", "%s is null; give its address",
-                           mesh ? "data" : "mesh");
+    return demi_null_write(w, call, mesh, "mesh");
+}
+DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
+                          dem_mesh *mesh, dem_mesh_health *health) {
+    if (demi_mesh_begin(world, "dem_mesh_parse", mesh, health) ||
+        demi_null_write(world, "dem_mesh_parse", data, "data")) return DEM_ERROR_ARGUMENT;
     return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health) {
-    if (demi_null_write(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
-    if (health) memset(health, 0, sizeof *health);
-    if (!mesh)
-        return demi_refuse(world, "dem_mesh_read", "mesh is null; give its address");
-    memset(mesh, 0, sizeof *mesh);
+    if (demi_mesh_begin(world, "dem_mesh_read", mesh, health)) return DEM_ERROR_ARGUMENT;
     return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
                                       dem_mesh *mesh, dem_mesh_health *health) {
     const char *call = "dem_mesh_part_read";
-    if (demi_null_write(world, call, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
-    memset(mesh, 0, sizeof *mesh);
-    if (health) memset(health, 0, sizeof *health);
-    if (demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
+    if (demi_mesh_begin(world, call, mesh, health) ||
+        demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
     return demi_read(world, call, path, 3, part, mesh, health);
 }
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
@@ -33338,13 +33332,11 @@ static dem_result demi_profile_take(dem_world *w, const char *call, const char *
 
 DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data,
                                      size_t size, dem_profile *profile) {
-    if (demi_null_write(world, "dem_profile_parse", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (profile) memset(profile, 0, sizeof *profile);
-    if (!profile || !data)
-        return demi_refuse(world, "dem_profile_parse", "%s is null; give its address",
-                           profile ? "data" : "profile");
+    if (demi_null_write(world, "dem_profile_parse", profile, "profile")) return DEM_ERROR_ARGUMENT;
+    memset(profile, 0, sizeof *profile);
+    if (demi_null_write(world, "dem_profile_parse", data, "data")) return DEM_ERROR_ARGUMENT;
     result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
                         0);
     if (result != DEM_OK) return result;
@@ -33352,11 +33344,9 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
 }
 
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
-    if (demi_null_write(world, "dem_profile_read", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (!profile)
-        return demi_refuse(world, "dem_profile_read", "profile is null; give its address");
+    if (demi_null_write(world, "dem_profile_read", profile, "profile")) return DEM_ERROR_ARGUMENT;
     memset(profile, 0, sizeof *profile);
     result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
@@ -34389,14 +34379,9 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
 }
 /* Reads grains from a legacy VTK file. t: at its beginning. */
 static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
-    demi_vtk_in v;
+    demi_vtk_in v = {t, l, g, 0, 0, -1};
     dem_result result = DEM_OK;
     int k;
-    memset(&v, 0, sizeof v);
-    v.t = t;
-    v.l = l;
-    v.g = g;
-    v.points = -1;
     for (k = 0; k < 2; k++) {                   /* skip version and title */
         const char *end = (const char *)memchr(t->next, '\n', (size_t)(t->end - t->next));
         t->next = end ? end + 1 : t->end;
@@ -34574,15 +34559,11 @@ static dem_result demi_vtp_head(demi_vtp_in *v, const char *tag, const char *end
 /* Reads grains from a VTP or VTU file with at most one piece that has points. */
 static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains *g) {
     const char *p = t->data, *end, *name;
-    demi_vtp_in v;
+    demi_vtp_in v = {t, l, g, 0, 0, 0, 0, 0, 0};
     dem_result result = DEM_OK;
     double number = -1, factor;
     size_t size = 0;
     int places = 0, arrays = 0, pieces = 0, heads = 0, width;
-    memset(&v, 0, sizeof v);
-    v.t = t;
-    v.l = l;
-    v.g = g;
     for (; result == DEM_OK && (p = (const char *)memchr(p, '<', (size_t)(t->end - p))) != 0;
          p = end) {
         end = (const char *)memchr(p, '>', (size_t)(t->end - p));

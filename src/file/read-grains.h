@@ -496,14 +496,9 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
 }
 /* Reads grains from a legacy VTK file. t: at its beginning. */
 static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
-    demi_vtk_in v;
+    demi_vtk_in v = {t, l, g, 0, 0, -1};
     dem_result result = DEM_OK;
     int k;
-    memset(&v, 0, sizeof v);
-    v.t = t;
-    v.l = l;
-    v.g = g;
-    v.points = -1;
     for (k = 0; k < 2; k++) {                   /* skip version and title */
         const char *end = (const char *)memchr(t->next, '\n', (size_t)(t->end - t->next));
         t->next = end ? end + 1 : t->end;
@@ -681,15 +676,11 @@ static dem_result demi_vtp_head(demi_vtp_in *v, const char *tag, const char *end
 /* Reads grains from a VTP or VTU file with at most one piece that has points. */
 static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains *g) {
     const char *p = t->data, *end, *name;
-    demi_vtp_in v;
+    demi_vtp_in v = {t, l, g, 0, 0, 0, 0, 0, 0};
     dem_result result = DEM_OK;
     double number = -1, factor;
     size_t size = 0;
     int places = 0, arrays = 0, pieces = 0, heads = 0, width;
-    memset(&v, 0, sizeof v);
-    v.t = t;
-    v.l = l;
-    v.g = g;
     for (; result == DEM_OK && (p = (const char *)memchr(p, '<', (size_t)(t->end - p))) != 0;
          p = end) {
         end = (const char *)memchr(p, '>', (size_t)(t->end - p));

@@ -649,34 +649,32 @@ static dem_result demi_read(dem_world *w, const char *call, const char *path, si
     return result;
 }
 
-DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
-                          dem_mesh *mesh, dem_mesh_health *health) {
-    if (demi_null_write(world, "dem_mesh_parse", world, "world")) return DEM_ERROR_ARGUMENT;
+/* Empties a mesh and its health. Returns 1, and fails, if there is no world or no mesh. */
+static int demi_mesh_begin(dem_world *w, const char *call, dem_mesh *mesh,
+                           dem_mesh_health *health) {
+    if (demi_null_write(w, call, w, "world")) return 1;
     if (mesh) memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
-    if (!mesh || !data)
-        return demi_refuse(world, "dem_mesh_parse", "%s is null; give its address",
-                           mesh ? "data" : "mesh");
+    return demi_null_write(w, call, mesh, "mesh");
+}
+DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
+                          dem_mesh *mesh, dem_mesh_health *health) {
+    if (demi_mesh_begin(world, "dem_mesh_parse", mesh, health) ||
+        demi_null_write(world, "dem_mesh_parse", data, "data")) return DEM_ERROR_ARGUMENT;
     return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health) {
-    if (demi_null_write(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
-    if (health) memset(health, 0, sizeof *health);
-    if (!mesh)
-        return demi_refuse(world, "dem_mesh_read", "mesh is null; give its address");
-    memset(mesh, 0, sizeof *mesh);
+    if (demi_mesh_begin(world, "dem_mesh_read", mesh, health)) return DEM_ERROR_ARGUMENT;
     return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
                                       dem_mesh *mesh, dem_mesh_health *health) {
     const char *call = "dem_mesh_part_read";
-    if (demi_null_write(world, call, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
-    memset(mesh, 0, sizeof *mesh);
-    if (health) memset(health, 0, sizeof *health);
-    if (demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
+    if (demi_mesh_begin(world, call, mesh, health) ||
+        demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
     return demi_read(world, call, path, 3, part, mesh, health);
 }
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
@@ -777,13 +775,11 @@ static dem_result demi_profile_take(dem_world *w, const char *call, const char *
 
 DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data,
                                      size_t size, dem_profile *profile) {
-    if (demi_null_write(world, "dem_profile_parse", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (profile) memset(profile, 0, sizeof *profile);
-    if (!profile || !data)
-        return demi_refuse(world, "dem_profile_parse", "%s is null; give its address",
-                           profile ? "data" : "profile");
+    if (demi_null_write(world, "dem_profile_parse", profile, "profile")) return DEM_ERROR_ARGUMENT;
+    memset(profile, 0, sizeof *profile);
+    if (demi_null_write(world, "dem_profile_parse", data, "data")) return DEM_ERROR_ARGUMENT;
     result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
                         0);
     if (result != DEM_OK) return result;
@@ -791,11 +787,9 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
 }
 
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
-    if (demi_null_write(world, "dem_profile_read", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (!profile)
-        return demi_refuse(world, "dem_profile_read", "profile is null; give its address");
+    if (demi_null_write(world, "dem_profile_read", profile, "profile")) return DEM_ERROR_ARGUMENT;
     memset(profile, 0, sizeof *profile);
     result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;

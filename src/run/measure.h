@@ -124,7 +124,7 @@ static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *us
 }
 DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
     if (demi_null(w, "dem_bonds_make", make ? w : 0, "make")) return -1;
-    demi_bonds b;
+    demi_bonds b = {make, user, gap, 0};
     double least = -1, most;
     int i;
     for (i = 0; i < w->bodies.count; i++)
@@ -136,10 +136,6 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
                            "range of your law for the smallest grains; set a larger law_range or "
                            "law_range_radii when the world is created", (double)gap,
                            DEMI_MAX(most, 0)), -1;
-    b.make = make;
-    b.user = user;
-    b.gap = gap;
-    b.count = 0;
     return dem_contacts_each(w, demi_bond_make, &b) < 0 ? -1 : b.count;
 }
 
