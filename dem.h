@@ -1069,10 +1069,9 @@ typedef struct dem_contact_force {
    They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer
    than the range. A law with a range decides itself when a bond or bridge begins and ends, and
    stores that in its history. If c->dt is 0, dem.h only asks for the force: leave `memory`
-   unchanged.
-   The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put
-   tangential springs there, and scalars after them.
-   A law must use nothing except its arguments and c->user. Several threads call it at once. */
+   unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged;
+   put tangential springs there, and scalars after them. A law must use nothing except its arguments
+   and c->user. Several threads call it at once. */
 typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *force);
 /* For laws that change user-defined numbers (law_who): bounds the time step. rates[0] receives how
    fast this contact alone makes a number of body a approach that of its partner, rates[1] the same
@@ -1308,10 +1307,9 @@ DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_cont
     demi_law_increment(c, memory, f, f->kt_step, 1);
 }
 /* Mindlin's friction, rescaled on unloading [THO13]: as dem_law_mindlin, but while kt falls the
-   force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept.
-   A change of the load of a sheared contact then creates no energy. Contact history as for
-   dem_law_mindlin.
-   Tests: tests/contact/test_impacts.c, tests/examples/test_exam.c. */
+   force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept. A
+   change of the load of a sheared contact then creates no energy. Contact history as for
+   dem_law_mindlin. Tests: tests/contact/test_impacts.c, tests/examples/test_exam.c. */
 DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
                                          dem_contact_force *f) {
     const dem_real kt = f->kt, before = memory[3];
@@ -1361,9 +1359,8 @@ DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
 /* Rolling resistance of an elastic-plastic spring and a dashpot (EPSD) [AI11]. The spring has the
    stiffness kr = 2.25 k (mu_r R*)^2, where k = dF/dd is the normal stiffness (hysteretic law: kn),
    and its moment is limited to mu_r R* F. Below the limit a dashpot acts with 0.3 times the
-   critical damping of I = 7/5 m* R*^2. Contact history: 3 reals, the vector of the spring's
-   moment [N m].
-   Tests: tests/law/test_laws.c (a sphere at rest on a slope, order, time step). */
+   critical damping of I = 7/5 m* R*^2. Contact history: 3 reals, the vector of the spring's moment
+   [N m]. Tests: tests/law/test_laws.c (a sphere at rest on a slope, order, time step). */
 DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
     const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;
@@ -1742,13 +1739,12 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
    destroy its world. */
 DEM_API void dem_world_destroy(dem_world *world);
 /* Returns the error message of the last call on this world that failed; "" if none failed. For a
-   null world the message says that it is null.
-   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
-   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
-   that run the scene return an error that quotes its message, because a scene without its floor
-   would run and return DEM_OK. They work again after a call of this function or after the failed
-   call has been repeated with success. A program that handles such an error and continues calls
-   this function first. */
+   null world the message says that it is null. After a failed call that builds the scene (one whose
+   name ends in _add, _fill or _pack, dem_pair_set, dem_material_set, dem_wall_motion_set),
+   dem_world_step, dem_world_run and others that run the scene return an error that quotes its
+   message, because a scene without its floor would run and return DEM_OK. They work again after a
+   call of this function or after the failed call has been repeated with success. A program that
+   handles such an error and continues calls this function first. */
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
@@ -2630,17 +2626,10 @@ DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
    What a program does with a scene: check it, run it, compare choices, measure it.
    --------------------------------------------------------------------------------------------- */
 
-/* Errors in this part. A function that returns a dem_result returns DEM_OK, or an error code after
-   it has stored an error message (dem_world_error_get). Instead of a pointer or an id a failing
-   function returns null or a zero id; instead of a count it returns -1. A failing call changes
-   nothing, unless the comment says so. Other functions that return a number or a struct return
-   zeros for a null world. These reasons are not repeated below:
-       DEM_ERROR_ARGUMENT  a null pointer, an id that names nothing, a value outside the range given
-                           here or not finite, or a call that user-defined functions may not make
-       DEM_ERROR_MEMORY    the allocator returned null
-       DEM_ERROR_FILE      a file cannot be opened, read or written
-       DEM_ERROR_FORMAT    the contents of a file do not follow its format
-   An argument or field may be null only where "or null" is written. */
+/* Errors in this part are those of >>scene and dem_result; the comments state only further reasons.
+   Instead of a count a failing function returns -1. Other functions that return a number or a
+   struct return zeros for a null world. An argument or field may be null only where "or null" is
+   written. */
 
 /* ---- before a run: time step, mistakes ---- */
 
@@ -2735,11 +2724,10 @@ DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_
    and no body is faster than 10 times that. Spins do not count, because nothing brakes a sphere
    that spins on a point. Checks are at most sqrt(R/g) apart, the time of a fall by half the mean
    radius R (without gravity: the time in which `speed` covers R/2). All feeds, also those that
-   begin later, must have inserted all their grains first.
-   speed: m/s, >= 0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null.
-   Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for a feed with neither `limited` nor
-   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, or the feed that is
-   not done, and the state is intact. */
+   begin later, must have inserted all their grains first. speed: m/s, >= 0; 0: 0.01 sqrt(2 g R),
+   which needs gravity. progress: or null. Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for
+   a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the message
+   gives the speeds, or the feed that is not done, and the state is intact. */
 DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user);
 /* Prints the progress of a run to the FILE that is passed as user, and returns 0: a progress
@@ -3159,12 +3147,11 @@ typedef struct dem_field_data {
     const double *mass;       /* cells: sum of masses, kg */
     const double *momentum;   /* cells x 3: sum of momenta, kg m/s; velocity = momentum/mass */
     const double *grains;     /* cells: sum of the number of grains */
-    /* null unless desc.stress is 1.
-       flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over the volume of the cell
-       stress: cells x 6, Pa, pressure positive: sum over contacts of force x branch over the volume
-       of the cell. A contact of two grains acts along the line between their centres, and each
-       grain accounts for its half; one with a wall acts from the centre to the contact.
-       contacts: cells: sum of the number of contacts of the grains */
+    /* null unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v
+       v over the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of
+       force x branch over the volume of the cell. A contact of two grains acts along the line
+       between their centres, and each grain accounts for its half; one with a wall acts from the
+       centre to the contact. contacts: cells: sum of the number of contacts of the grains */
     const double *flux, *stress, *contacts;
 } dem_field_data;
 /* Means of one cell over the samples; 0 where no grain was. */
@@ -3471,8 +3458,7 @@ typedef struct dem_replay_desc {
     dem_real resolution;
     /* s, >= 0: a run writes frames automatically, the first when it begins and then at the steps
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
-       run: dem_replay_close returns the error. 0 means frames only from
-       dem_replay_frame_write. */
+       run: dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write. */
     double interval;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
@@ -3568,13 +3554,12 @@ static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
    older file of that name; a file with other columns is an error of the run. If a file cannot be
    written, the run stops with the state intact, and the next run tries that output again. Slabs
-   have no outputs.
-   After a restart: a checkpoint stores what each output has written. A world that reads it
-   continues from there, with nothing missing and nothing twice, and removes later lines of a CSV
-   file before it appends the next. Outputs are matched by kind and path, so add them before reading
-   the checkpoint. Other outputs may be added, and times may differ.
-   A function (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that
-   it writes counts the present call as done. */
+   have no outputs. After a restart: a checkpoint stores what each output has written. A world that
+   reads it continues from there, with nothing missing and nothing twice, and removes later lines of
+   a CSV file before it appends the next. Outputs are matched by kind and path, so add them before
+   reading the checkpoint. Other outputs may be added, and times may differ. A function
+   (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes
+   counts the present call as done. */
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
 /* Adds an output by kind, path and interval (s) alone:
    dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */

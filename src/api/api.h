@@ -466,10 +466,9 @@ typedef struct dem_contact_force {
    They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer
    than the range. A law with a range decides itself when a bond or bridge begins and ends, and
    stores that in its history. If c->dt is 0, dem.h only asks for the force: leave `memory`
-   unchanged.
-   The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put
-   tangential springs there, and scalars after them.
-   A law must use nothing except its arguments and c->user. Several threads call it at once. */
+   unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged;
+   put tangential springs there, and scalars after them. A law must use nothing except its arguments
+   and c->user. Several threads call it at once. */
 typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *force);
 /* For laws that change user-defined numbers (law_who): bounds the time step. rates[0] receives how
    fast this contact alone makes a number of body a approach that of its partner, rates[1] the same
@@ -705,10 +704,9 @@ DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_cont
     demi_law_increment(c, memory, f, f->kt_step, 1);
 }
 /* Mindlin's friction, rescaled on unloading [THO13]: as dem_law_mindlin, but while kt falls the
-   force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept.
-   A change of the load of a sheared contact then creates no energy. Contact history as for
-   dem_law_mindlin.
-   Tests: tests/contact/test_impacts.c, tests/examples/test_exam.c. */
+   force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept. A
+   change of the load of a sheared contact then creates no energy. Contact history as for
+   dem_law_mindlin. Tests: tests/contact/test_impacts.c, tests/examples/test_exam.c. */
 DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
                                          dem_contact_force *f) {
     const dem_real kt = f->kt, before = memory[3];
@@ -758,9 +756,8 @@ DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
 /* Rolling resistance of an elastic-plastic spring and a dashpot (EPSD) [AI11]. The spring has the
    stiffness kr = 2.25 k (mu_r R*)^2, where k = dF/dd is the normal stiffness (hysteretic law: kn),
    and its moment is limited to mu_r R* F. Below the limit a dashpot acts with 0.3 times the
-   critical damping of I = 7/5 m* R*^2. Contact history: 3 reals, the vector of the spring's
-   moment [N m].
-   Tests: tests/law/test_laws.c (a sphere at rest on a slope, order, time step). */
+   critical damping of I = 7/5 m* R*^2. Contact history: 3 reals, the vector of the spring's moment
+   [N m]. Tests: tests/law/test_laws.c (a sphere at rest on a slope, order, time step). */
 DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
     const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;

@@ -213,8 +213,7 @@ typedef struct dem_replay_desc {
     dem_real resolution;
     /* s, >= 0: a run writes frames automatically, the first when it begins and then at the steps
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
-       run: dem_replay_close returns the error. 0 means frames only from
-       dem_replay_frame_write. */
+       run: dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write. */
     double interval;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
@@ -310,13 +309,12 @@ static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
    older file of that name; a file with other columns is an error of the run. If a file cannot be
    written, the run stops with the state intact, and the next run tries that output again. Slabs
-   have no outputs.
-   After a restart: a checkpoint stores what each output has written. A world that reads it
-   continues from there, with nothing missing and nothing twice, and removes later lines of a CSV
-   file before it appends the next. Outputs are matched by kind and path, so add them before reading
-   the checkpoint. Other outputs may be added, and times may differ.
-   A function (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that
-   it writes counts the present call as done. */
+   have no outputs. After a restart: a checkpoint stores what each output has written. A world that
+   reads it continues from there, with nothing missing and nothing twice, and removes later lines of
+   a CSV file before it appends the next. Outputs are matched by kind and path, so add them before
+   reading the checkpoint. Other outputs may be added, and times may differ. A function
+   (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes
+   counts the present call as done. */
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
 /* Adds an output by kind, path and interval (s) alone:
    dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */
