@@ -5173,8 +5173,7 @@ DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
-/* Returns word k of body_reals or law_memory_names and its length; null if there are fewer words.
-   */
+/* Returns word k of a list of names, such as body_reals, and its length; null if there is none. */
 static const char *demi_name(const char *names, int k, int *length) {
     const char *at = names ? names : "";
     for (;; k--) {
@@ -5206,8 +5205,7 @@ static int demi_names_copy(const char *names, char *out) {
         sprintf(out + strlen(out), "%s%.*s", k ? " " : "", n, name);
     return k;
 }
-/* Points the descs at the names that the world itself stores; needed again after a world is copied.
-   */
+/* Points the descs at the names that the world itself stores; needed after a world is copied. */
 static void demi_names_point(dem_world *w) {
     w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
     w->desc.groups = w->asked.groups = w->group_names[0] ? w->group_names : 0;
@@ -5544,6 +5542,15 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
     if (old) memcpy(fresh, old, room*item);
     memcpy(array, &fresh, sizeof fresh);
     demi_free(w, old);
+    return 1;
+}
+/* Grows an array likewise and copies the first `count` items of another one to it. */
+#define DEMI_COPY(w, array, from, count) demi_copy(w, &(array), from, sizeof *(array), count)
+static int demi_copy(dem_world *w, void *array, const void *from, size_t item, int count) {
+    void *to;
+    if (!demi_grow(w, DEMI_RUN, array, item, (size_t)count)) return 0;
+    memcpy(&to, array, sizeof to);
+    if (count) memcpy(to, from, (size_t)count*item);
     return 1;
 }
 
@@ -26084,12 +26091,6 @@ typedef struct demi_crowd {
 /* A node and its box during the descent. */
 typedef struct demi_nook { int32_t node; double lo[3], size[3]; } demi_nook;
 
-static demi_sphere *demi_crowd_spheres(const dem_world *w) {
-    return w->crowd;
-}
-static demi_node *demi_crowd_nodes(const dem_world *w) {
-    return w->crowd_nodes;
-}
 static int demi_longest(const double *size) {
     const int k = size[1] > size[0];
     return size[2] > size[k] ? 2 : k;
@@ -26125,12 +26126,12 @@ static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
 }
 /* Splits a leaf into two halves. Returns 0 if memory runs out; the leaf is then unchanged. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
-    demi_sphere *all = demi_crowd_spheres(w);
+    demi_sphere *all = w->crowd;
     demi_node *nodes;
     int32_t i, next;
     int k;
     if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
-    nodes = demi_crowd_nodes(w);
+    nodes = w->crowd_nodes;
     nodes[at->node].child = c->nodes;
     for (k = 0; k < 2; k++) {
         demi_node *half = nodes + c->nodes++;
@@ -26153,21 +26154,21 @@ static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radi
     demi_node *node;
     int depth = 0;
     if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
-    s = demi_crowd_spheres(w) + c->count;
+    s = w->crowd + c->count;
     s->at = demi_place_of(&c->p, x);
     s->radius = radius;
     s->body = body;
     for (;;) {
-        node = demi_crowd_nodes(w) + at.node;
+        node = w->crowd_nodes + at.node;
         node->largest = DEMI_MAX(node->largest, radius);
         if (!node->child && node->count >= DEMI_CROWD_LEAF && depth < DEMI_CROWD_DEPTH &&
             !demi_leaf_split(w, c, &at)) return 0;
-        node = demi_crowd_nodes(w) + at.node;
+        node = w->crowd_nodes + at.node;
         if (!node->child) break;
         at = demi_nook_half(&at, node->child, demi_nook_upper(&at, s->at));
         depth++;
     }
-    demi_leaf_put(node, demi_crowd_spheres(w), c->count++);
+    demi_leaf_put(node, w->crowd, c->count++);
     return 1;
 }
 /* Lower bound on the squared distance, m2, of position x from a box. */
@@ -26192,8 +26193,8 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
    first that does not fit and returns room + 1. The centre must be in the root's box. */
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
-    const demi_sphere *all = demi_crowd_spheres(w);
-    const demi_node *nodes = demi_crowd_nodes(w);
+    const demi_sphere *all = w->crowd;
+    const demi_node *nodes = w->crowd_nodes;
     const dem_vec3 at = demi_place_of(&c->p, centre);
     demi_nook stack[DEMI_CROWD_DEPTH + 2];
     double x[3];
@@ -26310,7 +26311,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     c->count = 0;
     c->nodes = 1;
     if (!DEMI_GROW(w, w->crowd_nodes, 1)) return 0;
-    root = demi_crowd_nodes(w);
+    root = w->crowd_nodes;
     root->child = root->count = 0;
     root->first = -1;
     root->largest = 0;
@@ -26395,8 +26396,7 @@ static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, d
 
 /* --- fills --- */
 
-/* Draws a uniformly distributed orientation (Shoemake 1992); in a planar world a rotation about z.
-   */
+/* Draws a uniform random orientation (Shoemake 1992); in a planar world a rotation about z. */
 static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
     const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
     const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
@@ -26409,7 +26409,7 @@ static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
    runs out; then it adds none. */
 static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material,
                              int shape) {
-    const demi_sphere *s = demi_crowd_spheres(w);
+    const demi_sphere *s = w->crowd;
     const dem_real *q = w->crowd_turned;
     int i;
     if (!demi_list_drop(w) ||
@@ -26563,8 +26563,7 @@ static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
 /* Lattice of a packing. */
 typedef struct demi_lattice {
     dem_vec3 lo;                   /* m, first site */
-    double size[3], r;             /* m, largest distance of the last site from it; half the pitch
-                                      */
+    double size[3], r;             /* m: largest distance of the last site from it; half pitch */
     dem_real radius;
     const demi_region *room;
     int count;                     /* limit of spheres; 0: as many as fit */
@@ -26592,7 +26591,7 @@ static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
                 if (!demi_region_has(g->room, x, g->radius)) continue;
                 if (!demi_room_free(w, c, x, g->radius*DEM_R(0.999999))) continue;
                 if (!DEMI_GROW(w, w->crowd, (size_t)c->count + (size_t)done + 1)) return -1;
-                to = demi_crowd_spheres(w) + c->count + done++;
+                to = w->crowd + c->count + done++;
                 to->at = x;
                 to->radius = g->radius;
                 if (g->count && done == g->count) return done;
@@ -27271,11 +27270,8 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
 /* Inserts all grains that are due before a step, in a world without slabs. */
 static dem_result demi_world_feed(dem_world *w) {
     demi_world_feeder to;
-    demi_feeder feeder;
+    const demi_feeder feeder = {demi_world_look, demi_world_put, &to};
     to.w = w;
-    feeder.look = demi_world_look;
-    feeder.put = demi_world_put;
-    feeder.who = &to;
     return demi_feeds_run(w, &feeder);
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
@@ -36409,24 +36405,19 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     int i;
     t->domains = (demi_domain *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
     t->cross_incoming_start = (int *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
-    t->walls = (demi_wall *)demi_hold(t, DEMI_RUN, (size_t)w->wall_count, sizeof(demi_wall));
     t->fields = (demi_field *)demi_hold(t, DEMI_RUN, (size_t)w->field_count, sizeof(demi_field));
-    if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
-        (w->field_count && !t->fields) ||
-        !DEMI_GROW(t, t->surfaces, (size_t)w->surface_count) ||
-        !DEMI_GROW(t, t->feeds, (size_t)w->feed_count) ||
-        !DEMI_GROW(t, t->outlets, (size_t)w->outlet_count)) return 0;
+    if (!t->domains || !t->cross_incoming_start || (w->field_count && !t->fields) ||
+        !DEMI_COPY(t, t->walls, w->walls, w->wall_count) ||
+        !DEMI_COPY(t, t->surfaces, w->surfaces, w->surface_count) ||
+        !DEMI_COPY(t, t->feeds, w->feeds, w->feed_count) ||
+        !DEMI_COPY(t, t->outlets, w->outlets, w->outlet_count)) return 0;
     t->wall_count = w->wall_count;
+    t->surface_count = w->surface_count;
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
     t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
     t->bodies.aged = w->bodies.aged;
     t->bodies.averaged = w->bodies.averaged;
-    if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
-    for (i = 0; i < w->surface_count; i++) t->surfaces[i] = w->surfaces[i];
-    t->surface_count = w->surface_count;
-    for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
-    for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &t->fields[i];
         *f = w->fields[i];
@@ -40197,6 +40188,11 @@ static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
 }
+/* Runs a phase, and returns a failure of any slab. */
+static dem_result demi_slabs_try(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
+    demi_slabs_phase(s, phase);
+    return demi_slabs_agree(&s->head, 0, 0);
+}
 /* Runs the present task on a slab, unless it has failed since the last agreement. */
 static void demi_slab_run(dem_slabs *s, demi_slab *b) {
     if (b->result == DEM_OK) b->result = s->task(b->world);
@@ -40683,8 +40679,7 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         if (result != DEM_OK || !(leavers > 0)) return result;
         result = demi_slabs_exchange(s, DEMI_UP | DEMI_DOWN, 0);
         if (result != DEM_OK) return result;
-        demi_slabs_phase(s, demi_slab_room);
-        result = demi_slabs_agree(&s->head, 0, 0);
+        result = demi_slabs_try(s, demi_slab_room);
         if (result != DEM_OK) return result;
         demi_slabs_phase(s, demi_slab_migrate);
     }
@@ -40696,26 +40691,16 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     const double skin_before = h->margin.skin_auto;
     dem_result result;
     h->stage.list_valid = 0;
-    demi_slabs_phase(s, demi_slab_drop);
-    result = demi_slabs_agree(&s->head, 0, 0);
+    result = demi_slabs_try(s, demi_slab_drop);
     if (s->count > 1) {
         if (result == DEM_OK) result = demi_slabs_skin(s);
         if (result == DEM_OK) result = demi_slabs_balance(s);
         if (result == DEM_OK) { demi_slabs_space(s); result = demi_slabs_migrate(s); }
-        if (result == DEM_OK) {
-            demi_slabs_phase(s, demi_slab_invite);
-            result = demi_slabs_agree(&s->head, 0, 0);
-        }
+        if (result == DEM_OK) result = demi_slabs_try(s, demi_slab_invite);
         if (result == DEM_OK) result = demi_slabs_exchange(s, DEMI_UP, 0);
     }
-    if (result == DEM_OK) {
-        demi_slabs_phase(s, demi_slab_list);
-        result = demi_slabs_agree(&s->head, 0, 0);
-    }
-    if (result == DEM_OK) {
-        demi_slabs_phase(s, demi_slab_settle);
-        result = demi_slabs_agree(&s->head, 0, 0);
-    }
+    if (result == DEM_OK) result = demi_slabs_try(s, demi_slab_list);
+    if (result == DEM_OK) result = demi_slabs_try(s, demi_slab_settle);
     if (result != DEM_OK) { h->margin.skin_auto = skin_before; return result; }
     if (s->count == 1) {
         h->margin.skin = s->slabs[0].world->margin.skin;
@@ -40858,10 +40843,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
 }
 /* Inserts all grains that are due before a step. */
 static dem_result demi_slabs_feed(dem_world *h) {
-    demi_feeder feeder;
-    feeder.look = demi_slabs_look;
-    feeder.put = demi_slabs_put;
-    feeder.who = h;
+    const demi_feeder feeder = {demi_slabs_look, demi_slabs_put, h};
     return demi_feeds_run(h, &feeder);
 }
 
@@ -40925,8 +40907,7 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
         to->wall_count = i + 1;
     }
     if (!first) return demi_surfaces_make(to);
-    if (!DEMI_GROW(to, to->surfaces, (size_t)first->surface_count)) return 0;
-    for (i = 0; i < first->surface_count; i++) to->surfaces[i] = first->surfaces[i];
+    if (!DEMI_COPY(to, to->surfaces, first->surfaces, first->surface_count)) return 0;
     to->surface_count = first->surface_count;
     to->sheeted = first->sheeted;
     to->effects.scales = first->effects.scales;
@@ -40963,19 +40944,10 @@ static void demi_slab_sums_clear(dem_world *w, int booked) {
 /* Copies the outlets. Every slab has all of them, and applies them to its own grains. Returns 0 if
    memory ran out. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
-    if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
-    if (from->outlet_count)
-        memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
+    if (!DEMI_COPY(to, to->outlets, from->outlets, from->outlet_count)) return 0;
     to->outlet_count = from->outlet_count;
     return (!from->bodies.zoned || demi_array_begin(to, DEMI_ZONED, &to->bodies.zoned)) &&
         (!from->bodies.aged || demi_ages_begin(to));
-}
-/* Copies the feeds to the head; slabs refer to them there. Returns 0 if memory ran out. */
-static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
-    if (!DEMI_GROW(h, h->feeds, (size_t)w->feed_count)) return 0;
-    if (w->feed_count) memcpy(h->feeds, w->feeds, (size_t)w->feed_count*sizeof *h->feeds);
-    h->feed_count = w->feed_count;
-    return 1;
 }
 /* Copies the fields. Each slab sums the contributions of its own grains. The slab with `inherit`
    starts with the sums of the world, the others start at 0. Returns 0 if memory ran out. */
@@ -40991,10 +40963,10 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     return 1;
 }
 /* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
-   first slab of this process, null for that slab itself. Returns null, or an incomplete world
-   (demi_slab_ready), if memory ran out. */
+   first slab of this process, null for that slab itself. If memory ran out, sets *ok to 0 and
+   returns null or an incomplete world. */
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
-                                  const dem_world *first, dem_allocator *allocator) {
+                                  const dem_world *first, dem_allocator *allocator, int *ok) {
     dem_world_desc desc = from->asked;
     const size_t slots = (size_t)from->bodies.slot_count;
     dem_world *w;
@@ -41006,6 +40978,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         desc.allocator.user = allocator;
     }
     w = dem_world_create(&desc);
+    *ok = 0;
     if (!w) return 0;
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
@@ -41034,14 +41007,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     w->events.n.on = from->events.n.on;
+    *ok = 1;
     return w;
-}
-/* True if demi_slab_world has completed this world. */
-static int demi_slab_ready(const dem_world *w, const dem_world *from) {
-    return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
-           w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
-           w->wall_count == from->wall_count && w->field_count == from->field_count &&
-           w->outlet_count == from->outlet_count;
 }
 /* Copies the grains between the borders of one slab from the world, with their contact histories.
    marks: work array, one per slot. Returns 0 if memory ran out. */
@@ -41148,6 +41115,9 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
 /* Fills the head from a world, allocates the arrays of `s` and sets the functions of the team.
    Returns 0 if memory ran out. */
 static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
+    static const demi_team team = {0, 0, 0, demi_slabs_all, demi_slabs_agree, demi_slab_rest,
+                                   demi_slabs_rebuild, demi_slabs_lend, demi_slabs_give,
+                                   demi_slabs_grades, demi_slabs_feed, demi_slabs_sum};
     dem_world *h = &s->head;
     const size_t n = (size_t)s->count;
     h->asked = w->asked;
@@ -41166,21 +41136,14 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
                                     sizeof(double));
     s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
     s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
+    h->team = &s->team;
+    s->team = team;
+    s->team.head = h;
     s->team.members = (dem_world **)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(dem_world *));
     if (!h->pairs || !s->values || !s->borders || !s->slabs || !s->team.members) return 0;
-    h->team = &s->team;
-    s->team.head = h;
-    s->team.all = demi_slabs_all;
-    s->team.agree = demi_slabs_agree;
-    s->team.rest = demi_slab_rest;
-    s->team.rebuild = demi_slabs_rebuild;
-    s->team.lend = demi_slabs_lend;
-    s->team.give = demi_slabs_give;
-    s->team.grades = demi_slabs_grades;
-    s->team.feed = demi_slabs_feed;
-    s->team.sum = demi_slabs_sum;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
-    return demi_slabs_feeds_copy(h, w) && demi_events_copy(h, w);
+    h->feed_count = w->feed_count;              /* slabs refer to the feeds of the head */
+    return DEMI_COPY(h, h->feeds, w->feeds, w->feed_count) && demi_events_copy(h, w);
 }
 /* Sets the first borders: about the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
@@ -41242,8 +41205,8 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
         demi_slab *b = &s->slabs[k];
         b->index = s->first + k;
         b->world = demi_slab_world(s, w, b->index, k ? s->slabs[0].world : 0,
-                                   &s->head.desc.allocator);
-        ok = demi_slab_ready(b->world, w) && demi_slab_fill(s, b, w, marks);
+                                   &s->head.desc.allocator, &ok);
+        ok = ok && demi_slab_fill(s, b, w, marks);
         s->team.members[k] = b->world;
         if (b->world) { b->world->team = &s->team; b->world->member = s->team.count++; }
     }
@@ -41313,17 +41276,13 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     for (k = 0; k < s->local; k++)
         if (s->slabs[k].result == DEM_OK && !demi_slab_report(s, &s->slabs[k]))
             s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_collect");
-    top->out[1].size = 0;
-    if (!demi_message_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
-        !demi_message_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
-        top->result = demi_no_memory(top->world, "dem_slabs_collect");
-    if (result == DEM_OK) result = demi_slabs_agree(&s->head, 0, 0);
-    for (round = 1; round < (int)processes && result == DEM_OK; round++) {
-        result = demi_slabs_exchange(s, DEMI_UP, 0);
+    for (round = 0; round < (int)processes && result == DEM_OK; round++) {
+        const demi_message *come = round ? &low->in[0] : &s->mine;
+        if (round) result = demi_slabs_exchange(s, DEMI_UP, 0);
         if (result != DEM_OK) break;
         top->out[1].size = 0;
-        if (!demi_message_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
-            !demi_message_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
+        if (!demi_message_put(&s->head, &s->all, come->bytes, come->size) ||
+            !demi_message_put(top->world, &top->out[1], come->bytes, come->size))
             top->result = demi_no_memory(top->world, "dem_slabs_collect");
         result = demi_slabs_agree(&s->head, 0, 0);
     }

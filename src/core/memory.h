@@ -43,8 +43,7 @@ DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
-/* Returns word k of body_reals or law_memory_names and its length; null if there are fewer words.
-   */
+/* Returns word k of a list of names, such as body_reals, and its length; null if there is none. */
 static const char *demi_name(const char *names, int k, int *length) {
     const char *at = names ? names : "";
     for (;; k--) {
@@ -76,8 +75,7 @@ static int demi_names_copy(const char *names, char *out) {
         sprintf(out + strlen(out), "%s%.*s", k ? " " : "", n, name);
     return k;
 }
-/* Points the descs at the names that the world itself stores; needed again after a world is copied.
-   */
+/* Points the descs at the names that the world itself stores; needed after a world is copied. */
 static void demi_names_point(dem_world *w) {
     w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
     w->desc.groups = w->asked.groups = w->group_names[0] ? w->group_names : 0;
@@ -414,5 +412,14 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
     if (old) memcpy(fresh, old, room*item);
     memcpy(array, &fresh, sizeof fresh);
     demi_free(w, old);
+    return 1;
+}
+/* Grows an array likewise and copies the first `count` items of another one to it. */
+#define DEMI_COPY(w, array, from, count) demi_copy(w, &(array), from, sizeof *(array), count)
+static int demi_copy(dem_world *w, void *array, const void *from, size_t item, int count) {
+    void *to;
+    if (!demi_grow(w, DEMI_RUN, array, item, (size_t)count)) return 0;
+    memcpy(&to, array, sizeof to);
+    if (count) memcpy(to, from, (size_t)count*item);
     return 1;
 }

@@ -15,24 +15,19 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     int i;
     t->domains = (demi_domain *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
     t->cross_incoming_start = (int *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
-    t->walls = (demi_wall *)demi_hold(t, DEMI_RUN, (size_t)w->wall_count, sizeof(demi_wall));
     t->fields = (demi_field *)demi_hold(t, DEMI_RUN, (size_t)w->field_count, sizeof(demi_field));
-    if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
-        (w->field_count && !t->fields) ||
-        !DEMI_GROW(t, t->surfaces, (size_t)w->surface_count) ||
-        !DEMI_GROW(t, t->feeds, (size_t)w->feed_count) ||
-        !DEMI_GROW(t, t->outlets, (size_t)w->outlet_count)) return 0;
+    if (!t->domains || !t->cross_incoming_start || (w->field_count && !t->fields) ||
+        !DEMI_COPY(t, t->walls, w->walls, w->wall_count) ||
+        !DEMI_COPY(t, t->surfaces, w->surfaces, w->surface_count) ||
+        !DEMI_COPY(t, t->feeds, w->feeds, w->feed_count) ||
+        !DEMI_COPY(t, t->outlets, w->outlets, w->outlet_count)) return 0;
     t->wall_count = w->wall_count;
+    t->surface_count = w->surface_count;
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
     t->bodies.zoned = w->bodies.zoned;          /* allocated with the other arrays of bodies */
     t->bodies.aged = w->bodies.aged;
     t->bodies.averaged = w->bodies.averaged;
-    if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
-    for (i = 0; i < w->surface_count; i++) t->surfaces[i] = w->surfaces[i];
-    t->surface_count = w->surface_count;
-    for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
-    for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &t->fields[i];
         *f = w->fields[i];

@@ -365,11 +365,8 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
 /* Inserts all grains that are due before a step, in a world without slabs. */
 static dem_result demi_world_feed(dem_world *w) {
     demi_world_feeder to;
-    demi_feeder feeder;
+    const demi_feeder feeder = {demi_world_look, demi_world_put, &to};
     to.w = w;
-    feeder.look = demi_world_look;
-    feeder.put = demi_world_put;
-    feeder.who = &to;
     return demi_feeds_run(w, &feeder);
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {

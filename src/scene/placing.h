@@ -35,12 +35,6 @@ typedef struct demi_crowd {
 /* A node and its box during the descent. */
 typedef struct demi_nook { int32_t node; double lo[3], size[3]; } demi_nook;
 
-static demi_sphere *demi_crowd_spheres(const dem_world *w) {
-    return w->crowd;
-}
-static demi_node *demi_crowd_nodes(const dem_world *w) {
-    return w->crowd_nodes;
-}
 static int demi_longest(const double *size) {
     const int k = size[1] > size[0];
     return size[2] > size[k] ? 2 : k;
@@ -76,12 +70,12 @@ static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
 }
 /* Splits a leaf into two halves. Returns 0 if memory runs out; the leaf is then unchanged. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
-    demi_sphere *all = demi_crowd_spheres(w);
+    demi_sphere *all = w->crowd;
     demi_node *nodes;
     int32_t i, next;
     int k;
     if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
-    nodes = demi_crowd_nodes(w);
+    nodes = w->crowd_nodes;
     nodes[at->node].child = c->nodes;
     for (k = 0; k < 2; k++) {
         demi_node *half = nodes + c->nodes++;
@@ -104,21 +98,21 @@ static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radi
     demi_node *node;
     int depth = 0;
     if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
-    s = demi_crowd_spheres(w) + c->count;
+    s = w->crowd + c->count;
     s->at = demi_place_of(&c->p, x);
     s->radius = radius;
     s->body = body;
     for (;;) {
-        node = demi_crowd_nodes(w) + at.node;
+        node = w->crowd_nodes + at.node;
         node->largest = DEMI_MAX(node->largest, radius);
         if (!node->child && node->count >= DEMI_CROWD_LEAF && depth < DEMI_CROWD_DEPTH &&
             !demi_leaf_split(w, c, &at)) return 0;
-        node = demi_crowd_nodes(w) + at.node;
+        node = w->crowd_nodes + at.node;
         if (!node->child) break;
         at = demi_nook_half(&at, node->child, demi_nook_upper(&at, s->at));
         depth++;
     }
-    demi_leaf_put(node, demi_crowd_spheres(w), c->count++);
+    demi_leaf_put(node, w->crowd, c->count++);
     return 1;
 }
 /* Lower bound on the squared distance, m2, of position x from a box. */
@@ -143,8 +137,8 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
    first that does not fit and returns room + 1. The centre must be in the root's box. */
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
-    const demi_sphere *all = demi_crowd_spheres(w);
-    const demi_node *nodes = demi_crowd_nodes(w);
+    const demi_sphere *all = w->crowd;
+    const demi_node *nodes = w->crowd_nodes;
     const dem_vec3 at = demi_place_of(&c->p, centre);
     demi_nook stack[DEMI_CROWD_DEPTH + 2];
     double x[3];
@@ -261,7 +255,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     c->count = 0;
     c->nodes = 1;
     if (!DEMI_GROW(w, w->crowd_nodes, 1)) return 0;
-    root = demi_crowd_nodes(w);
+    root = w->crowd_nodes;
     root->child = root->count = 0;
     root->first = -1;
     root->largest = 0;
@@ -346,8 +340,7 @@ static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, d
 
 /* --- fills --- */
 
-/* Draws a uniformly distributed orientation (Shoemake 1992); in a planar world a rotation about z.
-   */
+/* Draws a uniform random orientation (Shoemake 1992); in a planar world a rotation about z. */
 static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
     const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
     const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
@@ -360,7 +353,7 @@ static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
    runs out; then it adds none. */
 static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material,
                              int shape) {
-    const demi_sphere *s = demi_crowd_spheres(w);
+    const demi_sphere *s = w->crowd;
     const dem_real *q = w->crowd_turned;
     int i;
     if (!demi_list_drop(w) ||
@@ -514,8 +507,7 @@ static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
 /* Lattice of a packing. */
 typedef struct demi_lattice {
     dem_vec3 lo;                   /* m, first site */
-    double size[3], r;             /* m, largest distance of the last site from it; half the pitch
-                                      */
+    double size[3], r;             /* m: largest distance of the last site from it; half pitch */
     dem_real radius;
     const demi_region *room;
     int count;                     /* limit of spheres; 0: as many as fit */
@@ -543,7 +535,7 @@ static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
                 if (!demi_region_has(g->room, x, g->radius)) continue;
                 if (!demi_room_free(w, c, x, g->radius*DEM_R(0.999999))) continue;
                 if (!DEMI_GROW(w, w->crowd, (size_t)c->count + (size_t)done + 1)) return -1;
-                to = demi_crowd_spheres(w) + c->count + done++;
+                to = w->crowd + c->count + done++;
                 to->at = x;
                 to->radius = g->radius;
                 if (g->count && done == g->count) return done;

@@ -42,8 +42,7 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
         to->wall_count = i + 1;
     }
     if (!first) return demi_surfaces_make(to);
-    if (!DEMI_GROW(to, to->surfaces, (size_t)first->surface_count)) return 0;
-    for (i = 0; i < first->surface_count; i++) to->surfaces[i] = first->surfaces[i];
+    if (!DEMI_COPY(to, to->surfaces, first->surfaces, first->surface_count)) return 0;
     to->surface_count = first->surface_count;
     to->sheeted = first->sheeted;
     to->effects.scales = first->effects.scales;
@@ -80,19 +79,10 @@ static void demi_slab_sums_clear(dem_world *w, int booked) {
 /* Copies the outlets. Every slab has all of them, and applies them to its own grains. Returns 0 if
    memory ran out. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
-    if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
-    if (from->outlet_count)
-        memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
+    if (!DEMI_COPY(to, to->outlets, from->outlets, from->outlet_count)) return 0;
     to->outlet_count = from->outlet_count;
     return (!from->bodies.zoned || demi_array_begin(to, DEMI_ZONED, &to->bodies.zoned)) &&
         (!from->bodies.aged || demi_ages_begin(to));
-}
-/* Copies the feeds to the head; slabs refer to them there. Returns 0 if memory ran out. */
-static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
-    if (!DEMI_GROW(h, h->feeds, (size_t)w->feed_count)) return 0;
-    if (w->feed_count) memcpy(h->feeds, w->feeds, (size_t)w->feed_count*sizeof *h->feeds);
-    h->feed_count = w->feed_count;
-    return 1;
 }
 /* Copies the fields. Each slab sums the contributions of its own grains. The slab with `inherit`
    starts with the sums of the world, the others start at 0. Returns 0 if memory ran out. */
@@ -108,10 +98,10 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     return 1;
 }
 /* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
-   first slab of this process, null for that slab itself. Returns null, or an incomplete world
-   (demi_slab_ready), if memory ran out. */
+   first slab of this process, null for that slab itself. If memory ran out, sets *ok to 0 and
+   returns null or an incomplete world. */
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
-                                  const dem_world *first, dem_allocator *allocator) {
+                                  const dem_world *first, dem_allocator *allocator, int *ok) {
     dem_world_desc desc = from->asked;
     const size_t slots = (size_t)from->bodies.slot_count;
     dem_world *w;
@@ -123,6 +113,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         desc.allocator.user = allocator;
     }
     w = dem_world_create(&desc);
+    *ok = 0;
     if (!w) return 0;
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
@@ -151,14 +142,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     w->events.n.on = from->events.n.on;
+    *ok = 1;
     return w;
-}
-/* True if demi_slab_world has completed this world. */
-static int demi_slab_ready(const dem_world *w, const dem_world *from) {
-    return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
-           w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
-           w->wall_count == from->wall_count && w->field_count == from->field_count &&
-           w->outlet_count == from->outlet_count;
 }
 /* Copies the grains between the borders of one slab from the world, with their contact histories.
    marks: work array, one per slot. Returns 0 if memory ran out. */
@@ -265,6 +250,9 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
 /* Fills the head from a world, allocates the arrays of `s` and sets the functions of the team.
    Returns 0 if memory ran out. */
 static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
+    static const demi_team team = {0, 0, 0, demi_slabs_all, demi_slabs_agree, demi_slab_rest,
+                                   demi_slabs_rebuild, demi_slabs_lend, demi_slabs_give,
+                                   demi_slabs_grades, demi_slabs_feed, demi_slabs_sum};
     dem_world *h = &s->head;
     const size_t n = (size_t)s->count;
     h->asked = w->asked;
@@ -283,21 +271,14 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
                                     sizeof(double));
     s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
     s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
+    h->team = &s->team;
+    s->team = team;
+    s->team.head = h;
     s->team.members = (dem_world **)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(dem_world *));
     if (!h->pairs || !s->values || !s->borders || !s->slabs || !s->team.members) return 0;
-    h->team = &s->team;
-    s->team.head = h;
-    s->team.all = demi_slabs_all;
-    s->team.agree = demi_slabs_agree;
-    s->team.rest = demi_slab_rest;
-    s->team.rebuild = demi_slabs_rebuild;
-    s->team.lend = demi_slabs_lend;
-    s->team.give = demi_slabs_give;
-    s->team.grades = demi_slabs_grades;
-    s->team.feed = demi_slabs_feed;
-    s->team.sum = demi_slabs_sum;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
-    return demi_slabs_feeds_copy(h, w) && demi_events_copy(h, w);
+    h->feed_count = w->feed_count;              /* slabs refer to the feeds of the head */
+    return DEMI_COPY(h, h->feeds, w->feeds, w->feed_count) && demi_events_copy(h, w);
 }
 /* Sets the first borders: about the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
@@ -359,8 +340,8 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
         demi_slab *b = &s->slabs[k];
         b->index = s->first + k;
         b->world = demi_slab_world(s, w, b->index, k ? s->slabs[0].world : 0,
-                                   &s->head.desc.allocator);
-        ok = demi_slab_ready(b->world, w) && demi_slab_fill(s, b, w, marks);
+                                   &s->head.desc.allocator, &ok);
+        ok = ok && demi_slab_fill(s, b, w, marks);
         s->team.members[k] = b->world;
         if (b->world) { b->world->team = &s->team; b->world->member = s->team.count++; }
     }
@@ -430,17 +411,13 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     for (k = 0; k < s->local; k++)
         if (s->slabs[k].result == DEM_OK && !demi_slab_report(s, &s->slabs[k]))
             s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_collect");
-    top->out[1].size = 0;
-    if (!demi_message_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
-        !demi_message_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
-        top->result = demi_no_memory(top->world, "dem_slabs_collect");
-    if (result == DEM_OK) result = demi_slabs_agree(&s->head, 0, 0);
-    for (round = 1; round < (int)processes && result == DEM_OK; round++) {
-        result = demi_slabs_exchange(s, DEMI_UP, 0);
+    for (round = 0; round < (int)processes && result == DEM_OK; round++) {
+        const demi_message *come = round ? &low->in[0] : &s->mine;
+        if (round) result = demi_slabs_exchange(s, DEMI_UP, 0);
         if (result != DEM_OK) break;
         top->out[1].size = 0;
-        if (!demi_message_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
-            !demi_message_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
+        if (!demi_message_put(&s->head, &s->all, come->bytes, come->size) ||
+            !demi_message_put(top->world, &top->out[1], come->bytes, come->size))
             top->result = demi_no_memory(top->world, "dem_slabs_collect");
         result = demi_slabs_agree(&s->head, 0, 0);
     }

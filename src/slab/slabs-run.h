@@ -104,10 +104,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
 }
 /* Inserts all grains that are due before a step. */
 static dem_result demi_slabs_feed(dem_world *h) {
-    demi_feeder feeder;
-    feeder.look = demi_slabs_look;
-    feeder.put = demi_slabs_put;
-    feeder.who = h;
+    const demi_feeder feeder = {demi_slabs_look, demi_slabs_put, h};
     return demi_feeds_run(h, &feeder);
 }
 

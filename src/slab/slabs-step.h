@@ -75,6 +75,11 @@ static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
 }
+/* Runs a phase, and returns a failure of any slab. */
+static dem_result demi_slabs_try(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
+    demi_slabs_phase(s, phase);
+    return demi_slabs_agree(&s->head, 0, 0);
+}
 /* Runs the present task on a slab, unless it has failed since the last agreement. */
 static void demi_slab_run(dem_slabs *s, demi_slab *b) {
     if (b->result == DEM_OK) b->result = s->task(b->world);
@@ -561,8 +566,7 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         if (result != DEM_OK || !(leavers > 0)) return result;
         result = demi_slabs_exchange(s, DEMI_UP | DEMI_DOWN, 0);
         if (result != DEM_OK) return result;
-        demi_slabs_phase(s, demi_slab_room);
-        result = demi_slabs_agree(&s->head, 0, 0);
+        result = demi_slabs_try(s, demi_slab_room);
         if (result != DEM_OK) return result;
         demi_slabs_phase(s, demi_slab_migrate);
     }
@@ -574,26 +578,16 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     const double skin_before = h->margin.skin_auto;
     dem_result result;
     h->stage.list_valid = 0;
-    demi_slabs_phase(s, demi_slab_drop);
-    result = demi_slabs_agree(&s->head, 0, 0);
+    result = demi_slabs_try(s, demi_slab_drop);
     if (s->count > 1) {
         if (result == DEM_OK) result = demi_slabs_skin(s);
         if (result == DEM_OK) result = demi_slabs_balance(s);
         if (result == DEM_OK) { demi_slabs_space(s); result = demi_slabs_migrate(s); }
-        if (result == DEM_OK) {
-            demi_slabs_phase(s, demi_slab_invite);
-            result = demi_slabs_agree(&s->head, 0, 0);
-        }
+        if (result == DEM_OK) result = demi_slabs_try(s, demi_slab_invite);
         if (result == DEM_OK) result = demi_slabs_exchange(s, DEMI_UP, 0);
     }
-    if (result == DEM_OK) {
-        demi_slabs_phase(s, demi_slab_list);
-        result = demi_slabs_agree(&s->head, 0, 0);
-    }
-    if (result == DEM_OK) {
-        demi_slabs_phase(s, demi_slab_settle);
-        result = demi_slabs_agree(&s->head, 0, 0);
-    }
+    if (result == DEM_OK) result = demi_slabs_try(s, demi_slab_list);
+    if (result == DEM_OK) result = demi_slabs_try(s, demi_slab_settle);
     if (result != DEM_OK) { h->margin.skin_auto = skin_before; return result; }
     if (s->count == 1) {
         h->margin.skin = s->slabs[0].world->margin.skin;
