@@ -4056,8 +4056,7 @@ DEM_INLINE demi_d3 demi_d3_rotate(const double *R, demi_d3 a) {
     return demi_d(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z,
                   R[6]*a.x + R[7]*a.y + R[8]*a.z);
 }
-/* Rotation matrix, row-major, by `angle` (rad) about the unit axis (x, y, z): Rodrigues' formula.
-   */
+/* Rotation matrix, row-major, by `angle` (rad) about the unit axis (x, y, z) (Rodrigues). */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
     double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;
     R[0] = c + x*x*v;   R[1] = x*y*v - z*s; R[2] = x*z*v + y*s;
@@ -4797,8 +4796,7 @@ typedef struct demi_bodies {
    bodies (demi_kept_move). If the two bodies of a contact exchange their roles, because the other
    one now has the lower index, vectors change sign. Nothing is discarded before the new list is
    fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain all of
-   it. The entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`.
-   */
+   it. Entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`. */
 enum { DEMI_BALLS_MOST = 1024 };               /* > largest number of spheres of a cluster */
 typedef struct demi_filed {
     int32_t *start;                /* rows + 2 */
@@ -5099,8 +5097,7 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     /* >>near */
-    demi_near near, near_last;     /* the pruned list, and the previous one; swapped for a new one
-                                      */
+    demi_near near, near_last;     /* the pruned list; the previous one, swapped for a new one */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
                                       species a and b when lists were built */
     int species_vary;              /* bits of the columns that differ between pairs */
@@ -5941,8 +5938,7 @@ typedef struct demi_law_row {
     dem_law_fn law;                /* null for "none" and "auto" */
     int memory, vectors, traits;   /* reals of history; vectors that they begin with; bits */
     const char *name;
-    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; the caller zeroes k
-                                      */
+    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; k is 0 before */
 } demi_law_row;
 #define DEMI_NORMAL_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
     {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, demi_coefs_##LAW},
@@ -5956,8 +5952,7 @@ static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, 0, 
 static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, 0, "auto", 0},
     {DEM_ROLLING_NONE, 0, 0, 0, 0, "none", 0}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW)
     {-1, 0, 0, 0, 0, 0, 0}};
-/* Returns the law of the desc, with AUTO replaced by the law that it means if any pair needs one.
-   */
+/* Returns the law of the desc, with AUTO replaced by the law that it means if a pair needs one. */
 static int demi_tangent_meant(const dem_world *w) {
     return w->desc.tangent_law == DEM_TANGENT_AUTO ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
 }
@@ -38716,44 +38711,34 @@ static const demi_field_row demi_trials_rows[] = {
     DEMI_TRIED(observable_count, 'i', DEMI_FROM, DEM_OBSERVABLES, ""),
     DEMI_ROW_FREE(dem_trials_desc, observables), DEMI_ROW_FREE(dem_trials_desc, progress),
     DEMI_ROW_FREE(dem_trials_desc, user), DEMI_ROW_END};
-/* Returns 1 with an error message if the desc is invalid or the scene cannot be compared. */
-static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
+/* Returns DEM_OK if the desc is valid and the scene can be compared; otherwise fails. */
+static dem_result demi_trials_check(dem_world *w, const dem_trials_desc *d) {
+    const char *call = "dem_trials_run";
     const int lost = demi_body_lost(w);
     int e;
-    if (!demi_response_is(w, DEMI_LASTING)) {
-        demi_refuse(w, "dem_trials_run", "contacts of this world are impulses, but trials vary the "
-                    "steps, stiffnesses and laws of springs; compare runs with other dt, sweeps "
-                    "and tolerance instead");
-        return 1;
-    }
-    if (demi_rows_check(w, "dem_trials_run", demi_trials_rows, d, "",
-                        "start from DEM_TRIALS_DESC and set duration")) return 1;
-    if (d->seeds == 1) {
-        demi_refuse(w, "dem_trials_run", "seeds is 1, must be 2 to 16 (0 means 3)");
-        return 1;
-    }
+    if (!demi_response_is(w, DEMI_LASTING))
+        return demi_refuse(w, call, "contacts of this world are impulses, but trials vary the "
+                           "steps, stiffnesses and laws of springs; compare runs with other dt, "
+                           "sweeps and tolerance instead");
+    if (demi_rows_check(w, call, demi_trials_rows, d, "",
+                        "start from DEM_TRIALS_DESC and set duration")) return DEM_ERROR_ARGUMENT;
+    if (d->seeds == 1) return demi_refuse(w, call, "seeds is 1, must be 2 to 16 (0 means 3)");
     for (e = 0; e < d->observable_count; e++)
-        if (!d->observables[e].function || !d->observables[e].name) {
-            demi_refuse(w, "dem_trials_run", "observable %d has no function or no name; give both, "
-                        "as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
-            return 1;
-        }
+        if (!d->observables[e].function || !d->observables[e].name)
+            return demi_refuse(w, call, "observable %d has no function or no name; give both, as "
+                               "{\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
     for (e = 0; e < d->observable_count; e++)
-        if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale)) {
-            demi_refuse(w, "dem_trials_run", "the scale of observable %d is %g, must be finite and "
-                        ">= 0; 0 means its own value in the reference", e + 1,
-                        d->observables[e].scale);
-            return 1;
-        }
-    if (lost < 0 && w->bodies.count) return 0;
-    if (lost < 0)
-        demi_refuse(w, "dem_trials_run", "there are no bodies to compare; add some, or run until "
-                    "some are fed");
-    else
-        demi_refuse(w, "dem_trials_run", "body %u no longer has a finite position, velocity and "
-                    "force: the run has blown up; go back to an earlier checkpoint",
-                    (unsigned)w->bodies.slot[lost] + 1);
-    return 1;
+        if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale))
+            return demi_refuse(w, call, "the scale of observable %d is %g, must be finite and >= "
+                               "0; 0 means its own value in the reference", e + 1,
+                               d->observables[e].scale);
+    if (!w->bodies.count)
+        return demi_refuse(w, call, "there are no bodies to compare; add some, or run until some "
+                           "are fed");
+    if (lost < 0) return DEM_OK;
+    return demi_refuse(w, call, "body %u no longer has a finite position, velocity and force: the "
+                       "run has blown up; go back to an earlier checkpoint",
+                       (unsigned)w->bodies.slot[lost] + 1);
 }
 /* Shortens out->duration if the trials would otherwise take longer than the budget (s of wall
    time). The estimate is the time of 20 steps of a copy; the number of steps grows with
@@ -38820,7 +38805,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     int k;
     if (demi_null(w, "dem_trials_run", d, "desc") || demi_null(w, "dem_trials_run", out, "trials"))
         return DEM_ERROR_ARGUMENT;
-    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_advise_refuse(w, d))
+    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_trials_check(w, d) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->duration = d->duration;

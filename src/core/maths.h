@@ -177,8 +177,7 @@ DEM_INLINE demi_d3 demi_d3_rotate(const double *R, demi_d3 a) {
     return demi_d(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z,
                   R[6]*a.x + R[7]*a.y + R[8]*a.z);
 }
-/* Rotation matrix, row-major, by `angle` (rad) about the unit axis (x, y, z): Rodrigues' formula.
-   */
+/* Rotation matrix, row-major, by `angle` (rad) about the unit axis (x, y, z) (Rodrigues). */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
     double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;
     R[0] = c + x*x*v;   R[1] = x*y*v - z*s; R[2] = x*z*v + y*s;

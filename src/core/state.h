@@ -169,8 +169,7 @@ typedef struct demi_bodies {
    bodies (demi_kept_move). If the two bodies of a contact exchange their roles, because the other
    one now has the lower index, vectors change sign. Nothing is discarded before the new list is
    fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain all of
-   it. The entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`.
-   */
+   it. Entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`. */
 enum { DEMI_BALLS_MOST = 1024 };               /* > largest number of spheres of a cluster */
 typedef struct demi_filed {
     int32_t *start;                /* rows + 2 */
@@ -471,8 +470,7 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     /* >>near */
-    demi_near near, near_last;     /* the pruned list, and the previous one; swapped for a new one
-                                      */
+    demi_near near, near_last;     /* the pruned list; the previous one, swapped for a new one */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
                                       species a and b when lists were built */
     int species_vary;              /* bits of the columns that differ between pairs */

@@ -90,8 +90,7 @@ typedef struct demi_law_row {
     dem_law_fn law;                /* null for "none" and "auto" */
     int memory, vectors, traits;   /* reals of history; vectors that they begin with; bits */
     const char *name;
-    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; the caller zeroes k
-                                      */
+    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; k is 0 before */
 } demi_law_row;
 #define DEMI_NORMAL_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
     {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, demi_coefs_##LAW},
@@ -105,8 +104,7 @@ static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, 0, 
 static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, 0, "auto", 0},
     {DEM_ROLLING_NONE, 0, 0, 0, 0, "none", 0}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW)
     {-1, 0, 0, 0, 0, 0, 0}};
-/* Returns the law of the desc, with AUTO replaced by the law that it means if any pair needs one.
-   */
+/* Returns the law of the desc, with AUTO replaced by the law that it means if a pair needs one. */
 static int demi_tangent_meant(const dem_world *w) {
     return w->desc.tangent_law == DEM_TANGENT_AUTO ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
 }

@@ -260,44 +260,34 @@ static const demi_field_row demi_trials_rows[] = {
     DEMI_TRIED(observable_count, 'i', DEMI_FROM, DEM_OBSERVABLES, ""),
     DEMI_ROW_FREE(dem_trials_desc, observables), DEMI_ROW_FREE(dem_trials_desc, progress),
     DEMI_ROW_FREE(dem_trials_desc, user), DEMI_ROW_END};
-/* Returns 1 with an error message if the desc is invalid or the scene cannot be compared. */
-static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
+/* Returns DEM_OK if the desc is valid and the scene can be compared; otherwise fails. */
+static dem_result demi_trials_check(dem_world *w, const dem_trials_desc *d) {
+    const char *call = "dem_trials_run";
     const int lost = demi_body_lost(w);
     int e;
-    if (!demi_response_is(w, DEMI_LASTING)) {
-        demi_refuse(w, "dem_trials_run", "contacts of this world are impulses, but trials vary the "
-                    "steps, stiffnesses and laws of springs; compare runs with other dt, sweeps "
-                    "and tolerance instead");
-        return 1;
-    }
-    if (demi_rows_check(w, "dem_trials_run", demi_trials_rows, d, "",
-                        "start from DEM_TRIALS_DESC and set duration")) return 1;
-    if (d->seeds == 1) {
-        demi_refuse(w, "dem_trials_run", "seeds is 1, must be 2 to 16 (0 means 3)");
-        return 1;
-    }
+    if (!demi_response_is(w, DEMI_LASTING))
+        return demi_refuse(w, call, "contacts of this world are impulses, but trials vary the "
+                           "steps, stiffnesses and laws of springs; compare runs with other dt, "
+                           "sweeps and tolerance instead");
+    if (demi_rows_check(w, call, demi_trials_rows, d, "",
+                        "start from DEM_TRIALS_DESC and set duration")) return DEM_ERROR_ARGUMENT;
+    if (d->seeds == 1) return demi_refuse(w, call, "seeds is 1, must be 2 to 16 (0 means 3)");
     for (e = 0; e < d->observable_count; e++)
-        if (!d->observables[e].function || !d->observables[e].name) {
-            demi_refuse(w, "dem_trials_run", "observable %d has no function or no name; give both, "
-                        "as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
-            return 1;
-        }
+        if (!d->observables[e].function || !d->observables[e].name)
+            return demi_refuse(w, call, "observable %d has no function or no name; give both, as "
+                               "{\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
     for (e = 0; e < d->observable_count; e++)
-        if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale)) {
-            demi_refuse(w, "dem_trials_run", "the scale of observable %d is %g, must be finite and "
-                        ">= 0; 0 means its own value in the reference", e + 1,
-                        d->observables[e].scale);
-            return 1;
-        }
-    if (lost < 0 && w->bodies.count) return 0;
-    if (lost < 0)
-        demi_refuse(w, "dem_trials_run", "there are no bodies to compare; add some, or run until "
-                    "some are fed");
-    else
-        demi_refuse(w, "dem_trials_run", "body %u no longer has a finite position, velocity and "
-                    "force: the run has blown up; go back to an earlier checkpoint",
-                    (unsigned)w->bodies.slot[lost] + 1);
-    return 1;
+        if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale))
+            return demi_refuse(w, call, "the scale of observable %d is %g, must be finite and >= "
+                               "0; 0 means its own value in the reference", e + 1,
+                               d->observables[e].scale);
+    if (!w->bodies.count)
+        return demi_refuse(w, call, "there are no bodies to compare; add some, or run until some "
+                           "are fed");
+    if (lost < 0) return DEM_OK;
+    return demi_refuse(w, call, "body %u no longer has a finite position, velocity and force: the "
+                       "run has blown up; go back to an earlier checkpoint",
+                       (unsigned)w->bodies.slot[lost] + 1);
 }
 /* Shortens out->duration if the trials would otherwise take longer than the budget (s of wall
    time). The estimate is the time of 20 steps of a copy; the number of steps grows with
@@ -364,7 +354,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     int k;
     if (demi_null(w, "dem_trials_run", d, "desc") || demi_null(w, "dem_trials_run", out, "trials"))
         return DEM_ERROR_ARGUMENT;
-    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_advise_refuse(w, d))
+    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_trials_check(w, d) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->duration = d->duration;
