@@ -6234,12 +6234,12 @@ static dem_real demi_static_friction(const dem_world *w, int a, int b) {
     return DEMI_MAX(p->friction, p->friction_static);
 }
 DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
-    if (demi_null(w, "dem_material_add", desc, "desc")) return demi_no_material;
+    if (demi_null(w, __func__, desc, "desc")) return demi_no_material;
     dem_material id; int i, n = w->material_count;
     id.id = 0;
-    if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
+    if (demi_material_check(w, __func__, desc) != DEM_OK) return id;
     if (n == DEMI_MATERIALS) {
-        demi_refuse(w, "dem_material_add", "there are %d materials already, which is the limit; "
+        demi_refuse(w, __func__, "there are %d materials already, which is the limit; "
                     "reuse one of them", n);
         return id;
     }
@@ -6251,7 +6251,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         const dem_pair pair = demi_mix(&w->materials[i], &w->materials[n]);
         demi_pair_put(w, i, n, &pair);
     }
-    demi_built(w, "dem_material_add");
+    demi_built(w, __func__);
     id.id = n + 1;
     return id;
 }
@@ -6268,23 +6268,23 @@ static dem_result demi_material_index(dem_world *w, const char *call, dem_materi
 
 DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
                                     dem_material_desc *desc) {
-    if (demi_null_look(world, "dem_material_get", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     int m = 0;
-    if (demi_material_index((dem_world *)world, "dem_material_get", material, &m))
+    if (demi_material_index((dem_world *)world, __func__, material, &m))
         return DEM_ERROR_ARGUMENT;
     *desc = world->materials[m];
     return DEM_OK;
 }
 DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
                                     const dem_material_desc *desc) {
-    if (demi_null(w, "dem_material_set", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     dem_material_desc before;
     int m = 0, i;
-    if (demi_material_index(w, "dem_material_set", material, &m) ||
-        demi_material_check(w, "dem_material_set", desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_material_index(w, __func__, material, &m) ||
+        demi_material_check(w, __func__, desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = w->materials[m];
     if (desc->density < before.density || desc->density > before.density)
-        return demi_refuse(w, "dem_material_set", "density of material %d is %g kg/m3, must stay "
+        return demi_refuse(w, __func__, "density of material %d is %g kg/m3, must stay "
                            "%g, because masses of bodies were computed from it; add another "
                            "material", m + 1, (double)desc->density, (double)before.density);
     w->materials[m] = *desc;
@@ -6299,17 +6299,16 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
             demi_pair_put(w, i, m, &now);
     }
     demi_pairs_changed(w);
-    demi_built(w, "dem_material_set");
+    demi_built(w, __func__);
     return DEM_OK;
 }
 
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair) {
-    if (demi_null_look(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, pair, "pair")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;          /* only the error message is written */
     int i = 0, j = 0;
-    if (demi_material_index(w, "dem_pair_get", a, &i) ||
-        demi_material_index(w, "dem_pair_get", b, &j))
+    if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
     *pair = w->pairs[i*DEMI_MATERIALS + j].given;
     return DEM_OK;
@@ -6435,16 +6434,15 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out) {
-    if (demi_null_look(world, "dem_coefficients_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, out, "out")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     int i = 0, j = 0;
     double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
     dem_real coef[DEMI_COEFS];
-    if (demi_material_index(w, "dem_coefficients_get", a, &i) ||
-        demi_material_index(w, "dem_coefficients_get", b, &j))
+    if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
     if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
-        return demi_refuse(w, "dem_coefficients_get", "radii are %g and %g m; the first must be > "
+        return demi_refuse(w, __func__, "radii are %g and %g m; the first must be > "
                            "0, the second >= 0 (0 means a wall)", ra, rb);
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
@@ -6480,7 +6478,7 @@ static int demi_pairs_have(const dem_world *w, size_t offset) {
     return x > 0;
 }
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
-    if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
+    if (demi_null_look(w, __func__, out, "out")) return;
     const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
@@ -25986,8 +25984,8 @@ static double demi_size_draw(const demi_size_table *t, double share) {
 }
 DEM_API double dem_sizes_finer_get(dem_world *w, const dem_sizes *d, dem_real radius) {
     double lo, hi;
-    if (demi_null_look(w, "dem_sizes_finer_get", d, "sizes")) return -1;
-    if (!demi_size_ends(w, "dem_sizes_finer_get", d, &lo, &hi)) return -1;
+    if (demi_null_look(w, __func__, d, "sizes")) return -1;
+    if (!demi_size_ends(w, __func__, d, &lo, &hi)) return -1;
     return demi_size_finer(d, lo, hi, (double)radius);
 }
 /* As dem_sizes_draw, with error messages in the name of `call`. */
@@ -26009,26 +26007,26 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
 }
 DEM_API dem_result dem_sizes_draw(dem_world *w, const dem_sizes *d, int count, uint64_t seed,
                                   dem_real *radii) {
-    if (demi_null_look(w, "dem_sizes_draw", d, "sizes")) return DEM_ERROR_ARGUMENT;
-    if (demi_null_look(w, "dem_sizes_draw", radii, "radii")) return DEM_ERROR_ARGUMENT;
-    return demi_sizes_draw(w, "dem_sizes_draw", d, count, seed, radii);
+    if (demi_null_look(w, __func__, d, "sizes")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, radii, "radii")) return DEM_ERROR_ARGUMENT;
+    return demi_sizes_draw(w, __func__, d, count, seed, radii);
 }
 DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_count,
                                   dem_real *radius,
                               double *amount) {
-    const char *call = "dem_sizes_classes_get";
     demi_size_table *t;
     double lo, hi, all = 0;
     int i, k = 0, n = 0;
-    if (demi_null_look(w, call, d, "sizes") || demi_null_look(w, call, radius, "radius") ||
-        demi_null_look(w, call, amount, "amount")) return 0;
+    if (demi_null_look(w, __func__, d, "sizes") || demi_null_look(w, __func__, radius, "radius") ||
+        demi_null_look(w, __func__, amount, "amount")) return 0;
     if (class_count < 1 || class_count > DEM_CLASSES) {
-        demi_refuse(w, call, "class_count is %d, must be 1 to %d", class_count, (int)DEM_CLASSES);
+        demi_refuse(w, __func__, "class_count is %d, must be 1 to %d", class_count,
+                    (int)DEM_CLASSES);
         return 0;
     }
-    if (!demi_size_ends(w, call, d, &lo, &hi)) return 0;
+    if (!demi_size_ends(w, __func__, d, &lo, &hi)) return 0;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
-    if (!t) { demi_no_memory(w, call); return 0; }
+    if (!t) { demi_no_memory(w, __func__); return 0; }
     demi_size_table_make(w, d, lo, hi, t);
     for (i = 0; i < class_count; i++) {
         const double end = i + 1 < class_count ? lo*demi_pow(hi/lo, (i + 1.0)/class_count) : 2*hi;
@@ -26515,32 +26513,30 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
 }
 DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius,
                              dem_region region, int count, uint64_t seed) {
-    if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
-    return demi_fill(w, "dem_spheres_fill", material, -1, radius, 0, &region, count, seed);
+    if (demi_null(w, __func__, w, "world")) return 0;
+    return demi_fill(w, __func__, material, -1, radius, 0, &region, count, seed);
 }
 DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape,
                             dem_region region, int count, uint64_t seed) {
-    const char *call = "dem_bodies_fill";
-    const int i = demi_null(w, call, w, "world") ? -1 : demi_shape_index(w, call, shape);
-    return i < 0 ? 0
-                 : demi_fill(w, call, material, i, w->shapes[i].radius, 0, &region, count, seed);
+    const int i = demi_null(w, __func__, w, "world") ? -1 : demi_shape_index(w, __func__, shape);
+    if (i < 0) return 0;
+    return demi_fill(w, __func__, material, i, w->shapes[i].radius, 0, &region, count, seed);
 }
 DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes *sizes,
                            dem_region region, int count, uint64_t seed) {
-    const char *call = "dem_sizes_fill";
     dem_real *radii;
     int i, done = 0;
-    if (demi_null(w, call, sizes, "sizes")) return 0;
+    if (demi_null(w, __func__, sizes, "sizes")) return 0;
     radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
-    if (!radii) { demi_no_memory(w, call); return 0; }
+    if (!radii) { demi_no_memory(w, __func__); return 0; }
     /* even for count 0 the region must have room for one */
-    if (demi_sizes_draw(w, call, sizes, count ? count : 1, 0, radii) == DEM_OK) {
+    if (demi_sizes_draw(w, __func__, sizes, count ? count : 1, 0, radii) == DEM_OK) {
         for (i = 0; i < count/2; i++) {         /* the largest first */
             const dem_real r = radii[i];
             radii[i] = radii[count - 1 - i];
             radii[count - 1 - i] = r;
         }
-        done = demi_fill(w, call, material, -1, 0, radii, &region, count, seed);
+        done = demi_fill(w, __func__, material, -1, 0, radii, &region, count, seed);
     }
     demi_free(w, radii);
     return done;
@@ -26622,51 +26618,50 @@ static int demi_lattice_make(const dem_world *w, const demi_region *room, dem_re
 }
 DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
                              dem_region region, int count) {
-    const char *call = "dem_spheres_pack";
     demi_region room;
     demi_crowd c;
     demi_lattice g;
     demi_calling was;
     int m = 0, first, done;
-    if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
-        return 0;
+    if (demi_null(w, __func__, w, "world") ||
+        demi_material_index(w, __func__, material, &m) != DEM_OK) return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
         count < 0) {
-        demi_refuse(w, call, "radius is %g m, padding is %g m, count is %d; the radius must be > "
-                    "0, padding and count >= 0", (double)radius, (double)padding, count);
+        demi_refuse(w, __func__, "radius is %g m, padding is %g m, count is %d; the radius must be "
+                    "> 0, padding and count >= 0", (double)radius, (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, call, m, radius, 0) ||
-        !demi_region_check(w, call, &region, radius, &room)) return 0;
+    if (demi_mass_refuse(w, __func__, m, radius, 0) ||
+        !demi_region_check(w, __func__, &region, radius, &room)) return 0;
     if (!demi_lattice_make(w, &room, radius, padding, &g)) {
-        demi_refuse(w, call, "a period is shorter than one sphere of radius %g m with its padding "
-                    "of %g m; lengthen the domain", (double)radius, (double)padding);
+        demi_refuse(w, __func__, "a period is shorter than one sphere of radius %g m with its "
+                    "padding of %g m; lengthen the domain", (double)radius, (double)padding);
         return 0;
     }
     g.count = count;
     if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
-        demi_refuse(w, call, "the box has room for about %.3g spheres of radius %g m, must be at "
-                    "most %d, the limit of a world; make the box smaller or give a count",
+        demi_refuse(w, __func__, "the box has room for about %.3g spheres of radius %g m, must be "
+                    "at most %d, the limit of a world; make the box smaller or give a count",
                     demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
     done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    was = demi_calls(w, call, 1);
+    was = demi_calls(w, __func__, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
     demi_called(w, was);
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return 0;
     }
     if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
-        demi_refuse(w, call, "stopped after %.3g trial positions, with %d spheres of radius %g m "
-                    "packed; the limits are %d bodies and %g trial positions: make the box smaller",
-                    g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
-    demi_built(w, call);
+        demi_refuse(w, __func__, "stopped after %.3g trial positions, with %d spheres of radius %g "
+                    "m packed; the limits are %d bodies and %g trial positions: make the box "
+                    "smaller", g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
+    demi_built(w, __func__);
     return done;
 }
 
@@ -26689,12 +26684,11 @@ static int demi_group_find(const dem_world *w, const char *name) {
 DEM_API dem_group dem_group_get(const dem_world *w, const char *name) {
     dem_group id;
     id.id = 0;
-    if (demi_null_look(w, "dem_group_get", name, "name")) return id;
+    if (demi_null_look(w, __func__, name, "name")) return id;
     id.id = 1 + demi_group_find(w, name);
     if (!id.id)
-        demi_refuse(w, "dem_group_get", "there is no group \"%.60s\"; desc.groups names "
-                    "\"%.200s\": add the name there, or correct it", name,
-                    w->desc.groups ? w->desc.groups : "");
+        demi_refuse(w, __func__, "there is no group \"%.60s\"; desc.groups names \"%.200s\": add "
+                    "the name there, or correct it", name, w->desc.groups ? w->desc.groups : "");
     return id;
 }
 /* True if body i is in the group, or if its id is 0. */
@@ -26776,10 +26770,10 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
 }
 DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, dem_body *out,
                               int capacity) {
-    if (demi_null_look(world, "dem_bodies_select", s, "selection")) return -1;
+    if (demi_null_look(world, __func__, s, "selection")) return -1;
     dem_world *w = (dem_world *)world;          /* only the error message is written */
     int count, slot, n = 0;
-    unsigned char *marks = demi_select(w, "dem_bodies_select", s, &count);
+    unsigned char *marks = demi_select(w, __func__, s, &count);
     if (!marks) return -1;
     for (slot = 0; slot < w->bodies.slot_count && out && n < capacity; slot++) {
         const int i = w->bodies.slot_index[slot];
@@ -26790,10 +26784,10 @@ DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, de
 }
 DEM_API int dem_bodies_group_set(dem_world *w, const dem_selection *s, dem_group group,
                                  int member) {
-    if (demi_null(w, "dem_bodies_group_set", s, "selection")) return -1;
+    if (demi_null(w, __func__, s, "selection")) return -1;
     int count, i;
-    unsigned char *marks = demi_group_check(w, "dem_bodies_group_set", group, 1) == DEM_OK
-        ? demi_select(w, "dem_bodies_group_set", s, &count) : 0;
+    unsigned char *marks = demi_group_check(w, __func__, group, 1) == DEM_OK
+        ? demi_select(w, __func__, s, &count) : 0;
     if (!marks) return -1;
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t bit = (uint32_t)1 << (group.id - 1);
@@ -26825,25 +26819,25 @@ static int demi_selected_set(dem_world *w, const char *call, const dem_selection
 }
 DEM_API int dem_bodies_velocity_set(dem_world *w, const dem_selection *s, dem_vec3 velocity,
                                     dem_vec3 spin) {
-    if (demi_null(w, "dem_bodies_velocity_set", s, "selection")) return -1;
+    if (demi_null(w, __func__, s, "selection")) return -1;
     if (!demi_place(velocity) || !demi_place(spin)) {
-        demi_refuse(w, "dem_bodies_velocity_set", "velocity or spin is not finite, or beyond %g "
+        demi_refuse(w, __func__, "velocity or spin is not finite, or beyond %g "
                     "m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
         return -1;
     }
-    return demi_selected_set(w, "dem_bodies_velocity_set", s, &velocity, spin, 0);
+    return demi_selected_set(w, __func__, s, &velocity, spin, 0);
 }
 DEM_API int dem_bodies_fixed_set(dem_world *w, const dem_selection *s, int fixed) {
-    if (demi_null(w, "dem_bodies_fixed_set", s, "selection")) return -1;
-    return demi_selected_set(w, "dem_bodies_fixed_set", s, 0, demi_v(0, 0, 0), fixed);
+    if (demi_null(w, __func__, s, "selection")) return -1;
+    return demi_selected_set(w, __func__, s, 0, demi_v(0, 0, 0), fixed);
 }
 DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
-    if (demi_null(w, "dem_bodies_remove", s, "selection")) return -1;
+    if (demi_null(w, __func__, s, "selection")) return -1;
     int count, i;
-    unsigned char *marks = demi_select(w, "dem_bodies_remove", s, &count);
+    unsigned char *marks = demi_select(w, __func__, s, &count);
     if (!marks) return -1;
     if (count && !demi_list_drop(w)) {
-        demi_no_memory(w, "dem_bodies_remove");
+        demi_no_memory(w, __func__);
         count = -1;
     }
     /* backwards: the last body, which takes the index, has been looked at */
@@ -26858,12 +26852,12 @@ DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
 }
 DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_selection *s,
                                         dem_bodies_means *out) {
-    if (demi_null_look(world, "dem_bodies_means_get", s, "selection") ||
-        demi_null_look(world, "dem_bodies_means_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, s, "selection") ||
+        demi_null_look(world, __func__, out, "out")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;          /* only the error message is written */
     const demi_periods p = demi_periods_of(w);
     int count, slot, k;
-    unsigned char *marks = demi_select(w, "dem_bodies_means_get", s, &count);
+    unsigned char *marks = demi_select(w, __func__, s, &count);
     if (!marks) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     for (slot = 0; slot < w->bodies.slot_count; slot++) {
@@ -27025,59 +27019,58 @@ static const demi_field_row demi_feed_rows[] = {DEMI_FED(material, 'i'),
     DEMI_ROW_DIGEST("sizes", demi_digest_sizes), DEMI_ROW_FREE(dem_feed_desc, inside_user),
     DEMI_ROW_FREE(dem_feed_desc, sizes), DEMI_ROW_END};
 DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
-    if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
-    const char *call = "dem_feed_add";
+    if (demi_null(w, __func__, d, "desc")) return demi_no_feed;
     demi_feed feed;
     dem_feed id;
     int k, m = 0, shaped = 0;
     id.id = 0;
-    if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
-    if (demi_rows_check(w, call, demi_feed_rows, d, "",
+    if (demi_material_index(w, __func__, d->material, &m) != DEM_OK) return id;
+    if (demi_rows_check(w, __func__, demi_feed_rows, d, "",
                         "start from DEM_FEED_DESC and set only what differs")) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
-        if (demi_feed_strange(w, call, d, k)) return id;
+        if (demi_feed_strange(w, __func__, d, k)) return id;
         if ((!d->sizes[k] && !(d->radius[k] > 0)) || !demi_finite(d->radius[k]) ||
             !(d->amount[k] > 0) || !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
-            demi_refuse(w, call, "class %d has radius %g m and amount %g, must be > 0 and finite; "
-                        "leave out classes that do not occur", k, (double)d->radius[k],
+            demi_refuse(w, __func__, "class %d has radius %g m and amount %g, must be > 0 and "
+                        "finite; leave out classes that do not occur", k, (double)d->radius[k],
                         d->amount[k]);
             return id;
         }
-        if (!demi_feed_sizes(w, call, &feed, k)) return id;
+        if (!demi_feed_sizes(w, __func__, &feed, k)) return id;
         shaped |= d->shapes[k].id > 0;
         if (d->limited) {
             const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
             if (!(count >= 1 && count < 1e15)) {
-                demi_refuse(w, call, "class %d has amount %g, which is %.3g grains of %g kg, must "
-                            "be 1 to 1e15; check amount and by_mass", k, d->amount[k], count - 0.5,
-                            feed.mass[k]);
+                demi_refuse(w, __func__, "class %d has amount %g, which is %.3g grains of %g kg, "
+                            "must be 1 to 1e15; check amount and by_mass", k, d->amount[k],
+                            count - 0.5, feed.mass[k]);
                 return id;
             }
             feed.limit[k] = (uint64_t)count;
         }
     }
     if (!(d->rate > 0) && !d->limited) {
-        demi_refuse(w, call, "rate is 0, which means all grains at once, and such a feed needs "
+        demi_refuse(w, __func__, "rate is 0, which means all grains at once, and such a feed needs "
                     "`limited`, or it never ends; set limited or a rate");
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
-        demi_refuse(w, call, "the box is not finite or lo is above hi; set it to the region of the "
-                    "centres of new grains");
+        demi_refuse(w, __func__, "the box is not finite or lo is above hi; set it to the region of "
+                    "the centres of new grains");
         return id;
     }
     if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
         (shaped && (!demi_list_drop(w) || !demi_orient_begin(w)))) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return id;
     }
     feed.random = d->seed;
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
     demi_dt_outdated(w);                        /* new grains may need a shorter one */
-    demi_built(w, call);
+    demi_built(w, __func__);
     id.id = w->feed_count;
     return id;
 }
@@ -27270,9 +27263,9 @@ static dem_result demi_world_feed(dem_world *w) {
     return demi_feeds_run(w, &feeder);
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
-    if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
-        return demi_refuse(w, "dem_feed_get", "feed %d does not exist, ids in this world are 1 to "
+        return demi_refuse(w, __func__, "feed %d does not exist, ids in this world are 1 to "
                            "%d; adding it failed or it belongs to another world: check the id that "
                            "dem_feed_add returned", (int)id.id, w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
@@ -27290,35 +27283,34 @@ static const demi_field_row demi_outlet_rows[] = {
     DEMI_LIMITED(dem_outlet_desc, residence_bin, 'd', DEMI_FROM, DEMI_FARTHEST, "s"),
     DEMI_ROW_END};
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
-    if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
-    const char *call = "dem_outlet_add";
+    if (demi_null(w, __func__, d, "desc")) return demi_no_outlet;
     demi_outlet outlet;
     dem_outlet id;
     int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
-    if (demi_rows_check(w, call, demi_outlet_rows, d, "",
+    if (demi_rows_check(w, __func__, demi_outlet_rows, d, "",
                         "start from DEM_OUTLET_DESC and set only what differs")) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_refuse(w, call, "wanted is %g to %g m, and there are %d classes; wanted_min must be "
-                    "below wanted_max, and the radii of classes > 0, finite and ascending",
+        demi_refuse(w, __func__, "wanted is %g to %g m, and there are %d classes; wanted_min must "
+                    "be below wanted_max, and the radii of classes > 0, finite and ascending",
                     (double)d->wanted_min, (double)d->wanted_max, d->class_count);
         return id;
     }
-    if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
-    if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
-    if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
+    if (demi_box_empty(w, __func__, d->box, w->desc.planar)) return id;
+    if (d->frame.id && demi_wall_find(w, __func__, d->frame) < 0) return id;
+    if (d->material.id && demi_material_index(w, __func__, d->material, &k) != DEM_OK) return id;
     for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
     if (d->keep && kept == DEMI_ZONES) {
-        demi_refuse(w, call, "keep is %d, but %d outlets that keep their grains exist already, "
+        demi_refuse(w, __func__, "keep is %d, but %d outlets that keep their grains exist already, "
                     "which is the limit; count by classes instead", d->keep, kept);
         return id;
     }
     if ((d->keep && !demi_array_begin(w, DEMI_ZONED, &w->bodies.zoned)) ||
         (d->residence_bin > 0 && !demi_ages_begin(w)) ||
         !DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return id;
     }
     memset(&outlet, 0, sizeof outlet);
@@ -27326,7 +27318,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     outlet.state.since = w->clock.time;
     outlet.zone = d->keep ? kept : -1;
     *demi_outlet_at(w, w->outlet_count++) = outlet;
-    demi_built(w, call);
+    demi_built(w, __func__);
     id.id = w->outlet_count;
     return id;
 }
@@ -27435,8 +27427,8 @@ static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_o
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
-    if (demi_null_look(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
-    const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    const demi_outlet *o = demi_outlet_find(w, __func__, id);
     const demi_periods p = demi_periods_of(w);
     int i;
     if (!o) return DEM_ERROR_ARGUMENT;
@@ -27453,8 +27445,8 @@ DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_
     return DEM_OK;
 }
 DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
-    if (demi_null(w, "dem_outlet_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_outlet *o = demi_outlet_find(w, "dem_outlet_reset", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_outlet *o = demi_outlet_find(w, __func__, id);
     if (!o) return DEM_ERROR_ARGUMENT;
     memset(&o->state, 0, sizeof o->state);
     o->state.since = w->clock.time;
@@ -28202,14 +28194,14 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
                      (double)w->clock.dt, rate, 0.1/rate);
 }
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
-    if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_refuse(w, "dem_step_advice_get", "contacts of this world are impulses, which "
+        return demi_refuse(w, __func__, "contacts of this world are impulses, which "
                            "have no contact time; choose a step in which grains move by less than "
                            "a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
-    return demi_refuse(w, "dem_step_advice_get", "the world has no grain that can move; add grains "
+    return demi_refuse(w, __func__, "the world has no grain that can move; add grains "
                        "before this call");
 }
 /* Fails because the chosen step is so short that the time would not advance. */
@@ -28589,11 +28581,11 @@ static dem_servo demi_servo_now(const dem_world *w, int wall) {
 }
 DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
     int i;
-    if (demi_null_look(world, "dem_wall_servo_get", servo, "servo")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, "dem_wall_servo_get", id);
+    if (demi_null_look(world, __func__, servo, "servo")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
-        return demi_refuse(world, "dem_wall_servo_get", "the motion of wall %d is not "
+        return demi_refuse(world, __func__, "the motion of wall %d is not "
                            "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
     *servo = demi_servo_now(world, i);
     return DEM_OK;
@@ -28802,27 +28794,26 @@ static void demi_rails_drop(dem_world *w, dem_body body) {
     w->rail_count = left;
 }
 DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
-    const char *call = "dem_body_rail_set";
     dem_real v[3], s[3], own[6];
     dem_body_state state;
     demi_rail *r;
     int i, k;
-    if (demi_null(w, call, d, "desc")) return DEM_ERROR_ARGUMENT;
-    i = demi_body_index(w, call, body);
-    if (i < 0 || demi_rows_check(w, call, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
+    if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
+    i = demi_body_index(w, __func__, body);
+    if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
         return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_refuse(w, call, "contacts of this world are impulses, whose solver has one "
+        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solver has one "
                            "mass per body for all axes; use DEM_RESPONSE_SPRINGS, or joints "
                            "(dem_joint_add)");
     if (w->bodies.inv_mass[i] <= 0)
-        return demi_refuse(w, call, "body %u is fixed, so all its axes are locked; set `fixed` to "
-                           "0 with dem_body_set", (unsigned)body.slot);
+        return demi_refuse(w, __func__, "body %u is fixed, so all its axes are locked; set `fixed` "
+                           "to 0 with dem_body_set", (unsigned)body.slot);
     if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
-        return demi_refuse(w, call, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y of "
-                           "all bodies; leave them out", d->axes);
-    if (d->wall.id && demi_wall_find(w, call, d->wall) < 0) return DEM_ERROR_ARGUMENT;
-    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, call);
+        return demi_refuse(w, __func__, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y "
+                           "of all bodies; leave them out", d->axes);
+    if (d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) return DEM_ERROR_ARGUMENT;
+    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, __func__);
     demi_rails_drop(w, body);
     if (!d->axes) { demi_scene_changed(w); return DEM_OK; }
     r = &w->rails[w->rail_count];
@@ -28836,18 +28827,17 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
     state.velocity = demi_at(own);
     state.spin = demi_at(own + 3);
-    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, call);
+    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, __func__);
     w->rail_count++;
     return DEM_OK;
 }
 DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_rail_state *state) {
-    const char *call = "dem_body_reaction_get";
     const demi_rail *r;
-    if (demi_null_look(w, call, state, "state")) return DEM_ERROR_ARGUMENT;
-    if (demi_body_index((dem_world *)w, call, body) < 0) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_body_index((dem_world *)w, __func__, body) < 0) return DEM_ERROR_ARGUMENT;
     r = demi_rail_of(w, body);
     if (!r)
-        return demi_refuse(w, call, "body %u has no rail; set one with dem_body_rail_set",
+        return demi_refuse(w, __func__, "body %u has no rail; set one with dem_body_rail_set",
                            (unsigned)body.slot);
     *state = r->state;
     return DEM_OK;
@@ -28906,18 +28896,17 @@ static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) 
     w->booked.inserted += demi_body_energy(w, i) - before;
 }
 DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real radius) {
-    if (demi_null(w, "dem_body_radius_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_body_index(w, "dem_body_radius_set", body);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_body_index(w, __func__, body);
     double mass;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (demi_size_bad(w, i, radius, &mass))
-        return demi_refuse(w, "dem_body_radius_set", "the radius of body %u is %g m and its mass "
-                           "%g kg, must be > 0 and neither too small nor too large to calculate "
-                           "with in %s precision; lengths are in metres: check the unit",
-                           (unsigned)body.slot, (double)radius, mass,
-                           DEMI_SINGLE ? "single" : "double");
+        return demi_refuse(w, __func__, "the radius of body %u is %g m and its mass %g kg, must be "
+                           "> 0 and neither too small nor too large to calculate with in %s "
+                           "precision; lengths are in metres: check the unit", (unsigned)body.slot,
+                           (double)radius, mass, DEMI_SINGLE ? "single" : "double");
     demi_finish(w);                             /* the open half kick belongs to the old mass */
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_radius_set");
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_body_resize(w, i, radius, mass);
     w->stage.grown = 1;
     demi_scene_changed(w);
@@ -29500,25 +29489,25 @@ static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, '
     DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW(dem_field_desc, variance, 'i'),
     DEMI_ROW(dem_field_desc, bodies, 'i'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
-    if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
+    if (demi_null(w, __func__, d, "desc")) return demi_no_field;
     dem_field id;
     demi_field field;
     int k;
     id.id = 0;
-    if (demi_rows_check(w, "dem_field_add", demi_field_rows, d, "",
+    if (demi_rows_check(w, __func__, demi_field_rows, d, "",
                         "start from DEM_FIELD_DESC and set only what differs")) return id;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
-        demi_refuse(w, "dem_field_add", "cells are %d x %d x %d, must be at most 2^28 in all; "
+        demi_refuse(w, __func__, "cells are %d x %d x %d, must be at most 2^28 in all; "
                     "choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
         return id;
     }
-    if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
-    if (demi_group_check(w, "dem_field_add", d->group, 0) != DEM_OK ||
-        (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK))
+    if (demi_box_empty(w, __func__, d->box, 0)) return id;
+    if (demi_group_check(w, __func__, d->group, 0) != DEM_OK ||
+        (d->material.id && demi_material_index(w, __func__, d->material, &k) != DEM_OK))
         return id;
     for (k = 0; k < w->field_count && d->bodies; k++)
         if (w->fields[k].desc.bodies) {
-            demi_refuse(w, "dem_field_add", "bodies is %d, but field %d averages bodies already, "
+            demi_refuse(w, __func__, "bodies is %d, but field %d averages bodies already, "
                         "and each body has room for one average; set bodies to 0, or use that "
                         "field", d->bodies, k + 1);
             return id;
@@ -29531,11 +29520,11 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1) ||
         (d->bodies && !demi_array_begin(w, DEMI_AVERAGED, &w->bodies.averaged))) {
         demi_free(w, field.sums);
-        demi_no_memory(w, "dem_field_add");
+        demi_no_memory(w, __func__);
         return id;
     }
     w->fields[w->field_count++] = field;
-    demi_built(w, "dem_field_add");
+    demi_built(w, __func__);
     id.id = w->field_count;
     return id;
 }
@@ -29547,9 +29536,9 @@ static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id)
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
-    if (demi_null_look(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
     size_t n;
-    const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
+    const demi_field *f = demi_field_find((dem_world *)w, __func__, id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memcpy(data->cells, f->desc.cells, sizeof data->cells);
     data->box = f->desc.box;
@@ -29565,8 +29554,8 @@ DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_dat
     return DEM_OK;
 }
 DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
-    if (demi_null(w, "dem_field_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_field *f = demi_field_find(w, "dem_field_reset", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_field *f = demi_field_find(w, __func__, id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
     if (f->desc.bodies && w->bodies.count)
@@ -29576,11 +29565,11 @@ DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
 }
 DEM_API dem_result dem_body_means_get(const dem_world *w, dem_body body, dem_body_means *out) {
     int i, k;
-    if (demi_null_look(w, "dem_body_means_get", out, "means")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "means")) return DEM_ERROR_ARGUMENT;
     if (!w->bodies.averaged)
-        return demi_refuse(w, "dem_body_means_get", "no field averages bodies; add one with bodies "
+        return demi_refuse(w, __func__, "no field averages bodies; add one with bodies "
                            "= 1 (dem_field_desc)");
-    i = demi_body_index((dem_world *)w, "dem_body_means_get", body);
+    i = demi_body_index((dem_world *)w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->samples = (uint64_t)w->bodies.means[DEMI_MEANS*i];
@@ -29619,11 +29608,11 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     size_t c;
     double n, volume, v[3];
     int e;
-    if (demi_null_look(w, "dem_field_cell_get", out, "cell")) return DEM_ERROR_ARGUMENT;
-    if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "cell")) return DEM_ERROR_ARGUMENT;
+    if (!demi_field_find((dem_world *)w, __func__, id)) return DEM_ERROR_ARGUMENT;
     dem_field_get(w, id, &d);
     if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
-        return demi_refuse(w, "dem_field_cell_get", "cell (%d, %d, %d) does not exist, the field "
+        return demi_refuse(w, __func__, "cell (%d, %d, %d) does not exist, the field "
                            "has %d x %d x %d cells; indices start at 0", i, j, k, d.cells[0],
                            d.cells[1], d.cells[2]);
     memset(out, 0, sizeof *out);
@@ -30110,13 +30099,12 @@ static dem_result demi_events_needed(dem_world *w, const char *call) {
     return demi_refuse(w, call, "contacts are not recorded; call dem_events_record before the run");
 }
 DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) {
-    const char *call = "dem_events_record";
-    if (demi_null(w, call, desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     if (!w->desc.ledger)
-        return demi_refuse(w, call, "desc.ledger is 0, must be 1, because contacts only then "
+        return demi_refuse(w, __func__, "desc.ledger is 0, must be 1, because contacts only then "
                            "report what they lose; set it when the world is created");
     if (desc->begins < 0 || desc->begins > 1)
-        return demi_refuse(w, call, "begins is %d, must be 0 or 1; start from DEM_EVENTS_DESC",
+        return demi_refuse(w, __func__, "begins is %d, must be 0 or 1; start from DEM_EVENTS_DESC",
                            desc->begins);
     w->events.desc = *desc;
     if (!desc->function) w->events.n.pending = 0;
@@ -30125,25 +30113,24 @@ DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) 
     return DEM_OK;
 }
 DEM_API dem_result dem_events_stop(dem_world *w) {
-    if (demi_null(w, "dem_events_stop", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     demi_events_clear(w);
     demi_events_switch(w, 0);
     memset(&w->events.desc, 0, sizeof w->events.desc);
     return DEM_OK;
 }
 DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
-    const char *call = "dem_events_open_each";
     dem_event *all = 0;
     demi_calling was;
     int i, n;
-    if (demi_null(w, call, w, "world") || demi_events_needed(w, call) != DEM_OK) return -1;
+    if (demi_null(w, __func__, w, "world") || demi_events_needed(w, __func__) != DEM_OK) return -1;
     n = w->events.n.open;
     if (!fn || !n) return n;
     all = (dem_event *)demi_alloc(w, (size_t)n, sizeof *all);
-    if (!all) { demi_no_memory(w, call); return -1; }
+    if (!all) { demi_no_memory(w, __func__); return -1; }
     for (i = 0; i < n; i++) all[i] = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
     qsort(all, (size_t)n, sizeof *all, demi_event_compare);
-    was = demi_calls(w, call, 0);
+    was = demi_calls(w, __func__, 0);
     for (i = 0; i < n; i++) fn(&all[i], user);
     demi_called(w, was);
     demi_free(w, all);
@@ -30316,25 +30303,25 @@ static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_
     return DEM_OK;
 }
 DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
-    const char *call = "dem_cell_set";
     demi_strained *c;
     dem_cell_desc before;
     dem_real rate[3], most[3];
     double lo[3], hi[3], to[3];
     int k, moves = 0;
-    if (demi_null(w, call, desc, "desc") || demi_rows_check(w, call, demi_cell_rows, desc, "",
-            "start from DEM_CELL_DESC and set only what differs")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, desc, "desc") ||
+        demi_rows_check(w, __func__, demi_cell_rows, desc, "", "start from DEM_CELL_DESC and set "
+                        "only what differs")) return DEM_ERROR_ARGUMENT;
     c = &w->cell;
     if (!demi_response_is(w, DEMI_LAWS))
-        return demi_refuse(w, call, "contacts of this world are impulses, whose solvers do not see "
-                           "the flow of a cell; use DEM_RESPONSE_SPRINGS");
+        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solvers do not "
+                           "see the flow of a cell; use DEM_RESPONSE_SPRINGS");
     if (w->team)
-        return demi_refuse(w, call, "this world is a slab, and borders of slabs do not move; use "
-                           "threads");
-    if (demi_cell_axes(w, call, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
+        return demi_refuse(w, __func__, "this world is a slab, and borders of slabs do not move; "
+                           "use threads");
+    if (demi_cell_axes(w, __func__, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = c->desc;
     c->desc = *desc;
-    if (moves && demi_cell_refuse(w, call)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
+    if (moves && demi_cell_refuse(w, __func__)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
     if (!moves && !c->on) return DEM_OK;
     if (!c->on) {
         demi_domain_limits(w, lo, hi);
@@ -30351,7 +30338,7 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
     return DEM_OK;
 }
 DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
-    if (demi_null_look(w, "dem_cell_state_get", out, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "state")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->box = w->desc.domain;
     out->offset = (dem_real)w->cell.offset;
@@ -30400,16 +30387,16 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     dem_contact_info info;
     dem_vec3 branch;
     int d, k;
-    if (demi_null_look(w, "dem_stress_get", s, "stress")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
     memset(s, 0, sizeof *s);
     if (!w->stage.list_valid) {
-        demi_list_stale(w, "dem_stress_get");
+        demi_list_stale(w, __func__);
         return DEM_ERROR_ARGUMENT;
     }
     s->volume = demi_volume(w);
     if (!(s->volume > 0)) {
         s->volume = 0;
-        return demi_refuse(w, "dem_stress_get", "the domain has the volume 0; set desc.domain "
+        return demi_refuse(w, __func__, "the domain has the volume 0; set desc.domain "
                            "along all axes");
     }
     for (d = 0; d < w->domain_count; d++) {
@@ -31534,14 +31521,14 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     return c;
 }
 DEM_API void dem_overlap_max_reset(dem_world *w) {
-    if (demi_null(w, "dem_overlap_max_reset", w, "world")) return;
+    if (demi_null(w, __func__, w, "world")) return;
     w->booked.overlap_max = 0;
 }
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
-    if (demi_null_look(w, "dem_contacts_get", w, "world")) return -1;
+    if (demi_null_look(w, __func__, w, "world")) return -1;
     int d, k, n = 0;
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
@@ -31570,14 +31557,14 @@ static dem_result demi_contacts_settle(dem_world *w) {
    written back; a persistent contact hands over its own. If fn changes a value, forces are computed
    again before the next step. */
 DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
-    if (demi_null(w, "dem_contacts_each", fn ? w : 0, "fn")) return -1;
+    if (demi_null(w, __func__, fn ? w : 0, "fn")) return -1;
     size_t stride;
     dem_contact_info info;
     dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
     int d, k, e, n = 0, changed = 0;
     demi_calling was_calling;
     if (demi_contacts_settle(w) != DEM_OK) return -1;
-    was_calling = demi_calls(w, "dem_contacts_each", 0);
+    was_calling = demi_calls(w, __func__, 0);
     stride = (size_t)w->near.stride;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -31618,7 +31605,7 @@ static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *us
     b->count++;
 }
 DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
-    if (demi_null(w, "dem_bonds_make", make ? w : 0, "make")) return -1;
+    if (demi_null(w, __func__, make ? w : 0, "make")) return -1;
     demi_bonds b = {make, user, gap, 0};
     double least = -1, most;
     int i;
@@ -31627,7 +31614,7 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
             least = (double)w->bodies.pos[4*i + 3];
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
-        return demi_refuse(w, "dem_bonds_make", "gap is %g m, must be >= 0 and at most %g m, the "
+        return demi_refuse(w, __func__, "gap is %g m, must be >= 0 and at most %g m, the "
                            "range of your law for the smallest grains; set a larger law_range or "
                            "law_range_radii when the world is created", (double)gap,
                            DEMI_MAX(most, 0)), -1;
@@ -31740,19 +31727,19 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
    plane of the sieve have a scalar product below -0.25, and both normals lie within the friction
    angle of that plane, |n_z| <= mu |n_xy|. */
 DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real speed) {
-    if (demi_null_look(w, "dem_sieve_blinded_get", w, "world")) return -1;
-    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded_get", sieve);
+    if (demi_null_look(w, __func__, w, "world")) return -1;
+    const int id = demi_wall_find((dem_world *)w, __func__, sieve);
     const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
     dem_vec3 across, n, m;
     dem_real mu, mu_m;
     int d, k, j, body, same, count = 0;
     if (!wall) return -1;
     if (!wall->sieve.kind) {
-        demi_refuse(w, "dem_sieve_blinded_get", "wall %d is not a sieve; pass the id that "
+        demi_refuse(w, __func__, "wall %d is not a sieve; pass the id that "
                     "dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].kept;
@@ -32027,15 +32014,14 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
     return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
 }
 DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_repose *out) {
-    const char *call = "dem_repose_heap_get";
     dem_world *w = (dem_world *)world;          /* for error messages and temporary memory */
     demi_surface s;
     double highest = 0;
     dem_result result;
     int i, first, last, good = 0;
-    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
-    result = demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s);
+    result = demi_repose_begin(w, __func__, box, demi_v(0, 0, 0), &s);
     if (result != DEM_OK) return result;
     s.centre = demi_heap_centre(w, &s);
     s.around = 1;
@@ -32048,31 +32034,30 @@ DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_
         if (!(demi_surface_row(&s, last) >= 0.2*highest)) break;
     if (s.top) good = demi_surface_line(&s, first, last, out);
     out->angle = -out->angle;                   /* the slope of a heap falls outward */
-    return demi_repose_end(w, call, &s, good);
+    return demi_repose_end(w, __func__, &s, good);
 }
 DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *out) {
-    const char *call = "dem_repose_drum_get";
     dem_world *w = (dem_world *)world;
     demi_surface s;
     dem_result result;
     int good = 0;
-    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
-        return demi_refuse(w, call, "axis is (%g, %g, %g), must be finite and not zero",
+        return demi_refuse(w, __func__, "axis is (%g, %g, %g), must be finite and not zero",
                            (double)axis.x, (double)axis.y, (double)axis.z);
-    result = demi_repose_begin(w, call, box, axis, &s);
+    result = demi_repose_begin(w, __func__, box, axis, &s);
     if (result != DEM_OK) return result;
     if (!demi_surface_look(w, &s)) good = -1;
     if (s.top) good = demi_surface_line(&s, s.rows/4, s.rows - s.rows/4, out);
-    return demi_repose_end(w, call, &s, good);
+    return demi_repose_end(w, __func__, &s, good);
 }
 
 /* Bodies enter the digest in the order of their slots and contact histories as a sum of individual
    digests, so that it does not depend on the order of bodies or contacts in the arrays. */
 DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_hash_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     const demi_periods p = demi_periods_of(w);
     uint64_t h = DEMI_HASH_START;
     int i;
@@ -32276,15 +32261,14 @@ static dem_result demi_mixing_check(dem_world *w, const char *call, const dem_mi
 }
 DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *d,
                                   dem_mixing *out) {
-    const char *call = "dem_mixing_get";
     dem_world *w = (dem_world *)world;
     demi_periods p;
     demi_mix_key *key;
     signed char *kind;
     int32_t *count;
     int i, cells;
-    if (demi_null_look(w, call, d, "desc") || demi_null_look(w, call, out, "mixing") ||
-        demi_mixing_check(w, call, d) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, d, "desc") || demi_null_look(w, __func__, out, "mixing") ||
+        demi_mixing_check(w, __func__, d) != DEM_OK) return DEM_ERROR_ARGUMENT;
     p = demi_periods_of(w);
     cells = d->cells[0]*d->cells[1]*d->cells[2];
     key = (demi_mix_key *)demi_alloc(w, (size_t)w->bodies.count + 1, sizeof *key);
@@ -32311,7 +32295,7 @@ DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc 
     demi_free(w, key);
     demi_free(w, kind);
     demi_free(w, count);
-    return i ? DEM_OK : demi_no_memory(w, call);
+    return i ? DEM_OK : demi_no_memory(w, __func__);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -33192,23 +33176,22 @@ static int demi_mesh_begin(dem_world *w, const char *call, dem_mesh *mesh,
 }
 DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
                           dem_mesh *mesh, dem_mesh_health *health) {
-    if (demi_mesh_begin(world, "dem_mesh_parse", mesh, health) ||
-        demi_null_write(world, "dem_mesh_parse", data, "data")) return DEM_ERROR_ARGUMENT;
-    return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
+    if (demi_mesh_begin(world, __func__, mesh, health) ||
+        demi_null_write(world, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
+    return demi_parse(world, __func__, name, (const char *)data, size, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health) {
-    if (demi_mesh_begin(world, "dem_mesh_read", mesh, health)) return DEM_ERROR_ARGUMENT;
-    return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
+    if (demi_mesh_begin(world, __func__, mesh, health)) return DEM_ERROR_ARGUMENT;
+    return demi_read(world, __func__, path, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
                                       dem_mesh *mesh, dem_mesh_health *health) {
-    const char *call = "dem_mesh_part_read";
-    if (demi_mesh_begin(world, call, mesh, health) ||
-        demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
-    return demi_read(world, call, path, 3, part, mesh, health);
+    if (demi_mesh_begin(world, __func__, mesh, health) ||
+        demi_null_write(world, __func__, part, "part")) return DEM_ERROR_ARGUMENT;
+    return demi_read(world, __func__, path, 3, part, mesh, health);
 }
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
     if (world && mesh) demi_mesh_free(world, mesh);
@@ -33216,12 +33199,12 @@ DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
 
 DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, dem_quat rotation,
                                   dem_vec3 to) {
-    if (demi_null_write(w, "dem_mesh_place", mesh, "mesh")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
     const dem_quat q = demi_quat_most(rotation) > 0 ? demi_quat_unit(rotation)
         : dem_quat_make(1, 0, 0, 0);
     int i;
     if (!(scale > 0) || !demi_finite(scale) || !demi_quat_finite(rotation) || !demi_place(to))
-        return demi_refuse(w, "dem_mesh_place", "scale is %g, must be finite and > 0; rotation and "
+        return demi_refuse(w, __func__, "scale is %g, must be finite and > 0; rotation and "
                            "translation must be finite, and the translation within 1e15 m",
                            (double)scale);
     for (i = 0; i < mesh->vertex_count; i++)
@@ -33248,25 +33231,24 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
    memory runs out later, the walls added so far are removed. */
 DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_wall_part *parts, dem_wall *walls) {
-    const char *call = "dem_wall_parts_add";
     char sentence[sizeof w->error];
     dem_result result = DEM_OK;
     demi_wall *made;
     dem_wall wall = demi_no_wall;
     int i;
     for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
-    if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
-        return demi_refuse(w, call, "count is %d, must be > 0", count);
+        return demi_refuse(w, __func__, "count is %d, must be > 0", count);
     made = (demi_wall *)demi_alloc(w, (size_t)count, sizeof *made);
-    if (!made) return demi_no_memory(w, call);
+    if (!made) return demi_no_memory(w, __func__);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall.id = w->wall_count + i + 1;
         result = demi_part_make(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, wall,
                                 made + i);
     }
     if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)w->wall_count + (size_t)count))
-        result = demi_no_memory(w, call);
+        result = demi_no_memory(w, __func__);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall = demi_wall_enter(w, "dem_wall_mesh_add", made + i);
         memset(made + i, 0, sizeof *made);
@@ -33282,8 +33264,8 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
         demi_wall_free(w, made + i);
     }
     demi_free(w, made);
-    if (result == DEM_OK) { demi_built(w, call); return DEM_OK; }
-    return demi_fail(w, result, "%s: %.440s", call, sentence);
+    if (result == DEM_OK) { demi_built(w, __func__); return DEM_OK; }
+    return demi_fail(w, result, "%s: %.440s", __func__, sentence);
 }
 
 /* Turns a mesh of width 2 into a profile. Fails if a segment has the same corner twice; then it
@@ -33310,23 +33292,22 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
                                      size_t size, dem_profile *profile) {
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (demi_null_write(world, "dem_profile_parse", profile, "profile")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, profile, "profile")) return DEM_ERROR_ARGUMENT;
     memset(profile, 0, sizeof *profile);
-    if (demi_null_write(world, "dem_profile_parse", data, "data")) return DEM_ERROR_ARGUMENT;
-    result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
-                        0);
+    if (demi_null_write(world, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
+    result = demi_parse(world, __func__, name, (const char *)data, size, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
-    return demi_profile_take(world, "dem_profile_parse", name, &lists, profile);
+    return demi_profile_take(world, __func__, name, &lists, profile);
 }
 
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (demi_null_write(world, "dem_profile_read", profile, "profile")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, profile, "profile")) return DEM_ERROR_ARGUMENT;
     memset(profile, 0, sizeof *profile);
-    result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
+    result = demi_read(world, __func__, path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
-    return demi_profile_take(world, "dem_profile_read", path, &lists, profile);
+    return demi_profile_take(world, __func__, path, &lists, profile);
 }
 
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
@@ -33645,18 +33626,17 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
 }
 DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int count,
                                     dem_real *positions, dem_real *radii, dem_spheres_fit *fit) {
-    const char *call = "dem_mesh_spheres";
     demi_closed c;
     dem_result result = DEM_ERROR_ARGUMENT;
-    if (demi_null_write(w, call, mesh, "mesh") || demi_null_look(w, call, radii, "radii") ||
-        demi_null_look(w, call, positions, "positions")) return result;
+    if (demi_null_write(w, __func__, mesh, "mesh") || demi_null_look(w, __func__, radii, "radii") ||
+        demi_null_look(w, __func__, positions, "positions")) return result;
     if (count < 1 || count > 1000)
-        return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", call, count);
-    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+        return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", __func__, count);
+    if (!demi_mesh_sound(w, __func__, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
                          mesh->triangles, 3)) return result;
-    if (!demi_closed_find(w, mesh, &c)) result = demi_no_memory(w, call);
-    else if (demi_closed_body(w, call, &c))
-        result = demi_mesh_spheres(w, call, mesh, c.sign, count, positions, radii, fit);
+    if (!demi_closed_find(w, mesh, &c)) result = demi_no_memory(w, __func__);
+    else if (demi_closed_body(w, __func__, &c))
+        result = demi_mesh_spheres(w, __func__, mesh, c.sign, count, positions, radii, fit);
     demi_closed_free(w, &c);
     return result;
 }
@@ -34607,55 +34587,55 @@ static dem_result demi_grains_parse(dem_world *w, const char *call, const char *
 }
 DEM_API dem_result dem_grains_parse(dem_world *w, const char *name, const void *data, size_t size,
                                     dem_grains *g) {
-    if (demi_null_write(w, "dem_grains_parse", g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, g, "grains")) return DEM_ERROR_ARGUMENT;
     memset(g, 0, sizeof *g);
-    if (demi_null_write(w, "dem_grains_parse", data, "data")) return DEM_ERROR_ARGUMENT;
-    return demi_grains_parse(w, "dem_grains_parse", name, (const char *)data, size, g);
+    if (demi_null_write(w, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
+    return demi_grains_parse(w, __func__, name, (const char *)data, size, g);
 }
 DEM_API dem_result dem_grains_read(dem_world *w, const char *path, dem_grains *g) {
     char *bytes = 0;
     size_t size = 0;
     dem_result result;
-    if (demi_null_write(w, "dem_grains_read", g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, g, "grains")) return DEM_ERROR_ARGUMENT;
     memset(g, 0, sizeof *g);
-    result = demi_load(w, "dem_grains_read", path, &bytes, &size);
+    result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_grains_parse(w, "dem_grains_read", path, bytes, size, g);
+        result = demi_grains_parse(w, __func__, path, bytes, size, g);
     demi_free(w, bytes);
     return result;
 }
 DEM_API void dem_grains_free(dem_world *w, dem_grains *g) {
-    if (demi_null_look(w, "dem_grains_free", g, "grains")) return;
+    if (demi_null_look(w, __func__, g, "grains")) return;
     demi_grains_free(w, g);
 }
 DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem_grains *g) {
-    const char *call = "dem_grains_add";
     int i, first;
-    if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, g, "grains")) return DEM_ERROR_ARGUMENT;
     if (g->count < 0 || (g->count && (!g->positions || !g->radii)))
-        return demi_refuse(w, call, "count is %d, or positions or radii are null; count must be >= "
-                           "0 with both arrays; pass what dem_grains_read filled in", g->count);
+        return demi_refuse(w, __func__, "count is %d, or positions or radii are null; count must "
+                           "be >= 0 with both arrays; pass what dem_grains_read filled in",
+                           g->count);
     for (i = 0; i < g->count; i++) {
         dem_material m = material;
         int index = 0;
         if (!m.id && !g->materials)
-            return demi_refuse(w, call, "material is null and the file names no materials; pass an "
-                               "id that dem_material_add returned");
+            return demi_refuse(w, __func__, "material is null and the file names no materials; "
+                               "pass an id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
-        if (demi_material_index(w, call, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
+        if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
             (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
             (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
-            return demi_refuse(w, call, "grain %d has a radius of %g m; the radius must be > 0, "
-                               "and position, velocity and spin must be finite; no grain was added",
-                               i, (double)g->radii[i]);
-        if (demi_mass_refuse(w, call, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
+            return demi_refuse(w, __func__, "grain %d has a radius of %g m; the radius must be > "
+                               "0, and position, velocity and spin must be finite; no grain was "
+                               "added", i, (double)g->radii[i]);
+        if (demi_mass_refuse(w, __func__, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
     if (!demi_list_drop(w) ||
         !demi_bodies_reserve(w, (size_t)first + (size_t)DEMI_MAX(g->count, 0)))
-        return demi_no_memory(w, call);
+        return demi_no_memory(w, __func__);
     for (i = 0; i < g->count; i++) {
         const int m = (material.id ? material.id : g->materials[i]) - 1;
         const uint32_t slot = demi_body_append(w, m, g->radii[i], demi_at(g->positions + 3*i));
@@ -34669,7 +34649,7 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
         w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
-    demi_built(w, call);
+    demi_built(w, __func__);
     return DEM_OK;
 }
 
@@ -35035,9 +35015,9 @@ static dem_result demi_vtp(demi_columns *s, const char *path, int verts, int lin
 }
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     demi_columns s;
-    demi_grain_columns(&s, world, "dem_vtp_write");
+    demi_grain_columns(&s, world, __func__);
     return demi_vtp(&s, path, s.column[0].count, 0, 0);
 }
 
@@ -35073,7 +35053,7 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     for (k = 0; k < l->stride; k++) l->memory[k][n] = memory[k];
 }
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     demi_columns s;
     demi_lines l;
     char memory[24];
@@ -35084,7 +35064,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     if (n < 0) return DEM_ERROR_ARGUMENT;
     l.count = 0;
     l.stride = demi_memory_told(world);
-    demi_columns_begin(&s, world, "dem_contacts_vtp_write");
+    demi_columns_begin(&s, world, __func__);
     l.ends = demi_columns_reals(&s, "Points", "position", 3, 2*(int64_t)n);
     l.force = demi_columns_reals(&s, "CellData", "force", 3, n);
     l.overlap = demi_columns_reals(&s, "CellData", "overlap", 1, n);
@@ -35105,7 +35085,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
 
 /* Legacy VTK in its binary form, in which numbers are big-endian. */
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
     const double time = dem_world_time_get(world);
     const int turn = demi_is_little_endian();
@@ -35113,7 +35093,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     demi_columns s;
     demi_out o;
     dem_result result;
-    demi_grain_columns(&s, world, "dem_vtk_write");
+    demi_grain_columns(&s, world, __func__);
     result = demi_columns_open(&s, &o, path);
     if (result != DEM_OK) return result;
     fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
@@ -35144,7 +35124,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
    accepts only chemical elements. A domain becomes the lattice, with 1 m along an axis without
    extent. */
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
@@ -35157,7 +35137,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     demi_out o;
     int i, k, e;
     dem_result result;
-    demi_grain_columns(&s, world, "dem_xyz_write");
+    demi_grain_columns(&s, world, __func__);
     result = demi_columns_open(&s, &o, path);
     if (result != DEM_OK) return result;
     length[0] = (double)(d.hi.x - d.lo.x);
@@ -35296,12 +35276,12 @@ static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
         }
 }
 DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_surfaces_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     demi_columns columns;
     demi_surfaces s;
     memset(&s, 0, sizeof s);
     demi_surfaces_draw(world, &s);
-    demi_columns_begin(&columns, world, "dem_surfaces_vtp_write");
+    demi_columns_begin(&columns, world, __func__);
     s.place = demi_columns_reals(&columns, "Points", "position", 3, s.points);
     s.velocity = demi_columns_reals(&columns, "PointData", "velocity", 3, s.points);
     s.id = demi_columns_ints(&columns, "PointData", "id", 'u', s.points);
@@ -35375,7 +35355,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
 
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1) {
-    if (demi_null_write(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     int64_t points = 0, triangles = 0, p = 0, t = 0;
     const dem_real z[2] = {z0, z1};
     dem_real *place;
@@ -35387,10 +35367,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
     }
     if (profiles && !(z1 > z0))
-        return demi_refuse(world, "dem_walls_vtp_write", "z0 is %g m and z1 is %g m, but z0 must "
-                           "be below z1 to extrude a profile between them; change them", (double)z0,
-                           (double)z1);
-    demi_columns_begin(&s, world, "dem_walls_vtp_write");
+        return demi_refuse(world, __func__, "z0 is %g m and z1 is %g m, but z0 must be below z1 to "
+                           "extrude a profile between them; change them", (double)z0, (double)z1);
+    demi_columns_begin(&s, world, __func__);
     place = demi_columns_reals(&s, "Points", "position", 3, points);
     id = demi_columns_ints(&s, "CellData", "wall", 'i', triangles);
     corners = demi_columns_ints(&s, "Polys", "connectivity", 'i', 3*triangles);
@@ -35459,14 +35438,12 @@ static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wal
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path) {
-    if (demi_null_write(world, "dem_wall_loads_csv_write", world,
-                        "world")) return DEM_ERROR_ARGUMENT;
-    const char *call = "dem_wall_loads_csv_write";
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     double value[DEMI_LOADS];
     char line[DEMI_CSV_LINE];
-    if (demi_loads_values(world, call, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_loads_values(world, __func__, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
     demi_csv_line(line, dem_world_time_get(world), value, DEMI_LOADS);
-    return demi_csv_append(world, call, path, demi_loads_heading, line);
+    return demi_csv_append(world, __func__, path, demi_loads_heading, line);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -35487,14 +35464,13 @@ static void demi_table_vec(demi_out *o, dem_vec3 v) {
     demi_table_put(o, 0, value, 3);
 }
 DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path) {
-    const char *call = "dem_bodies_csv_write";
     const dem_world *w = world;
     demi_periods p;
     demi_out o;
     dem_result result;
     int i, k, length;
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_out_open(&o, world, call, path);
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     p = demi_periods_of(w);
     demi_finish(world);
@@ -35546,28 +35522,26 @@ static void demi_table_contact(const dem_contact_info *c, dem_real *memory, void
     fputc('\n', o->file);
 }
 DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path) {
-    const char *call = "dem_contacts_csv_write";
     demi_out o;
     dem_result result;
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     result = demi_contacts_settle(world);
-    if (result == DEM_OK) result = demi_out_open(&o, world, call, path);
+    if (result == DEM_OK) result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     fputs("a,b,wall,x,y,z,nx,ny,nz,overlap,fx,fy,fz\n", o.file);
     dem_contacts_each(world, demi_table_contact, &o);
     return demi_out_close(&o);
 }
 DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path) {
-    const char *call = "dem_field_csv_write";
     const demi_field *f;
     demi_grid g;
     demi_out o;
     dem_result result;
     int at[3];
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    f = demi_field_find(world, call, field);
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
+    f = demi_field_find(world, __func__, field);
     if (!f) return DEM_ERROR_ARGUMENT;
-    result = demi_out_open(&o, world, call, path);
+    result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     g = demi_grid_of(world, (demi_field *)f);
     fprintf(o.file, "x,y,z,grains,solid,density,vx,vy,vz%s%s\n", f->desc.stress ?
@@ -35604,19 +35578,18 @@ DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const 
 }
 DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
                                                   const char *path) {
-    const char *call = "dem_outlet_residence_csv_write";
     const demi_outlet *from;
     demi_out o;
     dem_result result;
     double sum = 0, total = 0;
     int k, used = 0;
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    from = demi_outlet_find(world, call, outlet);
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
+    from = demi_outlet_find(world, __func__, outlet);
     if (!from) return DEM_ERROR_ARGUMENT;
     if (!(from->desc.residence_bin > 0))
-        return demi_refuse(world, call, "outlet %d has residence_bin 0 s, must be > 0 to measure "
-                           "residence times; set it in its desc", (int)outlet.id);
-    result = demi_out_open(&o, world, call, path);
+        return demi_refuse(world, __func__, "outlet %d has residence_bin 0 s, must be > 0 to "
+                           "measure residence times; set it in its desc", (int)outlet.id);
+    result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     for (k = 0; k < DEM_RESIDENCE_BINS; k++) {
         total += (double)from->state.residence_count[k];
@@ -35652,13 +35625,12 @@ static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
 }
 DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
                                    dem_impacts *out) {
-    const char *call = "dem_impacts_get";
     int i, k;
-    if (demi_null_look(w, call, out, "impacts")) return DEM_ERROR_ARGUMENT;
-    if (demi_events_needed(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "impacts")) return DEM_ERROR_ARGUMENT;
+    if (demi_events_needed(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
-        return demi_refuse(w, call, "material %d does not exist; there are %d, and id 0 means any",
-                           (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
+        return demi_refuse(w, __func__, "material %d does not exist; there are %d, and id 0 means "
+                           "any", (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
                            w->material_count);
     memset(out, 0, sizeof *out);
     out->seconds = w->clock.time - w->events.n.since;
@@ -35690,15 +35662,14 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
     return DEM_OK;
 }
 DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
-    const char *call = "dem_impacts_csv_write";
     demi_out out;
     dem_result result;
     double seconds;
     char number[5][40];
     int a, b, i, k;
-    if (demi_null_write(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_events_needed(w, call);
-    if (result == DEM_OK) result = demi_out_open(&out, w, call, path);
+    if (demi_null_write(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_events_needed(w, __func__);
+    if (result == DEM_OK) result = demi_out_open(&out, w, __func__, path);
     if (result != DEM_OK) return result;
     seconds = DEMI_MAX(w->clock.time - w->events.n.since, 1e-300);
     fprintf(out.file, "material_a,material_b,from,to,impacts,losses,power\n");
@@ -35735,16 +35706,15 @@ static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wa
 }
 DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coefficient,
                                      double hardness, dem_wear *wear) {
-    const char *call = "dem_wall_wear_get";
     const demi_worn *worn;
     dem_result result;
-    if (demi_null_look(w, call, wear, "wear")) return DEM_ERROR_ARGUMENT;
-    worn = demi_worn_of(w, call, wall, &result);
+    if (demi_null_look(w, __func__, wear, "wear")) return DEM_ERROR_ARGUMENT;
+    worn = demi_worn_of(w, __func__, wall, &result);
     if (result != DEM_OK) return result;
     if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
         !(hardness > 0))
-        return demi_refuse(w, call, "coefficient is %g, must be >= 0, and hardness is %g Pa, must "
-                           "be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
+        return demi_refuse(w, __func__, "coefficient is %g, must be >= 0, and hardness is %g Pa, "
+                           "must be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
                            hardness);
     memset(wear, 0, sizeof *wear);
     wear->seconds = w->clock.time - w->events.n.since;
@@ -35754,12 +35724,11 @@ DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coeffic
     return DEM_OK;
 }
 DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, int capacity) {
-    const char *call = "dem_wall_wear_facets_get";
     const demi_worn *worn;
     dem_result result;
     int k, count;
-    if (demi_null_look(w, call, w, "world")) return -1;
-    worn = demi_worn_of(w, call, wall, &result);
+    if (demi_null_look(w, __func__, w, "world")) return -1;
+    worn = demi_worn_of(w, __func__, wall, &result);
     if (result != DEM_OK) return -1;
     k = demi_wall_place(wall);
     count = demi_wall_kinds[w->walls[k].kind].corners > 1 ? w->walls[k].element_count : 0;
@@ -36195,7 +36164,7 @@ static void demi_filed_current(const dem_world *w, demi_filed *filed) {
     if (!filed->count) filed->rows = filed->stride = 0;
 }
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
-    if (demi_null_write(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const int lost = demi_body_lost(w);
     demi_checkpoint_head head;
     demi_out out;
@@ -36203,11 +36172,11 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     dem_result result;
     uint64_t sum;
     if (lost >= 0)
-        return demi_refuse(w, "dem_checkpoint_write", "body %u no longer has a finite position, "
+        return demi_refuse(w, __func__, "body %u no longer has a finite position, "
                            "velocity and force: the run has blown up; go back to an earlier "
                            "checkpoint; %s was not changed", (unsigned)w->bodies.slot[lost] + 1,
                            path ? path : "the file");
-    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
+    result = demi_out_open(&out, w, __func__, path);
     if (result != DEM_OK) return result;
     demi_filed_current(w, &w->filed);
     memset(&head, 0, sizeof head);
@@ -37101,10 +37070,10 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
 }
 
 DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
-    if (demi_null(w, "dem_checkpoint_read", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     char *bytes = 0;
     size_t size = 0;
-    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
+    dem_result result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK)
         result = demi_checkpoint_parse(w, path, bytes, size);
     demi_free(w, bytes);
@@ -37285,9 +37254,8 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
 }
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
                                                const char *allowed) {
-    const char *call = "dem_checkpoint_read_changed";
     const size_t pairs = (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair);
-    if (demi_null(w, call, allowed, "allowed")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, allowed, "allowed")) return DEM_ERROR_ARGUMENT;
     const dem_world own = *w;
     demi_checkpoint_head head;
     demi_changes c;
@@ -37296,7 +37264,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     size_t size = 0;
     int ledger, growth;
     dem_result result = demi_changes_check(w, allowed);
-    if (result == DEM_OK) result = demi_load(w, call, path, &bytes, &size);
+    if (result == DEM_OK) result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK) result = demi_checkpoint_check(w, path, bytes, size, &head);
     memset(&c, 0, sizeof c);
     memset(&s, 0, sizeof s);
@@ -37306,7 +37274,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     if (result == DEM_OK && demi_word_in(allowed, "pairs", 5)) {
         c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
         if (c.pairs) memcpy(c.pairs, w->pairs, pairs);
-        else result = demi_no_memory(w, call);
+        else result = demi_no_memory(w, __func__);
     }
     if (result == DEM_OK) {
         s.from = bytes + sizeof head;
@@ -37323,7 +37291,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
             w->bodies.backward = demi_integrator_of(w)->backward;
             w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
         }
-        if (result == DEM_ERROR_MEMORY) demi_no_memory(w, call);
+        if (result == DEM_ERROR_MEMORY) demi_no_memory(w, __func__);
     }
     demi_free(w, c.pairs);
     demi_free(w, bytes);
@@ -37634,15 +37602,15 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
 DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     dem_output id;
     demi_output *o;
-    const char *bad, *call = "dem_output_add";
+    const char *bad;
     char *path = 0, *columns = 0;
     id.id = 0;
-    if (demi_null(w, call, desc, "desc")) return id;
+    if (demi_null(w, __func__, desc, "desc")) return id;
     if (desc->kind == DEM_OUTPUT_CSV && demi_output_mixes(desc) &&
-        demi_mixing_check(w, call, &desc->mixing) != DEM_OK) return id;
+        demi_mixing_check(w, __func__, &desc->mixing) != DEM_OK) return id;
     bad = demi_output_bad(w, desc);
     if (bad) {
-        demi_refuse(w, call, "%s", bad);
+        demi_refuse(w, __func__, "%s", bad);
         return id;
     }
     if (desc->path) path = demi_text_copy(w, desc->path);
@@ -37652,7 +37620,7 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
                    (size_t)w->look.output_count + 1)) {
         demi_free(w, path);
         demi_free(w, columns);
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return id;
     }
     o = &w->look.outputs[w->look.output_count++];
@@ -37664,17 +37632,16 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     demi_output_begin(o);
     w->look.outputs_look = demi_outputs_look;
     w->look.outputs_again = demi_outputs_again;
-    demi_built(w, call);
+    demi_built(w, __func__);
     return id;
 }
 DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
-    const char *call = "dem_output_remove";
     demi_output *o;
     int i;
-    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_output_place(w, output.id);
     if (i == w->look.output_count || w->look.outputs[i].id != output.id)
-        return demi_refuse(w, call, "output %d does not exist; it was removed before or is of "
+        return demi_refuse(w, __func__, "output %d does not exist; it was removed before or is of "
                            "another world: give what dem_output_add returned", (int)output.id);
     o = w->look.outputs + i;
     demi_free(w, (char *)o->desc.path);
@@ -38415,7 +38382,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
 DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_findings f;
     dem_advice advice;
-    if (demi_null(w, "dem_world_check", w, "world")) return 0;
+    if (demi_null(w, __func__, w, "world")) return 0;
     memset(&f, 0, sizeof f);
     f.to = findings;
     f.room = findings && capacity > 0 ? capacity : 0;
@@ -38430,7 +38397,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_check_enclosed(w, &f);
     demi_check_overlaps(w, &advice, &f);
     if (!w->bodies.count) return f.count;
-    if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {
+    if (!w->stage.list_valid && demi_rebuild(w, __func__) != DEM_OK) {
         demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
         return f.count;
     }
@@ -38803,9 +38770,9 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     size_t size;
     dem_result result;
     int k;
-    if (demi_null(w, "dem_trials_run", d, "desc") || demi_null(w, "dem_trials_run", out, "trials"))
+    if (demi_null(w, __func__, d, "desc") || demi_null(w, __func__, out, "trials"))
         return DEM_ERROR_ARGUMENT;
-    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_trials_check(w, d) != DEM_OK)
+    if (demi_unbuilt(w, __func__) != DEM_OK || demi_trials_check(w, d) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->duration = d->duration;
@@ -38815,12 +38782,12 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     memcpy(out->observables, d->observable_count ? d->observables : usual,
            (size_t)out->observable_count*sizeof *usual);
     if (!d->observable_count) demi_usual_scales(w, out);
-    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, "dem_trials_run");
+    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, __func__);
     result = demi_dt_settle(w);                 /* fails as a run would */
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);
-    if (!state) return demi_no_memory(w, "dem_trials_run");
-    was = demi_calls(w, "dem_trials_run", 1);       /* copies call the user's functions */
+    if (!state) return demi_no_memory(w, __func__);
+    was = demi_calls(w, __func__, 1);       /* copies call the user's functions */
     result = demi_advise_plan(w, state, size, d->budget > 0 ? d->budget : 60, out);
     for (k = 0; k < DEM_TRIALS; k++)
         if (demi_try_fits(w, &demi_tries[k])) rows[out->count++] = &demi_tries[k];
@@ -39378,14 +39345,14 @@ static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFE
 DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
     demi_calling was;
     int count;
-    if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
+    if (demi_null(w, __func__, out, "effects")) return -1;
     if (!(budget >= 0) || !demi_finite_double(budget)) {
-        demi_refuse(w, "dem_effects_get", "budget is %g s, must be >= 0 and finite; 0 gives only "
+        demi_refuse(w, __func__, "budget is %g s, must be >= 0 and finite; 0 gives only "
                     "states, and 5 s are enough on a quiet machine", budget);
         return -1;
     }
-    if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
-    was = demi_calls(w, "dem_effects_get", 1);  /* copies call the user's functions */
+    if (demi_unbuilt(w, __func__) != DEM_OK) return -1;
+    was = demi_calls(w, __func__, 1);  /* copies call the user's functions */
     count = demi_effects_ask(w, budget, out);
     demi_called(w, was);
     return count;
@@ -39411,7 +39378,7 @@ static void demi_effects_lines(const dem_effect *e, FILE *out) {
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];
-    if (demi_null_look(w, "dem_effects_print", out, "out")) return;
+    if (demi_null_look(w, __func__, out, "out")) return;
     if (dem_effects_get(w, budget, effects) < 0) return;
     fprintf(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);
@@ -39540,9 +39507,9 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 DEM_API void dem_world_destroy(dem_world *w) {
     dem_allocator allocator;
     int chain;
-    if (demi_null(w, "dem_world_destroy", w, "world")) return;
+    if (demi_null(w, __func__, w, "world")) return;
     if (w->look.under_way) {
-        demi_refuse(w, "dem_world_destroy", "called from the function of an output "
+        demi_refuse(w, __func__, "called from the function of an output "
                     "(dem_output_add) while the world runs; return 1 from that function to stop "
                     "the run, then destroy the world");
         return;
@@ -39805,8 +39772,8 @@ static void demi_report(const dem_world *world, FILE *out) {
 }
 DEM_API void dem_world_report(const dem_world *w, FILE *out) {
     demi_calling was;
-    if (demi_null_look(w, "dem_world_report", out, "out")) return;
-    was = demi_look_calls(w, "dem_world_report");
+    if (demi_null_look(w, __func__, out, "out")) return;
+    was = demi_look_calls(w, __func__);
     demi_report(w, out);
     demi_look_called(w, was);
 }
@@ -40840,12 +40807,12 @@ static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
                      "checkpoint", call);
 }
 DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
-    if (!s || demi_null(&s->head, "dem_slabs_step", s, "slabs")) return DEM_ERROR_ARGUMENT;
-    const dem_result result = demi_slabs_usable(s, "dem_slabs_step");
+    if (!s || demi_null(&s->head, __func__, s, "slabs")) return DEM_ERROR_ARGUMENT;
+    const dem_result result = demi_slabs_usable(s, __func__);
     if (result != DEM_OK) return result;
     if (steps < 0)
-        return demi_refuse(&s->head, "dem_slabs_step", "steps is %d, must be >= 0", steps);
-    return demi_steps(&s->head, "dem_slabs_step", steps);
+        return demi_refuse(&s->head, __func__, "steps is %d, must be >= 0", steps);
+    return demi_steps(&s->head, __func__, steps);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -41149,7 +41116,7 @@ static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
 DEM_API void dem_slabs_destroy(dem_slabs *s) {
     dem_allocator allocator;
     int k;
-    if (!s || demi_null(&s->head, "dem_slabs_destroy", s, "slabs")) return;
+    if (!s || demi_null(&s->head, __func__, s, "slabs")) return;
     for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
     allocator = s->head.desc.allocator;
     demi_free_chain(&s->head, DEMI_RUN);
@@ -41204,8 +41171,8 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
 DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     demi_calling was;
     dem_slabs *s;
-    if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
-    was = demi_calls(w, "dem_slabs_create", 1);
+    if (demi_null(w, __func__, desc, "desc")) return 0;
+    was = demi_calls(w, __func__, 1);
     s = demi_slabs_make(w, desc);
     demi_called(w, was);
     return s;
@@ -41457,17 +41424,17 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
-    if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world") ||
-        demi_null(w, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null(&s->head, __func__, w, "world") ||
+        demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     int32_t *add = 0;
     uint8_t *seen = 0;
-    dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
+    dem_result result = demi_slabs_usable(s, __func__);
     const int slots = w->bodies.slot_count;
     demi_calling was[2];
     demi_slab_sums sums;
     int k, i;
-    was[0] = demi_calls(&s->head, "dem_slabs_collect", 1);
-    was[1] = demi_calls(w, "dem_slabs_collect", 1);
+    was[0] = demi_calls(&s->head, __func__, 1);
+    was[1] = demi_calls(w, __func__, 1);
     if (result == DEM_OK) result = demi_slabs_gather(s);
     if (result == DEM_OK) result = demi_slabs_room(s, w, &add, &seen);
     if (result == DEM_OK) {
@@ -41500,7 +41467,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
     return result;
 }
 DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
-    if (!s || demi_null(&s->head, "dem_slabs_loads_reset", s, "slabs")) return;
+    if (!s || demi_null(&s->head, __func__, s, "slabs")) return;
     int k, i;
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
@@ -41514,10 +41481,10 @@ DEM_API const char *dem_slabs_error_get(const dem_slabs *s) {
     "why";
 }
 DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
-    if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null_look(&s->head, __func__, out, "slab")) return DEM_ERROR_ARGUMENT;
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
-        return demi_refuse(&s->head, "dem_slab_get", "slab %d is not here, this process holds "
+        return demi_refuse(&s->head, __func__, "slab %d is not here, this process holds "
                            "slabs %d to %d of %d; make this call in the process that holds it",
                            index, s->first, s->first + s->local - 1, s->count);
     b = &s->slabs[index - s->first];

@@ -172,9 +172,8 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
 }
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
                                                const char *allowed) {
-    const char *call = "dem_checkpoint_read_changed";
     const size_t pairs = (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair);
-    if (demi_null(w, call, allowed, "allowed")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, allowed, "allowed")) return DEM_ERROR_ARGUMENT;
     const dem_world own = *w;
     demi_checkpoint_head head;
     demi_changes c;
@@ -183,7 +182,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     size_t size = 0;
     int ledger, growth;
     dem_result result = demi_changes_check(w, allowed);
-    if (result == DEM_OK) result = demi_load(w, call, path, &bytes, &size);
+    if (result == DEM_OK) result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK) result = demi_checkpoint_check(w, path, bytes, size, &head);
     memset(&c, 0, sizeof c);
     memset(&s, 0, sizeof s);
@@ -193,7 +192,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     if (result == DEM_OK && demi_word_in(allowed, "pairs", 5)) {
         c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
         if (c.pairs) memcpy(c.pairs, w->pairs, pairs);
-        else result = demi_no_memory(w, call);
+        else result = demi_no_memory(w, __func__);
     }
     if (result == DEM_OK) {
         s.from = bytes + sizeof head;
@@ -210,7 +209,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
             w->bodies.backward = demi_integrator_of(w)->backward;
             w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
         }
-        if (result == DEM_ERROR_MEMORY) demi_no_memory(w, call);
+        if (result == DEM_ERROR_MEMORY) demi_no_memory(w, __func__);
     }
     demi_free(w, c.pairs);
     demi_free(w, bytes);

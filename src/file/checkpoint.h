@@ -425,7 +425,7 @@ static void demi_filed_current(const dem_world *w, demi_filed *filed) {
     if (!filed->count) filed->rows = filed->stride = 0;
 }
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
-    if (demi_null_write(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const int lost = demi_body_lost(w);
     demi_checkpoint_head head;
     demi_out out;
@@ -433,11 +433,11 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     dem_result result;
     uint64_t sum;
     if (lost >= 0)
-        return demi_refuse(w, "dem_checkpoint_write", "body %u no longer has a finite position, "
+        return demi_refuse(w, __func__, "body %u no longer has a finite position, "
                            "velocity and force: the run has blown up; go back to an earlier "
                            "checkpoint; %s was not changed", (unsigned)w->bodies.slot[lost] + 1,
                            path ? path : "the file");
-    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
+    result = demi_out_open(&out, w, __func__, path);
     if (result != DEM_OK) return result;
     demi_filed_current(w, &w->filed);
     memset(&head, 0, sizeof head);

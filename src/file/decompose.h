@@ -307,18 +307,17 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
 }
 DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int count,
                                     dem_real *positions, dem_real *radii, dem_spheres_fit *fit) {
-    const char *call = "dem_mesh_spheres";
     demi_closed c;
     dem_result result = DEM_ERROR_ARGUMENT;
-    if (demi_null_write(w, call, mesh, "mesh") || demi_null_look(w, call, radii, "radii") ||
-        demi_null_look(w, call, positions, "positions")) return result;
+    if (demi_null_write(w, __func__, mesh, "mesh") || demi_null_look(w, __func__, radii, "radii") ||
+        demi_null_look(w, __func__, positions, "positions")) return result;
     if (count < 1 || count > 1000)
-        return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", call, count);
-    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+        return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", __func__, count);
+    if (!demi_mesh_sound(w, __func__, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
                          mesh->triangles, 3)) return result;
-    if (!demi_closed_find(w, mesh, &c)) result = demi_no_memory(w, call);
-    else if (demi_closed_body(w, call, &c))
-        result = demi_mesh_spheres(w, call, mesh, c.sign, count, positions, radii, fit);
+    if (!demi_closed_find(w, mesh, &c)) result = demi_no_memory(w, __func__);
+    else if (demi_closed_body(w, __func__, &c))
+        result = demi_mesh_spheres(w, __func__, mesh, c.sign, count, positions, radii, fit);
     demi_closed_free(w, &c);
     return result;
 }

@@ -13,13 +13,12 @@ static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
 }
 DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
                                    dem_impacts *out) {
-    const char *call = "dem_impacts_get";
     int i, k;
-    if (demi_null_look(w, call, out, "impacts")) return DEM_ERROR_ARGUMENT;
-    if (demi_events_needed(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "impacts")) return DEM_ERROR_ARGUMENT;
+    if (demi_events_needed(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
-        return demi_refuse(w, call, "material %d does not exist; there are %d, and id 0 means any",
-                           (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
+        return demi_refuse(w, __func__, "material %d does not exist; there are %d, and id 0 means "
+                           "any", (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
                            w->material_count);
     memset(out, 0, sizeof *out);
     out->seconds = w->clock.time - w->events.n.since;
@@ -51,15 +50,14 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
     return DEM_OK;
 }
 DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
-    const char *call = "dem_impacts_csv_write";
     demi_out out;
     dem_result result;
     double seconds;
     char number[5][40];
     int a, b, i, k;
-    if (demi_null_write(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_events_needed(w, call);
-    if (result == DEM_OK) result = demi_out_open(&out, w, call, path);
+    if (demi_null_write(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_events_needed(w, __func__);
+    if (result == DEM_OK) result = demi_out_open(&out, w, __func__, path);
     if (result != DEM_OK) return result;
     seconds = DEMI_MAX(w->clock.time - w->events.n.since, 1e-300);
     fprintf(out.file, "material_a,material_b,from,to,impacts,losses,power\n");
@@ -96,16 +94,15 @@ static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wa
 }
 DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coefficient,
                                      double hardness, dem_wear *wear) {
-    const char *call = "dem_wall_wear_get";
     const demi_worn *worn;
     dem_result result;
-    if (demi_null_look(w, call, wear, "wear")) return DEM_ERROR_ARGUMENT;
-    worn = demi_worn_of(w, call, wall, &result);
+    if (demi_null_look(w, __func__, wear, "wear")) return DEM_ERROR_ARGUMENT;
+    worn = demi_worn_of(w, __func__, wall, &result);
     if (result != DEM_OK) return result;
     if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
         !(hardness > 0))
-        return demi_refuse(w, call, "coefficient is %g, must be >= 0, and hardness is %g Pa, must "
-                           "be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
+        return demi_refuse(w, __func__, "coefficient is %g, must be >= 0, and hardness is %g Pa, "
+                           "must be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
                            hardness);
     memset(wear, 0, sizeof *wear);
     wear->seconds = w->clock.time - w->events.n.since;
@@ -115,12 +112,11 @@ DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coeffic
     return DEM_OK;
 }
 DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, int capacity) {
-    const char *call = "dem_wall_wear_facets_get";
     const demi_worn *worn;
     dem_result result;
     int k, count;
-    if (demi_null_look(w, call, w, "world")) return -1;
-    worn = demi_worn_of(w, call, wall, &result);
+    if (demi_null_look(w, __func__, w, "world")) return -1;
+    worn = demi_worn_of(w, __func__, wall, &result);
     if (result != DEM_OK) return -1;
     k = demi_wall_place(wall);
     count = demi_wall_kinds[w->walls[k].kind].corners > 1 ? w->walls[k].element_count : 0;

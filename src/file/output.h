@@ -301,15 +301,15 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
 DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     dem_output id;
     demi_output *o;
-    const char *bad, *call = "dem_output_add";
+    const char *bad;
     char *path = 0, *columns = 0;
     id.id = 0;
-    if (demi_null(w, call, desc, "desc")) return id;
+    if (demi_null(w, __func__, desc, "desc")) return id;
     if (desc->kind == DEM_OUTPUT_CSV && demi_output_mixes(desc) &&
-        demi_mixing_check(w, call, &desc->mixing) != DEM_OK) return id;
+        demi_mixing_check(w, __func__, &desc->mixing) != DEM_OK) return id;
     bad = demi_output_bad(w, desc);
     if (bad) {
-        demi_refuse(w, call, "%s", bad);
+        demi_refuse(w, __func__, "%s", bad);
         return id;
     }
     if (desc->path) path = demi_text_copy(w, desc->path);
@@ -319,7 +319,7 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
                    (size_t)w->look.output_count + 1)) {
         demi_free(w, path);
         demi_free(w, columns);
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return id;
     }
     o = &w->look.outputs[w->look.output_count++];
@@ -331,17 +331,16 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     demi_output_begin(o);
     w->look.outputs_look = demi_outputs_look;
     w->look.outputs_again = demi_outputs_again;
-    demi_built(w, call);
+    demi_built(w, __func__);
     return id;
 }
 DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
-    const char *call = "dem_output_remove";
     demi_output *o;
     int i;
-    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_output_place(w, output.id);
     if (i == w->look.output_count || w->look.outputs[i].id != output.id)
-        return demi_refuse(w, call, "output %d does not exist; it was removed before or is of "
+        return demi_refuse(w, __func__, "output %d does not exist; it was removed before or is of "
                            "another world: give what dem_output_add returned", (int)output.id);
     o = w->look.outputs + i;
     demi_free(w, (char *)o->desc.path);

@@ -748,55 +748,55 @@ static dem_result demi_grains_parse(dem_world *w, const char *call, const char *
 }
 DEM_API dem_result dem_grains_parse(dem_world *w, const char *name, const void *data, size_t size,
                                     dem_grains *g) {
-    if (demi_null_write(w, "dem_grains_parse", g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, g, "grains")) return DEM_ERROR_ARGUMENT;
     memset(g, 0, sizeof *g);
-    if (demi_null_write(w, "dem_grains_parse", data, "data")) return DEM_ERROR_ARGUMENT;
-    return demi_grains_parse(w, "dem_grains_parse", name, (const char *)data, size, g);
+    if (demi_null_write(w, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
+    return demi_grains_parse(w, __func__, name, (const char *)data, size, g);
 }
 DEM_API dem_result dem_grains_read(dem_world *w, const char *path, dem_grains *g) {
     char *bytes = 0;
     size_t size = 0;
     dem_result result;
-    if (demi_null_write(w, "dem_grains_read", g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, g, "grains")) return DEM_ERROR_ARGUMENT;
     memset(g, 0, sizeof *g);
-    result = demi_load(w, "dem_grains_read", path, &bytes, &size);
+    result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_grains_parse(w, "dem_grains_read", path, bytes, size, g);
+        result = demi_grains_parse(w, __func__, path, bytes, size, g);
     demi_free(w, bytes);
     return result;
 }
 DEM_API void dem_grains_free(dem_world *w, dem_grains *g) {
-    if (demi_null_look(w, "dem_grains_free", g, "grains")) return;
+    if (demi_null_look(w, __func__, g, "grains")) return;
     demi_grains_free(w, g);
 }
 DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem_grains *g) {
-    const char *call = "dem_grains_add";
     int i, first;
-    if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, g, "grains")) return DEM_ERROR_ARGUMENT;
     if (g->count < 0 || (g->count && (!g->positions || !g->radii)))
-        return demi_refuse(w, call, "count is %d, or positions or radii are null; count must be >= "
-                           "0 with both arrays; pass what dem_grains_read filled in", g->count);
+        return demi_refuse(w, __func__, "count is %d, or positions or radii are null; count must "
+                           "be >= 0 with both arrays; pass what dem_grains_read filled in",
+                           g->count);
     for (i = 0; i < g->count; i++) {
         dem_material m = material;
         int index = 0;
         if (!m.id && !g->materials)
-            return demi_refuse(w, call, "material is null and the file names no materials; pass an "
-                               "id that dem_material_add returned");
+            return demi_refuse(w, __func__, "material is null and the file names no materials; "
+                               "pass an id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
-        if (demi_material_index(w, call, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
+        if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
             (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
             (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
-            return demi_refuse(w, call, "grain %d has a radius of %g m; the radius must be > 0, "
-                               "and position, velocity and spin must be finite; no grain was added",
-                               i, (double)g->radii[i]);
-        if (demi_mass_refuse(w, call, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
+            return demi_refuse(w, __func__, "grain %d has a radius of %g m; the radius must be > "
+                               "0, and position, velocity and spin must be finite; no grain was "
+                               "added", i, (double)g->radii[i]);
+        if (demi_mass_refuse(w, __func__, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
     if (!demi_list_drop(w) ||
         !demi_bodies_reserve(w, (size_t)first + (size_t)DEMI_MAX(g->count, 0)))
-        return demi_no_memory(w, call);
+        return demi_no_memory(w, __func__);
     for (i = 0; i < g->count; i++) {
         const int m = (material.id ? material.id : g->materials[i]) - 1;
         const uint32_t slot = demi_body_append(w, m, g->radii[i], demi_at(g->positions + 3*i));
@@ -810,6 +810,6 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
         w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
-    demi_built(w, call);
+    demi_built(w, __func__);
     return DEM_OK;
 }

@@ -659,23 +659,22 @@ static int demi_mesh_begin(dem_world *w, const char *call, dem_mesh *mesh,
 }
 DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
                           dem_mesh *mesh, dem_mesh_health *health) {
-    if (demi_mesh_begin(world, "dem_mesh_parse", mesh, health) ||
-        demi_null_write(world, "dem_mesh_parse", data, "data")) return DEM_ERROR_ARGUMENT;
-    return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
+    if (demi_mesh_begin(world, __func__, mesh, health) ||
+        demi_null_write(world, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
+    return demi_parse(world, __func__, name, (const char *)data, size, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health) {
-    if (demi_mesh_begin(world, "dem_mesh_read", mesh, health)) return DEM_ERROR_ARGUMENT;
-    return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
+    if (demi_mesh_begin(world, __func__, mesh, health)) return DEM_ERROR_ARGUMENT;
+    return demi_read(world, __func__, path, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
                                       dem_mesh *mesh, dem_mesh_health *health) {
-    const char *call = "dem_mesh_part_read";
-    if (demi_mesh_begin(world, call, mesh, health) ||
-        demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
-    return demi_read(world, call, path, 3, part, mesh, health);
+    if (demi_mesh_begin(world, __func__, mesh, health) ||
+        demi_null_write(world, __func__, part, "part")) return DEM_ERROR_ARGUMENT;
+    return demi_read(world, __func__, path, 3, part, mesh, health);
 }
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
     if (world && mesh) demi_mesh_free(world, mesh);
@@ -683,12 +682,12 @@ DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
 
 DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, dem_quat rotation,
                                   dem_vec3 to) {
-    if (demi_null_write(w, "dem_mesh_place", mesh, "mesh")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, __func__, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
     const dem_quat q = demi_quat_most(rotation) > 0 ? demi_quat_unit(rotation)
         : dem_quat_make(1, 0, 0, 0);
     int i;
     if (!(scale > 0) || !demi_finite(scale) || !demi_quat_finite(rotation) || !demi_place(to))
-        return demi_refuse(w, "dem_mesh_place", "scale is %g, must be finite and > 0; rotation and "
+        return demi_refuse(w, __func__, "scale is %g, must be finite and > 0; rotation and "
                            "translation must be finite, and the translation within 1e15 m",
                            (double)scale);
     for (i = 0; i < mesh->vertex_count; i++)
@@ -715,25 +714,24 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
    memory runs out later, the walls added so far are removed. */
 DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_wall_part *parts, dem_wall *walls) {
-    const char *call = "dem_wall_parts_add";
     char sentence[sizeof w->error];
     dem_result result = DEM_OK;
     demi_wall *made;
     dem_wall wall = demi_no_wall;
     int i;
     for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
-    if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
-        return demi_refuse(w, call, "count is %d, must be > 0", count);
+        return demi_refuse(w, __func__, "count is %d, must be > 0", count);
     made = (demi_wall *)demi_alloc(w, (size_t)count, sizeof *made);
-    if (!made) return demi_no_memory(w, call);
+    if (!made) return demi_no_memory(w, __func__);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall.id = w->wall_count + i + 1;
         result = demi_part_make(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, wall,
                                 made + i);
     }
     if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)w->wall_count + (size_t)count))
-        result = demi_no_memory(w, call);
+        result = demi_no_memory(w, __func__);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall = demi_wall_enter(w, "dem_wall_mesh_add", made + i);
         memset(made + i, 0, sizeof *made);
@@ -749,8 +747,8 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
         demi_wall_free(w, made + i);
     }
     demi_free(w, made);
-    if (result == DEM_OK) { demi_built(w, call); return DEM_OK; }
-    return demi_fail(w, result, "%s: %.440s", call, sentence);
+    if (result == DEM_OK) { demi_built(w, __func__); return DEM_OK; }
+    return demi_fail(w, result, "%s: %.440s", __func__, sentence);
 }
 
 /* Turns a mesh of width 2 into a profile. Fails if a segment has the same corner twice; then it
@@ -777,23 +775,22 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
                                      size_t size, dem_profile *profile) {
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (demi_null_write(world, "dem_profile_parse", profile, "profile")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, profile, "profile")) return DEM_ERROR_ARGUMENT;
     memset(profile, 0, sizeof *profile);
-    if (demi_null_write(world, "dem_profile_parse", data, "data")) return DEM_ERROR_ARGUMENT;
-    result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
-                        0);
+    if (demi_null_write(world, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
+    result = demi_parse(world, __func__, name, (const char *)data, size, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
-    return demi_profile_take(world, "dem_profile_parse", name, &lists, profile);
+    return demi_profile_take(world, __func__, name, &lists, profile);
 }
 
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
-    if (demi_null_write(world, "dem_profile_read", profile, "profile")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, profile, "profile")) return DEM_ERROR_ARGUMENT;
     memset(profile, 0, sizeof *profile);
-    result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
+    result = demi_read(world, __func__, path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
-    return demi_profile_take(world, "dem_profile_read", path, &lists, profile);
+    return demi_profile_take(world, __func__, path, &lists, profile);
 }
 
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {

@@ -716,10 +716,10 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
 }
 
 DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
-    if (demi_null(w, "dem_checkpoint_read", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     char *bytes = 0;
     size_t size = 0;
-    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
+    dem_result result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK)
         result = demi_checkpoint_parse(w, path, bytes, size);
     demi_free(w, bytes);

@@ -16,14 +16,13 @@ static void demi_table_vec(demi_out *o, dem_vec3 v) {
     demi_table_put(o, 0, value, 3);
 }
 DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path) {
-    const char *call = "dem_bodies_csv_write";
     const dem_world *w = world;
     demi_periods p;
     demi_out o;
     dem_result result;
     int i, k, length;
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_out_open(&o, world, call, path);
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
+    result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     p = demi_periods_of(w);
     demi_finish(world);
@@ -75,28 +74,26 @@ static void demi_table_contact(const dem_contact_info *c, dem_real *memory, void
     fputc('\n', o->file);
 }
 DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path) {
-    const char *call = "dem_contacts_csv_write";
     demi_out o;
     dem_result result;
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     result = demi_contacts_settle(world);
-    if (result == DEM_OK) result = demi_out_open(&o, world, call, path);
+    if (result == DEM_OK) result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     fputs("a,b,wall,x,y,z,nx,ny,nz,overlap,fx,fy,fz\n", o.file);
     dem_contacts_each(world, demi_table_contact, &o);
     return demi_out_close(&o);
 }
 DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path) {
-    const char *call = "dem_field_csv_write";
     const demi_field *f;
     demi_grid g;
     demi_out o;
     dem_result result;
     int at[3];
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    f = demi_field_find(world, call, field);
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
+    f = demi_field_find(world, __func__, field);
     if (!f) return DEM_ERROR_ARGUMENT;
-    result = demi_out_open(&o, world, call, path);
+    result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     g = demi_grid_of(world, (demi_field *)f);
     fprintf(o.file, "x,y,z,grains,solid,density,vx,vy,vz%s%s\n", f->desc.stress ?
@@ -133,19 +130,18 @@ DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const 
 }
 DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
                                                   const char *path) {
-    const char *call = "dem_outlet_residence_csv_write";
     const demi_outlet *from;
     demi_out o;
     dem_result result;
     double sum = 0, total = 0;
     int k, used = 0;
-    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
-    from = demi_outlet_find(world, call, outlet);
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
+    from = demi_outlet_find(world, __func__, outlet);
     if (!from) return DEM_ERROR_ARGUMENT;
     if (!(from->desc.residence_bin > 0))
-        return demi_refuse(world, call, "outlet %d has residence_bin 0 s, must be > 0 to measure "
-                           "residence times; set it in its desc", (int)outlet.id);
-    result = demi_out_open(&o, world, call, path);
+        return demi_refuse(world, __func__, "outlet %d has residence_bin 0 s, must be > 0 to "
+                           "measure residence times; set it in its desc", (int)outlet.id);
+    result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     for (k = 0; k < DEM_RESIDENCE_BINS; k++) {
         total += (double)from->state.residence_count[k];

@@ -360,9 +360,9 @@ static dem_result demi_vtp(demi_columns *s, const char *path, int verts, int lin
 }
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     demi_columns s;
-    demi_grain_columns(&s, world, "dem_vtp_write");
+    demi_grain_columns(&s, world, __func__);
     return demi_vtp(&s, path, s.column[0].count, 0, 0);
 }
 
@@ -398,7 +398,7 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     for (k = 0; k < l->stride; k++) l->memory[k][n] = memory[k];
 }
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     demi_columns s;
     demi_lines l;
     char memory[24];
@@ -409,7 +409,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     if (n < 0) return DEM_ERROR_ARGUMENT;
     l.count = 0;
     l.stride = demi_memory_told(world);
-    demi_columns_begin(&s, world, "dem_contacts_vtp_write");
+    demi_columns_begin(&s, world, __func__);
     l.ends = demi_columns_reals(&s, "Points", "position", 3, 2*(int64_t)n);
     l.force = demi_columns_reals(&s, "CellData", "force", 3, n);
     l.overlap = demi_columns_reals(&s, "CellData", "overlap", 1, n);
@@ -430,7 +430,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
 
 /* Legacy VTK in its binary form, in which numbers are big-endian. */
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
     const double time = dem_world_time_get(world);
     const int turn = demi_is_little_endian();
@@ -438,7 +438,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     demi_columns s;
     demi_out o;
     dem_result result;
-    demi_grain_columns(&s, world, "dem_vtk_write");
+    demi_grain_columns(&s, world, __func__);
     result = demi_columns_open(&s, &o, path);
     if (result != DEM_OK) return result;
     fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
@@ -469,7 +469,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
    accepts only chemical elements. A domain becomes the lattice, with 1 m along an axis without
    extent. */
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
@@ -482,7 +482,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     demi_out o;
     int i, k, e;
     dem_result result;
-    demi_grain_columns(&s, world, "dem_xyz_write");
+    demi_grain_columns(&s, world, __func__);
     result = demi_columns_open(&s, &o, path);
     if (result != DEM_OK) return result;
     length[0] = (double)(d.hi.x - d.lo.x);
@@ -621,12 +621,12 @@ static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
         }
 }
 DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
-    if (demi_null_write(world, "dem_surfaces_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     demi_columns columns;
     demi_surfaces s;
     memset(&s, 0, sizeof s);
     demi_surfaces_draw(world, &s);
-    demi_columns_begin(&columns, world, "dem_surfaces_vtp_write");
+    demi_columns_begin(&columns, world, __func__);
     s.place = demi_columns_reals(&columns, "Points", "position", 3, s.points);
     s.velocity = demi_columns_reals(&columns, "PointData", "velocity", 3, s.points);
     s.id = demi_columns_ints(&columns, "PointData", "id", 'u', s.points);
@@ -700,7 +700,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
 
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1) {
-    if (demi_null_write(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     int64_t points = 0, triangles = 0, p = 0, t = 0;
     const dem_real z[2] = {z0, z1};
     dem_real *place;
@@ -712,10 +712,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
     }
     if (profiles && !(z1 > z0))
-        return demi_refuse(world, "dem_walls_vtp_write", "z0 is %g m and z1 is %g m, but z0 must "
-                           "be below z1 to extrude a profile between them; change them", (double)z0,
-                           (double)z1);
-    demi_columns_begin(&s, world, "dem_walls_vtp_write");
+        return demi_refuse(world, __func__, "z0 is %g m and z1 is %g m, but z0 must be below z1 to "
+                           "extrude a profile between them; change them", (double)z0, (double)z1);
+    demi_columns_begin(&s, world, __func__);
     place = demi_columns_reals(&s, "Points", "position", 3, points);
     id = demi_columns_ints(&s, "CellData", "wall", 'i', triangles);
     corners = demi_columns_ints(&s, "Polys", "connectivity", 'i', 3*triangles);
@@ -784,12 +783,10 @@ static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wal
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path) {
-    if (demi_null_write(world, "dem_wall_loads_csv_write", world,
-                        "world")) return DEM_ERROR_ARGUMENT;
-    const char *call = "dem_wall_loads_csv_write";
+    if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
     double value[DEMI_LOADS];
     char line[DEMI_CSV_LINE];
-    if (demi_loads_values(world, call, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_loads_values(world, __func__, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
     demi_csv_line(line, dem_world_time_get(world), value, DEMI_LOADS);
-    return demi_csv_append(world, call, path, demi_loads_heading, line);
+    return demi_csv_append(world, __func__, path, demi_loads_heading, line);
 }

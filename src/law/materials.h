@@ -158,12 +158,12 @@ static dem_real demi_static_friction(const dem_world *w, int a, int b) {
     return DEMI_MAX(p->friction, p->friction_static);
 }
 DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
-    if (demi_null(w, "dem_material_add", desc, "desc")) return demi_no_material;
+    if (demi_null(w, __func__, desc, "desc")) return demi_no_material;
     dem_material id; int i, n = w->material_count;
     id.id = 0;
-    if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
+    if (demi_material_check(w, __func__, desc) != DEM_OK) return id;
     if (n == DEMI_MATERIALS) {
-        demi_refuse(w, "dem_material_add", "there are %d materials already, which is the limit; "
+        demi_refuse(w, __func__, "there are %d materials already, which is the limit; "
                     "reuse one of them", n);
         return id;
     }
@@ -175,7 +175,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         const dem_pair pair = demi_mix(&w->materials[i], &w->materials[n]);
         demi_pair_put(w, i, n, &pair);
     }
-    demi_built(w, "dem_material_add");
+    demi_built(w, __func__);
     id.id = n + 1;
     return id;
 }
@@ -192,23 +192,23 @@ static dem_result demi_material_index(dem_world *w, const char *call, dem_materi
 
 DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
                                     dem_material_desc *desc) {
-    if (demi_null_look(world, "dem_material_get", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     int m = 0;
-    if (demi_material_index((dem_world *)world, "dem_material_get", material, &m))
+    if (demi_material_index((dem_world *)world, __func__, material, &m))
         return DEM_ERROR_ARGUMENT;
     *desc = world->materials[m];
     return DEM_OK;
 }
 DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
                                     const dem_material_desc *desc) {
-    if (demi_null(w, "dem_material_set", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     dem_material_desc before;
     int m = 0, i;
-    if (demi_material_index(w, "dem_material_set", material, &m) ||
-        demi_material_check(w, "dem_material_set", desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_material_index(w, __func__, material, &m) ||
+        demi_material_check(w, __func__, desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = w->materials[m];
     if (desc->density < before.density || desc->density > before.density)
-        return demi_refuse(w, "dem_material_set", "density of material %d is %g kg/m3, must stay "
+        return demi_refuse(w, __func__, "density of material %d is %g kg/m3, must stay "
                            "%g, because masses of bodies were computed from it; add another "
                            "material", m + 1, (double)desc->density, (double)before.density);
     w->materials[m] = *desc;
@@ -223,17 +223,16 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
             demi_pair_put(w, i, m, &now);
     }
     demi_pairs_changed(w);
-    demi_built(w, "dem_material_set");
+    demi_built(w, __func__);
     return DEM_OK;
 }
 
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair) {
-    if (demi_null_look(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, pair, "pair")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;          /* only the error message is written */
     int i = 0, j = 0;
-    if (demi_material_index(w, "dem_pair_get", a, &i) ||
-        demi_material_index(w, "dem_pair_get", b, &j))
+    if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
     *pair = w->pairs[i*DEMI_MATERIALS + j].given;
     return DEM_OK;
@@ -359,16 +358,15 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out) {
-    if (demi_null_look(world, "dem_coefficients_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, out, "out")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     int i = 0, j = 0;
     double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
     dem_real coef[DEMI_COEFS];
-    if (demi_material_index(w, "dem_coefficients_get", a, &i) ||
-        demi_material_index(w, "dem_coefficients_get", b, &j))
+    if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
     if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
-        return demi_refuse(w, "dem_coefficients_get", "radii are %g and %g m; the first must be > "
+        return demi_refuse(w, __func__, "radii are %g and %g m; the first must be > "
                            "0, the second >= 0 (0 means a wall)", ra, rb);
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
@@ -404,7 +402,7 @@ static int demi_pairs_have(const dem_world *w, size_t offset) {
     return x > 0;
 }
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
-    if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
+    if (demi_null_look(w, __func__, out, "out")) return;
     const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "

@@ -720,7 +720,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
 DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_findings f;
     dem_advice advice;
-    if (demi_null(w, "dem_world_check", w, "world")) return 0;
+    if (demi_null(w, __func__, w, "world")) return 0;
     memset(&f, 0, sizeof f);
     f.to = findings;
     f.room = findings && capacity > 0 ? capacity : 0;
@@ -735,7 +735,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_check_enclosed(w, &f);
     demi_check_overlaps(w, &advice, &f);
     if (!w->bodies.count) return f.count;
-    if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {
+    if (!w->stage.list_valid && demi_rebuild(w, __func__) != DEM_OK) {
         demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
         return f.count;
     }

@@ -502,14 +502,14 @@ static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFE
 DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
     demi_calling was;
     int count;
-    if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
+    if (demi_null(w, __func__, out, "effects")) return -1;
     if (!(budget >= 0) || !demi_finite_double(budget)) {
-        demi_refuse(w, "dem_effects_get", "budget is %g s, must be >= 0 and finite; 0 gives only "
+        demi_refuse(w, __func__, "budget is %g s, must be >= 0 and finite; 0 gives only "
                     "states, and 5 s are enough on a quiet machine", budget);
         return -1;
     }
-    if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
-    was = demi_calls(w, "dem_effects_get", 1);  /* copies call the user's functions */
+    if (demi_unbuilt(w, __func__) != DEM_OK) return -1;
+    was = demi_calls(w, __func__, 1);  /* copies call the user's functions */
     count = demi_effects_ask(w, budget, out);
     demi_called(w, was);
     return count;
@@ -535,7 +535,7 @@ static void demi_effects_lines(const dem_effect *e, FILE *out) {
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];
-    if (demi_null_look(w, "dem_effects_print", out, "out")) return;
+    if (demi_null_look(w, __func__, out, "out")) return;
     if (dem_effects_get(w, budget, effects) < 0) return;
     fprintf(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);

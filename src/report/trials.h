@@ -352,9 +352,9 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     size_t size;
     dem_result result;
     int k;
-    if (demi_null(w, "dem_trials_run", d, "desc") || demi_null(w, "dem_trials_run", out, "trials"))
+    if (demi_null(w, __func__, d, "desc") || demi_null(w, __func__, out, "trials"))
         return DEM_ERROR_ARGUMENT;
-    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_trials_check(w, d) != DEM_OK)
+    if (demi_unbuilt(w, __func__) != DEM_OK || demi_trials_check(w, d) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->duration = d->duration;
@@ -364,12 +364,12 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     memcpy(out->observables, d->observable_count ? d->observables : usual,
            (size_t)out->observable_count*sizeof *usual);
     if (!d->observable_count) demi_usual_scales(w, out);
-    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, "dem_trials_run");
+    if (!w->facets_valid && !demi_surfaces_make(w)) return demi_no_memory(w, __func__);
     result = demi_dt_settle(w);                 /* fails as a run would */
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);
-    if (!state) return demi_no_memory(w, "dem_trials_run");
-    was = demi_calls(w, "dem_trials_run", 1);       /* copies call the user's functions */
+    if (!state) return demi_no_memory(w, __func__);
+    was = demi_calls(w, __func__, 1);       /* copies call the user's functions */
     result = demi_advise_plan(w, state, size, d->budget > 0 ? d->budget : 60, out);
     for (k = 0; k < DEM_TRIALS; k++)
         if (demi_try_fits(w, &demi_tries[k])) rows[out->count++] = &demi_tries[k];

@@ -121,9 +121,9 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 DEM_API void dem_world_destroy(dem_world *w) {
     dem_allocator allocator;
     int chain;
-    if (demi_null(w, "dem_world_destroy", w, "world")) return;
+    if (demi_null(w, __func__, w, "world")) return;
     if (w->look.under_way) {
-        demi_refuse(w, "dem_world_destroy", "called from the function of an output "
+        demi_refuse(w, __func__, "called from the function of an output "
                     "(dem_output_add) while the world runs; return 1 from that function to stop "
                     "the run, then destroy the world");
         return;
@@ -386,8 +386,8 @@ static void demi_report(const dem_world *world, FILE *out) {
 }
 DEM_API void dem_world_report(const dem_world *w, FILE *out) {
     demi_calling was;
-    if (demi_null_look(w, "dem_world_report", out, "out")) return;
-    was = demi_look_calls(w, "dem_world_report");
+    if (demi_null_look(w, __func__, out, "out")) return;
+    was = demi_look_calls(w, __func__);
     demi_report(w, out);
     demi_look_called(w, was);
 }

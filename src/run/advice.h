@@ -625,14 +625,14 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
                      (double)w->clock.dt, rate, 0.1/rate);
 }
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
-    if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_refuse(w, "dem_step_advice_get", "contacts of this world are impulses, which "
+        return demi_refuse(w, __func__, "contacts of this world are impulses, which "
                            "have no contact time; choose a step in which grains move by less than "
                            "a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
-    return demi_refuse(w, "dem_step_advice_get", "the world has no grain that can move; add grains "
+    return demi_refuse(w, __func__, "the world has no grain that can move; add grains "
                        "before this call");
 }
 /* Fails because the chosen step is so short that the time would not advance. */

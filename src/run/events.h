@@ -457,13 +457,12 @@ static dem_result demi_events_needed(dem_world *w, const char *call) {
     return demi_refuse(w, call, "contacts are not recorded; call dem_events_record before the run");
 }
 DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) {
-    const char *call = "dem_events_record";
-    if (demi_null(w, call, desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     if (!w->desc.ledger)
-        return demi_refuse(w, call, "desc.ledger is 0, must be 1, because contacts only then "
+        return demi_refuse(w, __func__, "desc.ledger is 0, must be 1, because contacts only then "
                            "report what they lose; set it when the world is created");
     if (desc->begins < 0 || desc->begins > 1)
-        return demi_refuse(w, call, "begins is %d, must be 0 or 1; start from DEM_EVENTS_DESC",
+        return demi_refuse(w, __func__, "begins is %d, must be 0 or 1; start from DEM_EVENTS_DESC",
                            desc->begins);
     w->events.desc = *desc;
     if (!desc->function) w->events.n.pending = 0;
@@ -472,25 +471,24 @@ DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) 
     return DEM_OK;
 }
 DEM_API dem_result dem_events_stop(dem_world *w) {
-    if (demi_null(w, "dem_events_stop", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     demi_events_clear(w);
     demi_events_switch(w, 0);
     memset(&w->events.desc, 0, sizeof w->events.desc);
     return DEM_OK;
 }
 DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
-    const char *call = "dem_events_open_each";
     dem_event *all = 0;
     demi_calling was;
     int i, n;
-    if (demi_null(w, call, w, "world") || demi_events_needed(w, call) != DEM_OK) return -1;
+    if (demi_null(w, __func__, w, "world") || demi_events_needed(w, __func__) != DEM_OK) return -1;
     n = w->events.n.open;
     if (!fn || !n) return n;
     all = (dem_event *)demi_alloc(w, (size_t)n, sizeof *all);
-    if (!all) { demi_no_memory(w, call); return -1; }
+    if (!all) { demi_no_memory(w, __func__); return -1; }
     for (i = 0; i < n; i++) all[i] = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
     qsort(all, (size_t)n, sizeof *all, demi_event_compare);
-    was = demi_calls(w, call, 0);
+    was = demi_calls(w, __func__, 0);
     for (i = 0; i < n; i++) fn(&all[i], user);
     demi_called(w, was);
     demi_free(w, all);

@@ -294,25 +294,25 @@ static const demi_field_row demi_field_rows[] = {DEMI_ROW(dem_field_desc, box, '
     DEMI_ROW(dem_field_desc, group, 'i'), DEMI_ROW(dem_field_desc, variance, 'i'),
     DEMI_ROW(dem_field_desc, bodies, 'i'), DEMI_ROW_END};
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
-    if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
+    if (demi_null(w, __func__, d, "desc")) return demi_no_field;
     dem_field id;
     demi_field field;
     int k;
     id.id = 0;
-    if (demi_rows_check(w, "dem_field_add", demi_field_rows, d, "",
+    if (demi_rows_check(w, __func__, demi_field_rows, d, "",
                         "start from DEM_FIELD_DESC and set only what differs")) return id;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
-        demi_refuse(w, "dem_field_add", "cells are %d x %d x %d, must be at most 2^28 in all; "
+        demi_refuse(w, __func__, "cells are %d x %d x %d, must be at most 2^28 in all; "
                     "choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
         return id;
     }
-    if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
-    if (demi_group_check(w, "dem_field_add", d->group, 0) != DEM_OK ||
-        (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK))
+    if (demi_box_empty(w, __func__, d->box, 0)) return id;
+    if (demi_group_check(w, __func__, d->group, 0) != DEM_OK ||
+        (d->material.id && demi_material_index(w, __func__, d->material, &k) != DEM_OK))
         return id;
     for (k = 0; k < w->field_count && d->bodies; k++)
         if (w->fields[k].desc.bodies) {
-            demi_refuse(w, "dem_field_add", "bodies is %d, but field %d averages bodies already, "
+            demi_refuse(w, __func__, "bodies is %d, but field %d averages bodies already, "
                         "and each body has room for one average; set bodies to 0, or use that "
                         "field", d->bodies, k + 1);
             return id;
@@ -325,11 +325,11 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1) ||
         (d->bodies && !demi_array_begin(w, DEMI_AVERAGED, &w->bodies.averaged))) {
         demi_free(w, field.sums);
-        demi_no_memory(w, "dem_field_add");
+        demi_no_memory(w, __func__);
         return id;
     }
     w->fields[w->field_count++] = field;
-    demi_built(w, "dem_field_add");
+    demi_built(w, __func__);
     id.id = w->field_count;
     return id;
 }
@@ -341,9 +341,9 @@ static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id)
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
-    if (demi_null_look(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, data, "data")) return DEM_ERROR_ARGUMENT;
     size_t n;
-    const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
+    const demi_field *f = demi_field_find((dem_world *)w, __func__, id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memcpy(data->cells, f->desc.cells, sizeof data->cells);
     data->box = f->desc.box;
@@ -359,8 +359,8 @@ DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_dat
     return DEM_OK;
 }
 DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
-    if (demi_null(w, "dem_field_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_field *f = demi_field_find(w, "dem_field_reset", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_field *f = demi_field_find(w, __func__, id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
     if (f->desc.bodies && w->bodies.count)
@@ -370,11 +370,11 @@ DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
 }
 DEM_API dem_result dem_body_means_get(const dem_world *w, dem_body body, dem_body_means *out) {
     int i, k;
-    if (demi_null_look(w, "dem_body_means_get", out, "means")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "means")) return DEM_ERROR_ARGUMENT;
     if (!w->bodies.averaged)
-        return demi_refuse(w, "dem_body_means_get", "no field averages bodies; add one with bodies "
+        return demi_refuse(w, __func__, "no field averages bodies; add one with bodies "
                            "= 1 (dem_field_desc)");
-    i = demi_body_index((dem_world *)w, "dem_body_means_get", body);
+    i = demi_body_index((dem_world *)w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->samples = (uint64_t)w->bodies.means[DEMI_MEANS*i];
@@ -413,11 +413,11 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     size_t c;
     double n, volume, v[3];
     int e;
-    if (demi_null_look(w, "dem_field_cell_get", out, "cell")) return DEM_ERROR_ARGUMENT;
-    if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "cell")) return DEM_ERROR_ARGUMENT;
+    if (!demi_field_find((dem_world *)w, __func__, id)) return DEM_ERROR_ARGUMENT;
     dem_field_get(w, id, &d);
     if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
-        return demi_refuse(w, "dem_field_cell_get", "cell (%d, %d, %d) does not exist, the field "
+        return demi_refuse(w, __func__, "cell (%d, %d, %d) does not exist, the field "
                            "has %d x %d x %d cells; indices start at 0", i, j, k, d.cells[0],
                            d.cells[1], d.cells[2]);
     memset(out, 0, sizeof *out);

@@ -51,18 +51,17 @@ static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) 
     w->booked.inserted += demi_body_energy(w, i) - before;
 }
 DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real radius) {
-    if (demi_null(w, "dem_body_radius_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_body_index(w, "dem_body_radius_set", body);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_body_index(w, __func__, body);
     double mass;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (demi_size_bad(w, i, radius, &mass))
-        return demi_refuse(w, "dem_body_radius_set", "the radius of body %u is %g m and its mass "
-                           "%g kg, must be > 0 and neither too small nor too large to calculate "
-                           "with in %s precision; lengths are in metres: check the unit",
-                           (unsigned)body.slot, (double)radius, mass,
-                           DEMI_SINGLE ? "single" : "double");
+        return demi_refuse(w, __func__, "the radius of body %u is %g m and its mass %g kg, must be "
+                           "> 0 and neither too small nor too large to calculate with in %s "
+                           "precision; lengths are in metres: check the unit", (unsigned)body.slot,
+                           (double)radius, mass, DEMI_SINGLE ? "single" : "double");
     demi_finish(w);                             /* the open half kick belongs to the old mass */
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_radius_set");
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_body_resize(w, i, radius, mass);
     w->stage.grown = 1;
     demi_scene_changed(w);

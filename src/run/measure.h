@@ -39,14 +39,14 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     return c;
 }
 DEM_API void dem_overlap_max_reset(dem_world *w) {
-    if (demi_null(w, "dem_overlap_max_reset", w, "world")) return;
+    if (demi_null(w, __func__, w, "world")) return;
     w->booked.overlap_max = 0;
 }
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
-    if (demi_null_look(w, "dem_contacts_get", w, "world")) return -1;
+    if (demi_null_look(w, __func__, w, "world")) return -1;
     int d, k, n = 0;
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
@@ -75,14 +75,14 @@ static dem_result demi_contacts_settle(dem_world *w) {
    written back; a persistent contact hands over its own. If fn changes a value, forces are computed
    again before the next step. */
 DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
-    if (demi_null(w, "dem_contacts_each", fn ? w : 0, "fn")) return -1;
+    if (demi_null(w, __func__, fn ? w : 0, "fn")) return -1;
     size_t stride;
     dem_contact_info info;
     dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
     int d, k, e, n = 0, changed = 0;
     demi_calling was_calling;
     if (demi_contacts_settle(w) != DEM_OK) return -1;
-    was_calling = demi_calls(w, "dem_contacts_each", 0);
+    was_calling = demi_calls(w, __func__, 0);
     stride = (size_t)w->near.stride;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -123,7 +123,7 @@ static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *us
     b->count++;
 }
 DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
-    if (demi_null(w, "dem_bonds_make", make ? w : 0, "make")) return -1;
+    if (demi_null(w, __func__, make ? w : 0, "make")) return -1;
     demi_bonds b = {make, user, gap, 0};
     double least = -1, most;
     int i;
@@ -132,7 +132,7 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
             least = (double)w->bodies.pos[4*i + 3];
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
-        return demi_refuse(w, "dem_bonds_make", "gap is %g m, must be >= 0 and at most %g m, the "
+        return demi_refuse(w, __func__, "gap is %g m, must be >= 0 and at most %g m, the "
                            "range of your law for the smallest grains; set a larger law_range or "
                            "law_range_radii when the world is created", (double)gap,
                            DEMI_MAX(most, 0)), -1;
@@ -245,19 +245,19 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
    plane of the sieve have a scalar product below -0.25, and both normals lie within the friction
    angle of that plane, |n_z| <= mu |n_xy|. */
 DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real speed) {
-    if (demi_null_look(w, "dem_sieve_blinded_get", w, "world")) return -1;
-    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded_get", sieve);
+    if (demi_null_look(w, __func__, w, "world")) return -1;
+    const int id = demi_wall_find((dem_world *)w, __func__, sieve);
     const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
     dem_vec3 across, n, m;
     dem_real mu, mu_m;
     int d, k, j, body, same, count = 0;
     if (!wall) return -1;
     if (!wall->sieve.kind) {
-        demi_refuse(w, "dem_sieve_blinded_get", "wall %d is not a sieve; pass the id that "
+        demi_refuse(w, __func__, "wall %d is not a sieve; pass the id that "
                     "dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].kept;
@@ -532,15 +532,14 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
     return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
 }
 DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_repose *out) {
-    const char *call = "dem_repose_heap_get";
     dem_world *w = (dem_world *)world;          /* for error messages and temporary memory */
     demi_surface s;
     double highest = 0;
     dem_result result;
     int i, first, last, good = 0;
-    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
-    result = demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s);
+    result = demi_repose_begin(w, __func__, box, demi_v(0, 0, 0), &s);
     if (result != DEM_OK) return result;
     s.centre = demi_heap_centre(w, &s);
     s.around = 1;
@@ -553,31 +552,30 @@ DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_
         if (!(demi_surface_row(&s, last) >= 0.2*highest)) break;
     if (s.top) good = demi_surface_line(&s, first, last, out);
     out->angle = -out->angle;                   /* the slope of a heap falls outward */
-    return demi_repose_end(w, call, &s, good);
+    return demi_repose_end(w, __func__, &s, good);
 }
 DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *out) {
-    const char *call = "dem_repose_drum_get";
     dem_world *w = (dem_world *)world;
     demi_surface s;
     dem_result result;
     int good = 0;
-    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
-        return demi_refuse(w, call, "axis is (%g, %g, %g), must be finite and not zero",
+        return demi_refuse(w, __func__, "axis is (%g, %g, %g), must be finite and not zero",
                            (double)axis.x, (double)axis.y, (double)axis.z);
-    result = demi_repose_begin(w, call, box, axis, &s);
+    result = demi_repose_begin(w, __func__, box, axis, &s);
     if (result != DEM_OK) return result;
     if (!demi_surface_look(w, &s)) good = -1;
     if (s.top) good = demi_surface_line(&s, s.rows/4, s.rows - s.rows/4, out);
-    return demi_repose_end(w, call, &s, good);
+    return demi_repose_end(w, __func__, &s, good);
 }
 
 /* Bodies enter the digest in the order of their slots and contact histories as a sum of individual
    digests, so that it does not depend on the order of bodies or contacts in the arrays. */
 DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_hash_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     const demi_periods p = demi_periods_of(w);
     uint64_t h = DEMI_HASH_START;
     int i;

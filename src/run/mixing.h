@@ -151,15 +151,14 @@ static dem_result demi_mixing_check(dem_world *w, const char *call, const dem_mi
 }
 DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc *d,
                                   dem_mixing *out) {
-    const char *call = "dem_mixing_get";
     dem_world *w = (dem_world *)world;
     demi_periods p;
     demi_mix_key *key;
     signed char *kind;
     int32_t *count;
     int i, cells;
-    if (demi_null_look(w, call, d, "desc") || demi_null_look(w, call, out, "mixing") ||
-        demi_mixing_check(w, call, d) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, d, "desc") || demi_null_look(w, __func__, out, "mixing") ||
+        demi_mixing_check(w, __func__, d) != DEM_OK) return DEM_ERROR_ARGUMENT;
     p = demi_periods_of(w);
     cells = d->cells[0]*d->cells[1]*d->cells[2];
     key = (demi_mix_key *)demi_alloc(w, (size_t)w->bodies.count + 1, sizeof *key);
@@ -186,5 +185,5 @@ DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc 
     demi_free(w, key);
     demi_free(w, kind);
     demi_free(w, count);
-    return i ? DEM_OK : demi_no_memory(w, call);
+    return i ? DEM_OK : demi_no_memory(w, __func__);
 }

@@ -201,27 +201,26 @@ static void demi_rails_drop(dem_world *w, dem_body body) {
     w->rail_count = left;
 }
 DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
-    const char *call = "dem_body_rail_set";
     dem_real v[3], s[3], own[6];
     dem_body_state state;
     demi_rail *r;
     int i, k;
-    if (demi_null(w, call, d, "desc")) return DEM_ERROR_ARGUMENT;
-    i = demi_body_index(w, call, body);
-    if (i < 0 || demi_rows_check(w, call, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
+    if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
+    i = demi_body_index(w, __func__, body);
+    if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
         return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_refuse(w, call, "contacts of this world are impulses, whose solver has one "
+        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solver has one "
                            "mass per body for all axes; use DEM_RESPONSE_SPRINGS, or joints "
                            "(dem_joint_add)");
     if (w->bodies.inv_mass[i] <= 0)
-        return demi_refuse(w, call, "body %u is fixed, so all its axes are locked; set `fixed` to "
-                           "0 with dem_body_set", (unsigned)body.slot);
+        return demi_refuse(w, __func__, "body %u is fixed, so all its axes are locked; set `fixed` "
+                           "to 0 with dem_body_set", (unsigned)body.slot);
     if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
-        return demi_refuse(w, call, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y of "
-                           "all bodies; leave them out", d->axes);
-    if (d->wall.id && demi_wall_find(w, call, d->wall) < 0) return DEM_ERROR_ARGUMENT;
-    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, call);
+        return demi_refuse(w, __func__, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y "
+                           "of all bodies; leave them out", d->axes);
+    if (d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) return DEM_ERROR_ARGUMENT;
+    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, __func__);
     demi_rails_drop(w, body);
     if (!d->axes) { demi_scene_changed(w); return DEM_OK; }
     r = &w->rails[w->rail_count];
@@ -235,18 +234,17 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
     state.velocity = demi_at(own);
     state.spin = demi_at(own + 3);
-    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, call);
+    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, __func__);
     w->rail_count++;
     return DEM_OK;
 }
 DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_rail_state *state) {
-    const char *call = "dem_body_reaction_get";
     const demi_rail *r;
-    if (demi_null_look(w, call, state, "state")) return DEM_ERROR_ARGUMENT;
-    if (demi_body_index((dem_world *)w, call, body) < 0) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_body_index((dem_world *)w, __func__, body) < 0) return DEM_ERROR_ARGUMENT;
     r = demi_rail_of(w, body);
     if (!r)
-        return demi_refuse(w, call, "body %u has no rail; set one with dem_body_rail_set",
+        return demi_refuse(w, __func__, "body %u has no rail; set one with dem_body_rail_set",
                            (unsigned)body.slot);
     *state = r->state;
     return DEM_OK;

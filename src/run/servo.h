@@ -133,11 +133,11 @@ static dem_servo demi_servo_now(const dem_world *w, int wall) {
 }
 DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
     int i;
-    if (demi_null_look(world, "dem_wall_servo_get", servo, "servo")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, "dem_wall_servo_get", id);
+    if (demi_null_look(world, __func__, servo, "servo")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
-        return demi_refuse(world, "dem_wall_servo_get", "the motion of wall %d is not "
+        return demi_refuse(world, __func__, "the motion of wall %d is not "
                            "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
     *servo = demi_servo_now(world, i);
     return DEM_OK;

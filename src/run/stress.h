@@ -164,25 +164,25 @@ static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_
     return DEM_OK;
 }
 DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
-    const char *call = "dem_cell_set";
     demi_strained *c;
     dem_cell_desc before;
     dem_real rate[3], most[3];
     double lo[3], hi[3], to[3];
     int k, moves = 0;
-    if (demi_null(w, call, desc, "desc") || demi_rows_check(w, call, demi_cell_rows, desc, "",
-            "start from DEM_CELL_DESC and set only what differs")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, desc, "desc") ||
+        demi_rows_check(w, __func__, demi_cell_rows, desc, "", "start from DEM_CELL_DESC and set "
+                        "only what differs")) return DEM_ERROR_ARGUMENT;
     c = &w->cell;
     if (!demi_response_is(w, DEMI_LAWS))
-        return demi_refuse(w, call, "contacts of this world are impulses, whose solvers do not see "
-                           "the flow of a cell; use DEM_RESPONSE_SPRINGS");
+        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solvers do not "
+                           "see the flow of a cell; use DEM_RESPONSE_SPRINGS");
     if (w->team)
-        return demi_refuse(w, call, "this world is a slab, and borders of slabs do not move; use "
-                           "threads");
-    if (demi_cell_axes(w, call, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
+        return demi_refuse(w, __func__, "this world is a slab, and borders of slabs do not move; "
+                           "use threads");
+    if (demi_cell_axes(w, __func__, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
     before = c->desc;
     c->desc = *desc;
-    if (moves && demi_cell_refuse(w, call)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
+    if (moves && demi_cell_refuse(w, __func__)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
     if (!moves && !c->on) return DEM_OK;
     if (!c->on) {
         demi_domain_limits(w, lo, hi);
@@ -199,7 +199,7 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
     return DEM_OK;
 }
 DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
-    if (demi_null_look(w, "dem_cell_state_get", out, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, out, "state")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->box = w->desc.domain;
     out->offset = (dem_real)w->cell.offset;
@@ -248,16 +248,16 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     dem_contact_info info;
     dem_vec3 branch;
     int d, k;
-    if (demi_null_look(w, "dem_stress_get", s, "stress")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
     memset(s, 0, sizeof *s);
     if (!w->stage.list_valid) {
-        demi_list_stale(w, "dem_stress_get");
+        demi_list_stale(w, __func__);
         return DEM_ERROR_ARGUMENT;
     }
     s->volume = demi_volume(w);
     if (!(s->volume > 0)) {
         s->volume = 0;
-        return demi_refuse(w, "dem_stress_get", "the domain has the volume 0; set desc.domain "
+        return demi_refuse(w, __func__, "the domain has the volume 0; set desc.domain "
                            "along all axes");
     }
     for (d = 0; d < w->domain_count; d++) {

@@ -125,59 +125,58 @@ static const demi_field_row demi_feed_rows[] = {DEMI_FED(material, 'i'),
     DEMI_ROW_DIGEST("sizes", demi_digest_sizes), DEMI_ROW_FREE(dem_feed_desc, inside_user),
     DEMI_ROW_FREE(dem_feed_desc, sizes), DEMI_ROW_END};
 DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
-    if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
-    const char *call = "dem_feed_add";
+    if (demi_null(w, __func__, d, "desc")) return demi_no_feed;
     demi_feed feed;
     dem_feed id;
     int k, m = 0, shaped = 0;
     id.id = 0;
-    if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
-    if (demi_rows_check(w, call, demi_feed_rows, d, "",
+    if (demi_material_index(w, __func__, d->material, &m) != DEM_OK) return id;
+    if (demi_rows_check(w, __func__, demi_feed_rows, d, "",
                         "start from DEM_FEED_DESC and set only what differs")) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
-        if (demi_feed_strange(w, call, d, k)) return id;
+        if (demi_feed_strange(w, __func__, d, k)) return id;
         if ((!d->sizes[k] && !(d->radius[k] > 0)) || !demi_finite(d->radius[k]) ||
             !(d->amount[k] > 0) || !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
-            demi_refuse(w, call, "class %d has radius %g m and amount %g, must be > 0 and finite; "
-                        "leave out classes that do not occur", k, (double)d->radius[k],
+            demi_refuse(w, __func__, "class %d has radius %g m and amount %g, must be > 0 and "
+                        "finite; leave out classes that do not occur", k, (double)d->radius[k],
                         d->amount[k]);
             return id;
         }
-        if (!demi_feed_sizes(w, call, &feed, k)) return id;
+        if (!demi_feed_sizes(w, __func__, &feed, k)) return id;
         shaped |= d->shapes[k].id > 0;
         if (d->limited) {
             const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
             if (!(count >= 1 && count < 1e15)) {
-                demi_refuse(w, call, "class %d has amount %g, which is %.3g grains of %g kg, must "
-                            "be 1 to 1e15; check amount and by_mass", k, d->amount[k], count - 0.5,
-                            feed.mass[k]);
+                demi_refuse(w, __func__, "class %d has amount %g, which is %.3g grains of %g kg, "
+                            "must be 1 to 1e15; check amount and by_mass", k, d->amount[k],
+                            count - 0.5, feed.mass[k]);
                 return id;
             }
             feed.limit[k] = (uint64_t)count;
         }
     }
     if (!(d->rate > 0) && !d->limited) {
-        demi_refuse(w, call, "rate is 0, which means all grains at once, and such a feed needs "
+        demi_refuse(w, __func__, "rate is 0, which means all grains at once, and such a feed needs "
                     "`limited`, or it never ends; set limited or a rate");
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
-        demi_refuse(w, call, "the box is not finite or lo is above hi; set it to the region of the "
-                    "centres of new grains");
+        demi_refuse(w, __func__, "the box is not finite or lo is above hi; set it to the region of "
+                    "the centres of new grains");
         return id;
     }
     if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
         (shaped && (!demi_list_drop(w) || !demi_orient_begin(w)))) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return id;
     }
     feed.random = d->seed;
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
     demi_dt_outdated(w);                        /* new grains may need a shorter one */
-    demi_built(w, call);
+    demi_built(w, __func__);
     id.id = w->feed_count;
     return id;
 }
@@ -370,9 +369,9 @@ static dem_result demi_world_feed(dem_world *w) {
     return demi_feeds_run(w, &feeder);
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
-    if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
-        return demi_refuse(w, "dem_feed_get", "feed %d does not exist, ids in this world are 1 to "
+        return demi_refuse(w, __func__, "feed %d does not exist, ids in this world are 1 to "
                            "%d; adding it failed or it belongs to another world: check the id that "
                            "dem_feed_add returned", (int)id.id, w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
@@ -390,35 +389,34 @@ static const demi_field_row demi_outlet_rows[] = {
     DEMI_LIMITED(dem_outlet_desc, residence_bin, 'd', DEMI_FROM, DEMI_FARTHEST, "s"),
     DEMI_ROW_END};
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
-    if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
-    const char *call = "dem_outlet_add";
+    if (demi_null(w, __func__, d, "desc")) return demi_no_outlet;
     demi_outlet outlet;
     dem_outlet id;
     int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
-    if (demi_rows_check(w, call, demi_outlet_rows, d, "",
+    if (demi_rows_check(w, __func__, demi_outlet_rows, d, "",
                         "start from DEM_OUTLET_DESC and set only what differs")) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_refuse(w, call, "wanted is %g to %g m, and there are %d classes; wanted_min must be "
-                    "below wanted_max, and the radii of classes > 0, finite and ascending",
+        demi_refuse(w, __func__, "wanted is %g to %g m, and there are %d classes; wanted_min must "
+                    "be below wanted_max, and the radii of classes > 0, finite and ascending",
                     (double)d->wanted_min, (double)d->wanted_max, d->class_count);
         return id;
     }
-    if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
-    if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
-    if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
+    if (demi_box_empty(w, __func__, d->box, w->desc.planar)) return id;
+    if (d->frame.id && demi_wall_find(w, __func__, d->frame) < 0) return id;
+    if (d->material.id && demi_material_index(w, __func__, d->material, &k) != DEM_OK) return id;
     for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
     if (d->keep && kept == DEMI_ZONES) {
-        demi_refuse(w, call, "keep is %d, but %d outlets that keep their grains exist already, "
+        demi_refuse(w, __func__, "keep is %d, but %d outlets that keep their grains exist already, "
                     "which is the limit; count by classes instead", d->keep, kept);
         return id;
     }
     if ((d->keep && !demi_array_begin(w, DEMI_ZONED, &w->bodies.zoned)) ||
         (d->residence_bin > 0 && !demi_ages_begin(w)) ||
         !DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return id;
     }
     memset(&outlet, 0, sizeof outlet);
@@ -426,7 +424,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     outlet.state.since = w->clock.time;
     outlet.zone = d->keep ? kept : -1;
     *demi_outlet_at(w, w->outlet_count++) = outlet;
-    demi_built(w, call);
+    demi_built(w, __func__);
     id.id = w->outlet_count;
     return id;
 }
@@ -535,8 +533,8 @@ static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_o
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
-    if (demi_null_look(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
-    const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    const demi_outlet *o = demi_outlet_find(w, __func__, id);
     const demi_periods p = demi_periods_of(w);
     int i;
     if (!o) return DEM_ERROR_ARGUMENT;
@@ -553,8 +551,8 @@ DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_
     return DEM_OK;
 }
 DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
-    if (demi_null(w, "dem_outlet_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_outlet *o = demi_outlet_find(w, "dem_outlet_reset", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_outlet *o = demi_outlet_find(w, __func__, id);
     if (!o) return DEM_ERROR_ARGUMENT;
     memset(&o->state, 0, sizeof o->state);
     o->state.since = w->clock.time;

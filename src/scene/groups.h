@@ -17,12 +17,11 @@ static int demi_group_find(const dem_world *w, const char *name) {
 DEM_API dem_group dem_group_get(const dem_world *w, const char *name) {
     dem_group id;
     id.id = 0;
-    if (demi_null_look(w, "dem_group_get", name, "name")) return id;
+    if (demi_null_look(w, __func__, name, "name")) return id;
     id.id = 1 + demi_group_find(w, name);
     if (!id.id)
-        demi_refuse(w, "dem_group_get", "there is no group \"%.60s\"; desc.groups names "
-                    "\"%.200s\": add the name there, or correct it", name,
-                    w->desc.groups ? w->desc.groups : "");
+        demi_refuse(w, __func__, "there is no group \"%.60s\"; desc.groups names \"%.200s\": add "
+                    "the name there, or correct it", name, w->desc.groups ? w->desc.groups : "");
     return id;
 }
 /* True if body i is in the group, or if its id is 0. */
@@ -104,10 +103,10 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
 }
 DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, dem_body *out,
                               int capacity) {
-    if (demi_null_look(world, "dem_bodies_select", s, "selection")) return -1;
+    if (demi_null_look(world, __func__, s, "selection")) return -1;
     dem_world *w = (dem_world *)world;          /* only the error message is written */
     int count, slot, n = 0;
-    unsigned char *marks = demi_select(w, "dem_bodies_select", s, &count);
+    unsigned char *marks = demi_select(w, __func__, s, &count);
     if (!marks) return -1;
     for (slot = 0; slot < w->bodies.slot_count && out && n < capacity; slot++) {
         const int i = w->bodies.slot_index[slot];
@@ -118,10 +117,10 @@ DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, de
 }
 DEM_API int dem_bodies_group_set(dem_world *w, const dem_selection *s, dem_group group,
                                  int member) {
-    if (demi_null(w, "dem_bodies_group_set", s, "selection")) return -1;
+    if (demi_null(w, __func__, s, "selection")) return -1;
     int count, i;
-    unsigned char *marks = demi_group_check(w, "dem_bodies_group_set", group, 1) == DEM_OK
-        ? demi_select(w, "dem_bodies_group_set", s, &count) : 0;
+    unsigned char *marks = demi_group_check(w, __func__, group, 1) == DEM_OK
+        ? demi_select(w, __func__, s, &count) : 0;
     if (!marks) return -1;
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t bit = (uint32_t)1 << (group.id - 1);
@@ -153,25 +152,25 @@ static int demi_selected_set(dem_world *w, const char *call, const dem_selection
 }
 DEM_API int dem_bodies_velocity_set(dem_world *w, const dem_selection *s, dem_vec3 velocity,
                                     dem_vec3 spin) {
-    if (demi_null(w, "dem_bodies_velocity_set", s, "selection")) return -1;
+    if (demi_null(w, __func__, s, "selection")) return -1;
     if (!demi_place(velocity) || !demi_place(spin)) {
-        demi_refuse(w, "dem_bodies_velocity_set", "velocity or spin is not finite, or beyond %g "
+        demi_refuse(w, __func__, "velocity or spin is not finite, or beyond %g "
                     "m/s or rad/s; check what it was computed from", DEMI_FARTHEST);
         return -1;
     }
-    return demi_selected_set(w, "dem_bodies_velocity_set", s, &velocity, spin, 0);
+    return demi_selected_set(w, __func__, s, &velocity, spin, 0);
 }
 DEM_API int dem_bodies_fixed_set(dem_world *w, const dem_selection *s, int fixed) {
-    if (demi_null(w, "dem_bodies_fixed_set", s, "selection")) return -1;
-    return demi_selected_set(w, "dem_bodies_fixed_set", s, 0, demi_v(0, 0, 0), fixed);
+    if (demi_null(w, __func__, s, "selection")) return -1;
+    return demi_selected_set(w, __func__, s, 0, demi_v(0, 0, 0), fixed);
 }
 DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
-    if (demi_null(w, "dem_bodies_remove", s, "selection")) return -1;
+    if (demi_null(w, __func__, s, "selection")) return -1;
     int count, i;
-    unsigned char *marks = demi_select(w, "dem_bodies_remove", s, &count);
+    unsigned char *marks = demi_select(w, __func__, s, &count);
     if (!marks) return -1;
     if (count && !demi_list_drop(w)) {
-        demi_no_memory(w, "dem_bodies_remove");
+        demi_no_memory(w, __func__);
         count = -1;
     }
     /* backwards: the last body, which takes the index, has been looked at */
@@ -186,12 +185,12 @@ DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
 }
 DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_selection *s,
                                         dem_bodies_means *out) {
-    if (demi_null_look(world, "dem_bodies_means_get", s, "selection") ||
-        demi_null_look(world, "dem_bodies_means_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, s, "selection") ||
+        demi_null_look(world, __func__, out, "out")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;          /* only the error message is written */
     const demi_periods p = demi_periods_of(w);
     int count, slot, k;
-    unsigned char *marks = demi_select(w, "dem_bodies_means_get", s, &count);
+    unsigned char *marks = demi_select(w, __func__, s, &count);
     if (!marks) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     for (slot = 0; slot < w->bodies.slot_count; slot++) {

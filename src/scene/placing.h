@@ -464,32 +464,30 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
 }
 DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius,
                              dem_region region, int count, uint64_t seed) {
-    if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
-    return demi_fill(w, "dem_spheres_fill", material, -1, radius, 0, &region, count, seed);
+    if (demi_null(w, __func__, w, "world")) return 0;
+    return demi_fill(w, __func__, material, -1, radius, 0, &region, count, seed);
 }
 DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape,
                             dem_region region, int count, uint64_t seed) {
-    const char *call = "dem_bodies_fill";
-    const int i = demi_null(w, call, w, "world") ? -1 : demi_shape_index(w, call, shape);
-    return i < 0 ? 0
-                 : demi_fill(w, call, material, i, w->shapes[i].radius, 0, &region, count, seed);
+    const int i = demi_null(w, __func__, w, "world") ? -1 : demi_shape_index(w, __func__, shape);
+    if (i < 0) return 0;
+    return demi_fill(w, __func__, material, i, w->shapes[i].radius, 0, &region, count, seed);
 }
 DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes *sizes,
                            dem_region region, int count, uint64_t seed) {
-    const char *call = "dem_sizes_fill";
     dem_real *radii;
     int i, done = 0;
-    if (demi_null(w, call, sizes, "sizes")) return 0;
+    if (demi_null(w, __func__, sizes, "sizes")) return 0;
     radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
-    if (!radii) { demi_no_memory(w, call); return 0; }
+    if (!radii) { demi_no_memory(w, __func__); return 0; }
     /* even for count 0 the region must have room for one */
-    if (demi_sizes_draw(w, call, sizes, count ? count : 1, 0, radii) == DEM_OK) {
+    if (demi_sizes_draw(w, __func__, sizes, count ? count : 1, 0, radii) == DEM_OK) {
         for (i = 0; i < count/2; i++) {         /* the largest first */
             const dem_real r = radii[i];
             radii[i] = radii[count - 1 - i];
             radii[count - 1 - i] = r;
         }
-        done = demi_fill(w, call, material, -1, 0, radii, &region, count, seed);
+        done = demi_fill(w, __func__, material, -1, 0, radii, &region, count, seed);
     }
     demi_free(w, radii);
     return done;
@@ -571,50 +569,49 @@ static int demi_lattice_make(const dem_world *w, const demi_region *room, dem_re
 }
 DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
                              dem_region region, int count) {
-    const char *call = "dem_spheres_pack";
     demi_region room;
     demi_crowd c;
     demi_lattice g;
     demi_calling was;
     int m = 0, first, done;
-    if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
-        return 0;
+    if (demi_null(w, __func__, w, "world") ||
+        demi_material_index(w, __func__, material, &m) != DEM_OK) return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
         count < 0) {
-        demi_refuse(w, call, "radius is %g m, padding is %g m, count is %d; the radius must be > "
-                    "0, padding and count >= 0", (double)radius, (double)padding, count);
+        demi_refuse(w, __func__, "radius is %g m, padding is %g m, count is %d; the radius must be "
+                    "> 0, padding and count >= 0", (double)radius, (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, call, m, radius, 0) ||
-        !demi_region_check(w, call, &region, radius, &room)) return 0;
+    if (demi_mass_refuse(w, __func__, m, radius, 0) ||
+        !demi_region_check(w, __func__, &region, radius, &room)) return 0;
     if (!demi_lattice_make(w, &room, radius, padding, &g)) {
-        demi_refuse(w, call, "a period is shorter than one sphere of radius %g m with its padding "
-                    "of %g m; lengthen the domain", (double)radius, (double)padding);
+        demi_refuse(w, __func__, "a period is shorter than one sphere of radius %g m with its "
+                    "padding of %g m; lengthen the domain", (double)radius, (double)padding);
         return 0;
     }
     g.count = count;
     if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
-        demi_refuse(w, call, "the box has room for about %.3g spheres of radius %g m, must be at "
-                    "most %d, the limit of a world; make the box smaller or give a count",
+        demi_refuse(w, __func__, "the box has room for about %.3g spheres of radius %g m, must be "
+                    "at most %d, the limit of a world; make the box smaller or give a count",
                     demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
     done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    was = demi_calls(w, call, 1);
+    was = demi_calls(w, __func__, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
     demi_called(w, was);
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return 0;
     }
     if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
-        demi_refuse(w, call, "stopped after %.3g trial positions, with %d spheres of radius %g m "
-                    "packed; the limits are %d bodies and %g trial positions: make the box smaller",
-                    g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
-    demi_built(w, call);
+        demi_refuse(w, __func__, "stopped after %.3g trial positions, with %d spheres of radius %g "
+                    "m packed; the limits are %d bodies and %g trial positions: make the box "
+                    "smaller", g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
+    demi_built(w, __func__);
     return done;
 }

@@ -173,8 +173,8 @@ static double demi_size_draw(const demi_size_table *t, double share) {
 }
 DEM_API double dem_sizes_finer_get(dem_world *w, const dem_sizes *d, dem_real radius) {
     double lo, hi;
-    if (demi_null_look(w, "dem_sizes_finer_get", d, "sizes")) return -1;
-    if (!demi_size_ends(w, "dem_sizes_finer_get", d, &lo, &hi)) return -1;
+    if (demi_null_look(w, __func__, d, "sizes")) return -1;
+    if (!demi_size_ends(w, __func__, d, &lo, &hi)) return -1;
     return demi_size_finer(d, lo, hi, (double)radius);
 }
 /* As dem_sizes_draw, with error messages in the name of `call`. */
@@ -196,26 +196,26 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
 }
 DEM_API dem_result dem_sizes_draw(dem_world *w, const dem_sizes *d, int count, uint64_t seed,
                                   dem_real *radii) {
-    if (demi_null_look(w, "dem_sizes_draw", d, "sizes")) return DEM_ERROR_ARGUMENT;
-    if (demi_null_look(w, "dem_sizes_draw", radii, "radii")) return DEM_ERROR_ARGUMENT;
-    return demi_sizes_draw(w, "dem_sizes_draw", d, count, seed, radii);
+    if (demi_null_look(w, __func__, d, "sizes")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, __func__, radii, "radii")) return DEM_ERROR_ARGUMENT;
+    return demi_sizes_draw(w, __func__, d, count, seed, radii);
 }
 DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_count,
                                   dem_real *radius,
                               double *amount) {
-    const char *call = "dem_sizes_classes_get";
     demi_size_table *t;
     double lo, hi, all = 0;
     int i, k = 0, n = 0;
-    if (demi_null_look(w, call, d, "sizes") || demi_null_look(w, call, radius, "radius") ||
-        demi_null_look(w, call, amount, "amount")) return 0;
+    if (demi_null_look(w, __func__, d, "sizes") || demi_null_look(w, __func__, radius, "radius") ||
+        demi_null_look(w, __func__, amount, "amount")) return 0;
     if (class_count < 1 || class_count > DEM_CLASSES) {
-        demi_refuse(w, call, "class_count is %d, must be 1 to %d", class_count, (int)DEM_CLASSES);
+        demi_refuse(w, __func__, "class_count is %d, must be 1 to %d", class_count,
+                    (int)DEM_CLASSES);
         return 0;
     }
-    if (!demi_size_ends(w, call, d, &lo, &hi)) return 0;
+    if (!demi_size_ends(w, __func__, d, &lo, &hi)) return 0;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
-    if (!t) { demi_no_memory(w, call); return 0; }
+    if (!t) { demi_no_memory(w, __func__); return 0; }
     demi_size_table_make(w, d, lo, hi, t);
     for (i = 0; i < class_count; i++) {
         const double end = i + 1 < class_count ? lo*demi_pow(hi/lo, (i + 1.0)/class_count) : 2*hi;

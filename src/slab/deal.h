@@ -299,7 +299,7 @@ static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
 DEM_API void dem_slabs_destroy(dem_slabs *s) {
     dem_allocator allocator;
     int k;
-    if (!s || demi_null(&s->head, "dem_slabs_destroy", s, "slabs")) return;
+    if (!s || demi_null(&s->head, __func__, s, "slabs")) return;
     for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
     allocator = s->head.desc.allocator;
     demi_free_chain(&s->head, DEMI_RUN);
@@ -354,8 +354,8 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
 DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     demi_calling was;
     dem_slabs *s;
-    if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
-    was = demi_calls(w, "dem_slabs_create", 1);
+    if (demi_null(w, __func__, desc, "desc")) return 0;
+    was = demi_calls(w, __func__, 1);
     s = demi_slabs_make(w, desc);
     demi_called(w, was);
     return s;
@@ -607,17 +607,17 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
-    if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world") ||
-        demi_null(w, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null(&s->head, __func__, w, "world") ||
+        demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     int32_t *add = 0;
     uint8_t *seen = 0;
-    dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
+    dem_result result = demi_slabs_usable(s, __func__);
     const int slots = w->bodies.slot_count;
     demi_calling was[2];
     demi_slab_sums sums;
     int k, i;
-    was[0] = demi_calls(&s->head, "dem_slabs_collect", 1);
-    was[1] = demi_calls(w, "dem_slabs_collect", 1);
+    was[0] = demi_calls(&s->head, __func__, 1);
+    was[1] = demi_calls(w, __func__, 1);
     if (result == DEM_OK) result = demi_slabs_gather(s);
     if (result == DEM_OK) result = demi_slabs_room(s, w, &add, &seen);
     if (result == DEM_OK) {
@@ -650,7 +650,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
     return result;
 }
 DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
-    if (!s || demi_null(&s->head, "dem_slabs_loads_reset", s, "slabs")) return;
+    if (!s || demi_null(&s->head, __func__, s, "slabs")) return;
     int k, i;
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
@@ -664,10 +664,10 @@ DEM_API const char *dem_slabs_error_get(const dem_slabs *s) {
     "why";
 }
 DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
-    if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null_look(&s->head, __func__, out, "slab")) return DEM_ERROR_ARGUMENT;
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
-        return demi_refuse(&s->head, "dem_slab_get", "slab %d is not here, this process holds "
+        return demi_refuse(&s->head, __func__, "slab %d is not here, this process holds "
                            "slabs %d to %d of %d; make this call in the process that holds it",
                            index, s->first, s->first + s->local - 1, s->count);
     b = &s->slabs[index - s->first];

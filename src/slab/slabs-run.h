@@ -116,10 +116,10 @@ static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
                      "checkpoint", call);
 }
 DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
-    if (!s || demi_null(&s->head, "dem_slabs_step", s, "slabs")) return DEM_ERROR_ARGUMENT;
-    const dem_result result = demi_slabs_usable(s, "dem_slabs_step");
+    if (!s || demi_null(&s->head, __func__, s, "slabs")) return DEM_ERROR_ARGUMENT;
+    const dem_result result = demi_slabs_usable(s, __func__);
     if (result != DEM_OK) return result;
     if (steps < 0)
-        return demi_refuse(&s->head, "dem_slabs_step", "steps is %d, must be >= 0", steps);
-    return demi_steps(&s->head, "dem_slabs_step", steps);
+        return demi_refuse(&s->head, __func__, "steps is %d, must be >= 0", steps);
+    return demi_steps(&s->head, __func__, steps);
 }
