@@ -190,6 +190,7 @@ static const refused_field refused_fields[] = {
     {"dem_output_desc", "field", offsetof(dem_output_desc, field), FIELD_INT, sizeof(((dem_output_desc *)0)->field)},
     {"dem_output_desc", "z0", offsetof(dem_output_desc, z0), FIELD_REAL, sizeof(((dem_output_desc *)0)->z0)},
     {"dem_output_desc", "z1", offsetof(dem_output_desc, z1), FIELD_REAL, sizeof(((dem_output_desc *)0)->z1)},
+    {"dem_output_desc", "outlet", offsetof(dem_output_desc, outlet), FIELD_INT, sizeof(((dem_output_desc *)0)->outlet)},
     {"dem_slabs_desc", "axis", offsetof(dem_slabs_desc, axis), FIELD_INT, sizeof(((dem_slabs_desc *)0)->axis)},
     {"dem_slabs_desc", "count", offsetof(dem_slabs_desc, count), FIELD_INT, sizeof(((dem_slabs_desc *)0)->count)},
     {"dem_slabs_desc", "first", offsetof(dem_slabs_desc, first), FIELD_INT, sizeof(((dem_slabs_desc *)0)->first)},

@@ -3572,10 +3572,10 @@ class OutputDesc(Struct):
         ('start', ctypes.c_double, 's, times of the first and the last; end 0 means no last'),
         ('end', ctypes.c_double, ""),
         ('wall', Wall,
-         'CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write; the '
-         'mixing of two components, if mixing.cells are set; the values that `values` writes, with `columns` '
-         'as their names (1 to 32 words as in body_reals, copied); or, if all four are zero, steps, bodies, '
-         'contacts, kinetic and rotational energy (J) and overlap_max'),
+         'CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write; the '
+         'counts of an outlet; the mixing of two components, if mixing.cells are set; the values that `values`'
+         ' writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if all are '
+         'zero, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
         ('columns', str, ''),
         ('values', OutputDescValues, ''),
         ('function', OutputDescFunction,
@@ -3586,6 +3586,9 @@ class OutputDesc(Struct):
         ('field', Field, 'FIELD_CSV: required'),
         ('z0', Real, 'm, WALLS: profiles are extruded between them'),
         ('z1', Real, ""),
+        ('outlet', Outlet,
+         'CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as '
+         'in dem_outlet_state'),
     ]
 
 
@@ -4997,7 +5000,7 @@ class World(WorldBase):
         return (_lib.dem_checkpoint_changes_get(self._at) or b'').decode()
 
     def output(self, *, kind=0, path=None, interval=0, start=0, end=0, wall=None, columns=None, values=None,
-            function=None, user=None, mixing=None, field=None, z0=0, z1=0):
+            function=None, user=None, mixing=None, field=None, z0=0, z1=0, outlet=None):
         """Adds an output that a run writes automatically, at the steps nearest to start, start + interval and so on, in
         the order in which outputs were added. The first line of a CSV file replaces an older file of that name; a
         file with other columns is an error of the run. If a file cannot be written, the run stops with the state
@@ -5013,19 +5016,21 @@ class World(WorldBase):
             null.
         interval: s, required, 1e-12 to 1e15
         start: s, times of the first and the last; end 0 means no last
-        wall: CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write; the mixing
-            of two components, if mixing.cells are set; the values that `values` writes, with `columns` as their names
-            (1 to 32 words as in body_reals, copied); or, if all four are zero, steps, bodies, contacts, kinetic and
-            rotational energy (J) and overlap_max
+        wall: CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write; the counts
+            of an outlet; the mixing of two components, if mixing.cells are set; the values that `values` writes, with
+            `columns` as their names (1 to 32 words as in body_reals, copied); or, if all are zero, steps, bodies,
+            contacts, kinetic and rotational energy (J) and overlap_max
         function: CALL: may change the world, but not step it. A return value other than 0 stops the run
             (DEM_ERROR_STOPPED).
         user: passed to `values` and `function`; or null
         mixing: CSV: see above
         field: FIELD_CSV: required
         z0: m, WALLS: profiles are extruded between them
+        outlet: CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as in
+            dem_outlet_state
         """
         desc = OutputDesc(kind=kind, path=path, interval=interval, start=start, end=end, wall=wall, columns=columns,
-            values=values, function=function, user=user, mixing=mixing, field=field, z0=z0, z1=z1)
+            values=values, function=function, user=user, mixing=mixing, field=field, z0=z0, z1=z1, outlet=outlet)
         desc = self._bound(desc)
         return self._id(_lib.dem_output_add(self._at, desc))
 

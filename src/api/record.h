@@ -288,10 +288,11 @@ typedef struct dem_output_desc {
     const char *path;
     double interval;         /* s, required, 1e-12 to 1e15 */
     double start, end;       /* s, times of the first and the last; end 0 means no last */
-    /* CSV: what a line contains. One of four: the loads of this wall, as dem_wall_loads_csv_write;
-       the mixing of two components, if mixing.cells are set; the values that `values` writes, with
-       `columns` as their names (1 to 32 words as in body_reals, copied); or, if all four are zero,
-       steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max */
+    /* CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write;
+       the counts of an outlet; the mixing of two components, if mixing.cells are set; the values
+       that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied);
+       or, if all are zero, steps, bodies, contacts, kinetic and rotational energy (J) and
+       overlap_max */
     dem_wall wall;
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
@@ -302,6 +303,9 @@ typedef struct dem_output_desc {
     dem_mixing_desc mixing;  /* CSV: see above */
     dem_field field;         /* FIELD_CSV: required */
     dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
+    /* CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass,
+       kg, as in dem_outlet_state */
+    dem_outlet outlet;
 } dem_output_desc;
 static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO

@@ -46,6 +46,26 @@ static dem_result demi_mixing_values(const dem_world *w, const dem_mixing_desc *
     value[10] = m.contact_segregation;
     return DEM_OK;
 }
+static const char demi_outlet_heading[] =
+    "time,grains,mass,sorted,sorted_mass,gangue,gangue_mass,back,back_mass,held,held_mass";
+enum { DEMI_OUTLET = 10 };
+/* Writes the DEMI_OUTLET values of that heading that follow the time. */
+static dem_result demi_outlet_values(const dem_world *w, dem_outlet outlet, double *value) {
+    dem_outlet_state s;
+    const dem_result result = dem_outlet_get(w, outlet, &s);
+    if (result != DEM_OK) return result;
+    value[0] = (double)s.total;
+    value[1] = s.total_mass;
+    value[2] = (double)s.sorted;
+    value[3] = s.sorted_mass;
+    value[4] = (double)s.gangue;
+    value[5] = s.gangue_mass;
+    value[6] = (double)s.back_total;
+    value[7] = s.back_total_mass;
+    value[8] = (double)s.held_total;
+    value[9] = s.held_total_mass;
+    return DEM_OK;
+}
 /* Returns the names of the columns of a CSV file, without the time, separated by spaces. */
 static const char *demi_output_names(const dem_output_desc *d) {
     return d->columns ? d->columns : demi_output_columns;
@@ -58,6 +78,7 @@ static int demi_output_mixes(const dem_output_desc *d) {
 static void demi_output_heading(const dem_output_desc *d, char *heading) {
     char *c;
     if (d->wall.id) { strcpy(heading, demi_loads_heading); return; }
+    if (d->outlet.id) { strcpy(heading, demi_outlet_heading); return; }
     if (demi_output_mixes(d)) { strcpy(heading, demi_mixing_heading); return; }
     strcpy(heading, "time ");
     demi_names_copy(demi_output_names(d), heading + 5);
@@ -119,7 +140,10 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
                            "removed; remove the output too (dem_output_remove)", (int)o->id,
                            (int)d->wall.id);
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
-    else if (demi_output_mixes(d)) {
+    else if (d->outlet.id) {
+        count = DEMI_OUTLET;
+        result = demi_outlet_values(w, d->outlet, value);
+    } else if (demi_output_mixes(d)) {
         count = DEMI_MIXING;
         result = demi_mixing_values(w, &d->mixing, value);
     } else {
@@ -290,8 +314,10 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
     if (!d->columns != !d->values)
         return "only one of columns and values is given; give both, or neither for the default "
             "columns";
-    if ((d->wall.id != 0) + (d->values != 0) + demi_output_mixes(d) > 1)
-        return "more than one of wall, mixing and values is given; give only one of them";
+    if ((d->wall.id != 0) + (d->outlet.id != 0) + (d->values != 0) + demi_output_mixes(d) > 1)
+        return "more than one of wall, outlet, mixing and values is given; give only one of them";
+    if (d->outlet.id < 0 || d->outlet.id > w->outlet_count)
+        return "outlet does not exist; give an id that dem_outlet_add returned";
     if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall does not "
         "exist; give an id that adding a wall returned";
     if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "

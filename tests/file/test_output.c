@@ -307,6 +307,38 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         remove(d.path);
     }
+    TEST("a scheduled CSV has the counts of an outlet: grains and masses that it removed") {
+        dem_world *world = heap();
+        dem_outlet_desc mouth = DEM_OUTLET_DESC;
+        dem_outlet_state state;
+        dem_output_desc d = DEM_OUTPUT_DESC;
+        char *text, last[256];
+        size_t n;
+        mouth.box = box_of(-1, -1, -1, 1, 1, 0.02);
+        mouth.wanted_min = DEM_R(0.006); mouth.wanted_max = DEM_R(0.007);  /* m: no grain, so all are gangue */
+        d.kind = DEM_OUTPUT_CSV;
+        d.path = "build/tmp/output_outlet.csv";
+        d.interval = 0.01;
+        d.outlet.id = 1;
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error_get(world), "outlet does not exist");
+        d.outlet = dem_outlet_add(world, &mouth);
+        d.wall.id = 1;
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error_get(world), "more than one of wall, outlet, mixing and values");
+        d.wall.id = 0;
+        CHECK(dem_output_add(world, &d).id == 1);
+        CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
+        CHECK_EQ(dem_outlet_get(world, d.outlet, &state), DEM_OK);
+        CHECK(state.total > 5 && state.total < 60 && state.gangue == state.total);
+        text = file_text("outlet", ".csv", &n);
+        CHECK(text && !strncmp(text, "time,grains,mass,sorted,sorted_mass,gangue,gangue_mass,back,back_mass,held,held_mass\n", 84));
+        sprintf(last, ",%d,%.9g,0,0,%d,%.9g,0,0,0,0\n", (int)state.total, state.total_mass, (int)state.gangue, state.gangue_mass);
+        CHECK(text && n > strlen(last) && !strcmp(text + n - strlen(last), last));
+        free(text);
+        dem_world_destroy(world);
+        remove(d.path);
+    }
     TEST("a CSV file holds no line of an earlier run, and after a restart those up to the checkpoint") {
         int late;
         for (late = 0; late < 2; late++) {
