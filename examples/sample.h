@@ -1,5 +1,5 @@
-/* sample.h - samples for tests of materials in periodic cells: shear.c and triaxial.c share it. Include it after dem.h and
-   study.h. Spheres of diameter SAMPLE_D with radii that differ by 10 %, of glass but softer. */
+/* sample.h - samples for tests of materials in periodic cells: shear.c, triaxial.c and oedometer.c share it. Include it after
+   dem.h and study.h. Spheres of diameter SAMPLE_D with radii that differ by 10 %, of glass but softer. */
 #ifndef SAMPLE_H
 #define SAMPLE_H
 static const double SAMPLE_D = 1e-3, SAMPLE_DENSITY = 2500, SAMPLE_PI = 3.14159265358979;          /* m, kg/m3 */

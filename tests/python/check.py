@@ -749,6 +749,16 @@ def _():
     same(os.path.getsize(os.path.join(WORK.name, "drum.html")) > 10000, True, "replay")
 
 
+@test("the drag of a belt driven from Python is the mass flow times its speed within 2 %, and the power drag times speed")
+def _():
+    result = subprocess.run([sys.executable, "-B", os.path.join(PYTHON, "belt.py")], capture_output=True, text=True, cwd=WORK.name)
+    rows = re.findall(r"^([\d.]+) m/s: drag ([\d.]+) N, mass flow times speed ([\d.]+) N, power ([\d.]+) W$", result.stdout, re.M)
+    same(len(rows), 3, result.stderr[-800:])
+    for speed, drag, expected, power in ([float(number) for number in row] for row in rows):
+        near(drag, expected, 0.02)                          # 300 grains, fed at random places: those on the belt differ by a few
+        near(power, drag*speed, 0.005)                      # four digits are printed
+
+
 # ---- the pages ----
 
 @test("the Python programs of docs/python.md and docs/how_to.md run and print what the pages show")
