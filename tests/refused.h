@@ -179,6 +179,7 @@ static const refused_field refused_fields[] = {
     {"dem_replay_desc", "user", offsetof(dem_replay_desc, user), FIELD_POINTER, sizeof(((dem_replay_desc *)0)->user)},
     {"dem_replay_desc", "resolution", offsetof(dem_replay_desc, resolution), FIELD_REAL, sizeof(((dem_replay_desc *)0)->resolution)},
     {"dem_replay_desc", "interval", offsetof(dem_replay_desc, interval), FIELD_DOUBLE, sizeof(((dem_replay_desc *)0)->interval)},
+    {"dem_replay_desc", "contacts", offsetof(dem_replay_desc, contacts), FIELD_INT, sizeof(((dem_replay_desc *)0)->contacts)},
     {"dem_output_desc", "kind", offsetof(dem_output_desc, kind), FIELD_INT, sizeof(((dem_output_desc *)0)->kind)},
     {"dem_output_desc", "path", offsetof(dem_output_desc, path), FIELD_POINTER, sizeof(((dem_output_desc *)0)->path)},
     {"dem_output_desc", "interval", offsetof(dem_output_desc, interval), FIELD_DOUBLE, sizeof(((dem_output_desc *)0)->interval)},

@@ -1,5 +1,6 @@
 /* write_replays FOLDER: writes two replays for tests/browser.sh. shapes.html has beads, ellipsoids and clusters that carry
-   a number and come and go, on a mesh that rotates in a drum. sieve.html has beads on a shaken sieve above a profile. */
+   a number and come and go, on a mesh that rotates in a drum. sieve.html has beads on a shaken sieve above a profile, with
+   the contact forces of every other frame. */
 #include "dem.h"
 #include <stdio.h>
 
@@ -20,11 +21,12 @@ static dem_world *world_of(const char *reals, dem_material *stuff) {
     return w;
 }
 /* Runs the world and writes its replay. Half way one body is removed and another added. */
-static int replay(dem_world *w, const char *path, const char *title, dem_material stuff, int frames, dem_body gone) {
+static int replay(dem_world *w, const char *path, const char *title, dem_material stuff, int frames, dem_body gone, int contacts) {
     dem_replay_desc desc = DEM_REPLAY_DESC;
     dem_replay *r;
     int k;
     desc.title = title;
+    desc.contacts = contacts;
     r = dem_replay_open(w, path, &desc);
     for (k = 0; r && k < frames; k++) {
         if (k && dem_world_run(w, 0.01, 0, 0) != DEM_OK) break;
@@ -73,7 +75,7 @@ static int shapes(const char *path) {
         warmth = 300 + k;
         dem_body_reals_set(w, dem_body_id_get(w, k), &warmth);
     }
-    return replay(w, path, "shapes </script> & \"quotes\"", stuff[0], 40, gone);
+    return replay(w, path, "shapes </script> & \"quotes\"", stuff[0], 40, gone, 0);
 }
 static int sieve(const char *path) {
     static dem_real line[8] = {DEM_R(-0.03), DEM_R(-0.03), DEM_R(-0.01), DEM_R(-0.04), DEM_R(0.01), DEM_R(-0.04),
@@ -99,7 +101,7 @@ static int sieve(const char *path) {
                      dem_region_make(dem_box_make(DEM_R(-0.015), DEM_R(0.005), DEM_R(-0.015), DEM_R(0.015), DEM_R(0.03), DEM_R(0.015))),
                      150, 1);
     gone = dem_sphere_add(w, stuff[1], DEM_R(0.003), dem_vec3_make(0, DEM_R(0.035), 0));
-    return replay(w, path, "a sieve", stuff[0], 40, gone);
+    return replay(w, path, "a sieve", stuff[0], 40, gone, 2);
 }
 int main(int argc, char **argv) {
     char path[2][400];

@@ -3507,6 +3507,10 @@ class ReplayDesc(Struct):
          's, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest '
          'to multiples of the interval. A frame that cannot be written ends the replay, not the run: '
          'dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.'),
+        ('contacts', ctypes.c_int,
+         '>= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to the '
+         'contact point with a wall), wider and redder for larger forces. At most the 50,000 strongest of a '
+         'frame, and none below 1 % of its strongest. 0 means none.'),
     ]
 
 
@@ -4944,7 +4948,8 @@ class World(WorldBase):
         """
         self._ok(_lib.dem_contacts_csv_write(self._at, os.fsencode(path)))
 
-    def replay(self, path, *, title=None, number=None, number_fn=None, user=None, resolution=0, interval=0):
+    def replay(self, path, *, title=None, number=None, number_fn=None, user=None, resolution=0, interval=0,
+            contacts=0):
         """Opens a replay of the world. desc: or null, for DEM_REPLAY_DESC. Close the replay before its world is
         destroyed.
 
@@ -4958,9 +4963,12 @@ class World(WorldBase):
         interval: s, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest
             to multiples of the interval. A frame that cannot be written ends the replay, not the run:
             dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.
+        contacts: >= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to the
+            contact point with a wall), wider and redder for larger forces. At most the 50,000 strongest of a frame,
+            and none below 1 % of its strongest. 0 means none.
         """
         desc = ReplayDesc(title=title, number=number, number_fn=number_fn, user=user, resolution=resolution,
-            interval=interval)
+            interval=interval, contacts=contacts)
         desc = self._bound(desc)
         return Replay(self._pointer(_lib.dem_replay_open(self._at, os.fsencode(path), desc)), self, path)
 

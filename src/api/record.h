@@ -215,6 +215,10 @@ typedef struct dem_replay_desc {
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
        run: dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write. */
     double interval;
+    /* >= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to
+       the contact point with a wall), wider and redder for larger forces. At most the 50,000
+       strongest of a frame, and none below 1 % of its strongest. 0 means none. */
+    int contacts;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
 #define DEM_REPLAY_DESC DEM_REPLAY_DESC_ZERO

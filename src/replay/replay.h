@@ -25,6 +25,10 @@
                           bits each, and in the top two bits the index of the one left out
            number         if 2 of the second byte: float32, the number that grains are coloured by
        values         count; for each: index, float32
+       contacts       only if the head has "contacts":1; 0: those of an earlier frame remain; or
+                      1 + count; for each: slot of a, slot of b + 1; if that is 0, a wall: the
+                      contact point less the centre of a in units of the resolution, 3 int16; then
+                      32768 + 64 log2 of the force in N, uint16
 
    Tests: tests/replay/test_replay.c reads replays back, tests/browser.sh plays them in a browser.
    --------------------------------------------------------------------------------------------- */
@@ -47,6 +51,7 @@ struct dem_replay {
     demi_seen *seen;                 /* x seen_count: one for each slot */
     float (*pose)[7];                /* by index of the wall: its pose when last written */
     int32_t *wall_told;              /* by index of the wall: its id when last written; 0: none */
+    dem_contact_info *contacts;      /* of the present frame */
     unsigned char *bytes;            /* the frame being written, */
     size_t size;                     /* and its length so far */
     int seen_count, wall_count, shape_count, value_count, frames, failed;  /* failed: no memory */
@@ -148,6 +153,7 @@ static void demi_film_head(dem_replay *r) {
     fputs(",\"number\":", out);
     if (*r->number) demi_film_text(out, r->number);
     else fputs("null", out);
+    if (r->desc.contacts) fputs(",\"contacts\":1", out);
     fputs(",\"values\":[]}</script>\n", out);
 }
 /* Writes a shape: member spheres, pieces of a union, planes of faces, or semi-axes. */
@@ -363,6 +369,52 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     one->turn = turn;
     one->own = own;
 }
+/* Largest number of contacts of a frame: the strongest. They take at most 18 bytes each. */
+enum { DEMI_FILM_CONTACTS = 50000 };
+/* Appends the contacts, without those weaker than a hundredth of the strongest, which would be thin
+   lines. */
+static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
+    dem_world *w = r->world;
+    const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;
+    const int count = due ? dem_contacts_get(w, 0, 0) : 0;
+    double least = 0;
+    uint32_t kept = 0;
+    int k, c;
+    if (!r->desc.contacts) return;
+    if (!due) { demi_film_count(r, 0); return; }
+    if (!demi_grow(w, DEMI_LOOSE, &r->contacts, sizeof *r->contacts, (size_t)count + 1)) {
+        r->failed = 1;
+        return;
+    }
+    dem_contacts_get(w, r->contacts, count);
+    for (k = 0; k < count; k++)
+        least = fmax(least, (double)demi_length(r->contacts[k].force)/100);
+    do {
+        kept = 0;
+        for (k = 0; k < count; k++)
+            kept += least > 0 && (double)demi_length(r->contacts[k].force) >= least;
+        least *= kept > DEMI_FILM_CONTACTS ? 1.25 : 1;
+    } while (kept > DEMI_FILM_CONTACTS);
+    demi_film_count(r, kept + 1);
+    for (k = 0; k < count && kept; k++) {
+        const dem_contact_info *o = r->contacts + k;
+        const double force = (double)demi_length(o->force);
+        dem_real point[3];
+        uint16_t code;
+        if (force < least) continue;
+        demi_put(point, o->point);
+        demi_film_count(r, o->a.slot - 1);
+        demi_film_count(r, o->b.slot);
+        for (c = 0; c < 3 && !o->b.slot; c++) {
+            const dem_real *at = b->positions + 4*w->bodies.slot_index[o->a.slot - 1];
+            const double x = (double)(point[c] - at[c])/r->resolution;
+            const int16_t from = (int16_t)floor(DEMI_MAX(-32767, DEMI_MIN(32767, x)) + 0.5);
+            demi_film_put(r, &from, 2, 1);
+        }
+        code = (uint16_t)DEMI_MAX(0, DEMI_MIN(65535, 32768.5 + 64*demi_log(force)/0.69314718));
+        demi_film_put(r, &code, 2, 1);
+    }
+}
 /* Before the first frame: chooses the resolution of positions and writes the head. */
 static void demi_film_resolve(dem_replay *r, const dem_bodies *b) {
     dem_real least = 0;
@@ -416,6 +468,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
         demi_film_real(r, r->values[k]);
         r->given[k] = 0;
     }
+    demi_film_contacts(r, &b);
     if (!r->failed) demi_film_block(r);
     demi_called(w, was);
     r->frames++;
@@ -447,6 +500,7 @@ static void demi_film_free(dem_replay *r) {
     demi_free(w, r->seen);
     demi_free(w, r->pose);
     demi_free(w, r->wall_told);
+    demi_free(w, r->contacts);
     demi_free(w, r->bytes);
     demi_free(w, r);
 }
@@ -458,10 +512,10 @@ static const demi_field_row demi_replay_rows[] = {
                 "where 0 means 1/32 of the smallest radius", 0, 0, 0),
     DEMI_LIMITED_IF(DEMI_OF, interval, 'd', DEMI_FROM, DBL_MAX, "s",
                     "where 0 means frames only from dem_replay_frame_write", 0, 0, 0),
-    DEMI_ROW_END};
+    DEMI_LIMITED(DEMI_OF, contacts, 'i', DEMI_FROM, INT_MAX, ""), DEMI_ROW_END};
 #undef DEMI_OF
 DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_replay_desc *desc) {
-    static const dem_replay_desc zero = {0, 0, 0, 0, 0, 0};
+    static const dem_replay_desc zero = {0, 0, 0, 0, 0, 0, 0};
     const dem_replay_desc d = desc ? *desc : zero;
     const char *slash;
     dem_replay *r;

@@ -22,6 +22,8 @@ typedef struct film {
     int wall_there[9], gone, fresh;
     double value[DEM_REPLAY_VALUES];
     int given;
+    int links, link[2000][2];        /* contacts; slots of a and b, -1: a wall */
+    double force[2000], point[2000][3];
 } film;
 
 static void film_read(film *f, const char *path) {
@@ -120,6 +122,15 @@ static int film_next(film *f) {                    /* 0: there is no frame left 
         if (more & 2) f->own[s] = film_number(f, 4);
     }
     for (n = f->given = film_count(f); n > 0; n--) { s = film_count(f); f->value[s] = film_number(f, 4); }
+    n = strstr(f->text, "\"contacts\":1") ? film_count(f) : 0;
+    f->links = n - 1;
+    for (i = 0; i < n - 1; i++) {
+        f->link[i][0] = film_count(f);
+        f->link[i][1] = film_count(f) - 1;
+        for (k = 0; k < 3 && f->link[i][1] < 0; k++)
+            f->point[i][k] = (double)(f->place[f->link[i][0]][k] + film_signed(f, 2))*f->resolution;
+        f->force[i] = pow(2, ((film_signed(f, 2) & 65535) - 32768)/64.0);
+    }
     CHECK_EQ(f->pos, f->size);
     return 1;
 }
@@ -308,6 +319,48 @@ int main(int argc, char **argv) {
         CHECK((double)(size[2] - size[0])/(250*19) < 3);
         dem_world_destroy(w);
     }
+    TEST("a replay with contacts has every n-th frame's forces above 1 % of the largest, within 1.1 %, and between them none") {
+        static dem_contact_info all[2000];
+        dem_material stuff;
+        dem_world *w = scene(&stuff);
+        dem_replay_desc desc = DEM_REPLAY_DESC;
+        dem_replay *film;
+        int k, i, n = 0, strong = 0, walls = 0;
+        double most = 0;
+        desc.contacts = -1;
+        CHECK(dem_replay_open(w, film_path, &desc) == 0);
+        CHECK_STR(dem_world_error_get(w), "contacts is -1");
+        desc.contacts = 2;
+        dem_spheres_fill(w, stuff, DEM_R(0.001), dem_region_make(box_of(-0.008, -0.008, 0, 0.008, 0.008, 0.03)), 250, 2);
+        film = dem_replay_open(w, film_path, &desc);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);                 /* no list of contacts yet: none */
+        dem_world_run(w, 0.1, 0, 0);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
+        CHECK_EQ(dem_replay_close(film), DEM_OK);
+        n = dem_contacts_get(w, all, 2000);
+        for (k = 0; k < n; k++) most = fmax(most, sqrt((double)demi_dot(all[k].force, all[k].force)));
+        film_read(&f, film_path);
+        for (k = 0; k < 2; k++) { CHECK(film_next(&f)); CHECK_EQ(f.links, -1); }
+        CHECK(film_next(&f));
+        for (k = i = 0; k < n; k++) {
+            const double force = sqrt((double)demi_dot(all[k].force, all[k].force));
+            if (force < 0.01*most || i >= f.links) continue;
+            strong++;
+            CHECK_EQ(f.link[i][0], (int)all[k].a.slot - 1);
+            CHECK_EQ(f.link[i][1], (int)all[k].b.slot - 1);
+            CHECK_NEAR(f.force[i]/force, 1, 0.011);
+            if (all[k].wall) {
+                walls++;
+                CHECK_NEAR(f.point[i][0], (double)all[k].point.x, f.resolution);
+                CHECK_NEAR(f.point[i][2], (double)all[k].point.z, f.resolution);
+            }
+            i++;
+        }
+        CHECK(f.links == strong && strong > 50 && walls > 10 && strong < n);
+        free(f.text);
+        dem_world_destroy(w);
+    }
     TEST("a replay shows number_fn under its name, and no title, name or report can end the page's scripts") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
@@ -474,10 +527,13 @@ int main(int argc, char **argv) {
         dem_replay *film;
         int k, whole = 0, refused = 0;
         dem_result first, second;
+        dem_replay_desc desc = DEM_REPLAY_DESC;
+        desc.contacts = 1;
         dem_sphere_add(w, stuff, DEM_R(0.001), at(0, 0, 1));
+        CHECK_EQ(dem_world_step(w, 1), DEM_OK);
         for (k = 0; k < 40 && !whole; k++) {
             requests_left = k;
-            film = dem_replay_open(w, film_path, 0);
+            film = dem_replay_open(w, film_path, &desc);
             if (!film) { refused++; CHECK_STR(dem_world_error_get(w), "memory"); requests_left = -1; continue; }
             first = dem_replay_frame_write(film);
             second = dem_replay_frame_write(film);
@@ -498,7 +554,9 @@ int main(int argc, char **argv) {
         for (k = 0; k < 2; k++)
             dem_spheres_fill(k ? b : a, stuff, DEM_R(0.001),
                              dem_region_make(box_of(-0.005, -0.005, 0, 0.005, 0.005, 0.02)), 100, 2);
-        film = dem_replay_open(a, film_path, 0);
+        dem_replay_desc desc = DEM_REPLAY_DESC;
+        desc.contacts = 1;
+        film = dem_replay_open(a, film_path, &desc);
         for (k = 0; k < 20; k++) {
             CHECK_EQ(dem_world_step(a, 50), DEM_OK);
             CHECK_EQ(dem_world_step(b, 50), DEM_OK);
