@@ -3398,7 +3398,9 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
    changed. */
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path);
 /* Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose
-   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). */
+   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). If contacts are
+   recorded (dem_events_record), also `sliding`: the work of sliding on the facet or segment of each
+   triangle, J, as dem_wall_wear_facets_get; 0 on surfaces of revolution. */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1);
 /* Writes the surfaces of all bodies as polygons (VTP), with velocity (of each corner), id, material
@@ -35361,12 +35363,24 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     }
 }
 
+/* Writes the work of sliding on the facet of each of `count` triangles of wall i, J; 0 where none
+   is recorded. */
+static void demi_wall_slide(const dem_world *w, int i, int64_t count, dem_real *slide) {
+    const demi_wall *wall = w->walls + i;
+    const int sides = demi_wall_is(wall, DEMI_DRAWN) ? 2 : 1;
+    const demi_worn *worn = w->events.walls + i;
+    const int there = i < w->events.n.walls && worn->id == wall->id;
+    int64_t k;
+    for (k = 0; k < count; k++)
+        slide[k] = there && k/sides < worn->count
+            ? (dem_real)w->events.facets[worn->first + k/sides] : 0;
+}
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1) {
     if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
-    int64_t points = 0, triangles = 0, p = 0, t = 0;
+    int64_t points = 0, triangles = 0, p = 0, t = 0, first;
     const dem_real z[2] = {z0, z1};
-    dem_real *place;
+    dem_real *place, *slide = 0;
     int32_t *corners, *id;
     demi_columns s;
     int i, profiles = 0;
@@ -35380,10 +35394,14 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
     demi_columns_begin(&s, world, __func__);
     place = demi_columns_reals(&s, "Points", "position", 3, points);
     id = demi_columns_ints(&s, "CellData", "wall", 'i', triangles);
+    if (world->events.n.on) slide = demi_columns_reals(&s, "CellData", "sliding", 1, triangles);
     corners = demi_columns_ints(&s, "Polys", "connectivity", 'i', 3*triangles);
     demi_columns_range(&s, "Polys", "offsets", triangles, 3, 3);
-    for (i = 0; i < world->wall_count && !s.failed; i++)
+    for (i = 0; i < world->wall_count && !s.failed; i++) {
+        first = t;
         demi_wall_draw(world, i, z, &p, &t, place, corners, id);
+        if (slide) demi_wall_slide(world, i, t - first, slide + first);
+    }
     return demi_vtp(&s, path, 0, 0, (int)triangles);
 }
 

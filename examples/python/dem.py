@@ -4925,7 +4925,9 @@ class World(WorldBase):
 
     def walls_vtp_write(self, path, z0, z1):
         """Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose (VTP), with the
-        id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1).
+        id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). If contacts are recorded
+        (dem_events_record), also `sliding`: the work of sliding on the facet or segment of each triangle, J, as
+        dem_wall_wear_facets_get; 0 on surfaces of revolution.
         """
         self._ok(_lib.dem_walls_vtp_write(self._at, os.fsencode(path), z0, z1))
 

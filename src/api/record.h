@@ -153,7 +153,9 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
    changed. */
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path);
 /* Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose
-   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). */
+   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). If contacts are
+   recorded (dem_events_record), also `sliding`: the work of sliding on the facet or segment of each
+   triangle, J, as dem_wall_wear_facets_get; 0 on surfaces of revolution. */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1);
 /* Writes the surfaces of all bodies as polygons (VTP), with velocity (of each corner), id, material

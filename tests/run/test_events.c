@@ -5,6 +5,33 @@
 #include "../test.h"
 #include "../scene.h"
 
+/* Writes the walls for ParaView. Returns in how many of the n triangles of the wall `sliding` is not `facet`; -1: the file has
+   no such column. */
+static int wall_column(dem_world *world, dem_wall wall, const double *facet, int n) {
+    const char *mark = "<AppendedData encoding=\"raw\">\n_", *points, *data = 0;
+    static char text[100000];
+    FILE *f;
+    int count = 0, other = 0, k;
+    CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/worn.vtp", -1, 1), DEM_OK);
+    f = fopen("build/tmp/worn.vtp", "rb");
+    if (!f) return -2;
+    text[fread(text, 1, sizeof text - 1, f)] = 0;
+    fclose(f);
+    remove("build/tmp/worn.vtp");
+    points = strstr(text, "NumberOfPoints=\"");
+    data = strstr(text, mark);
+    if (!strstr(text, "Name=\"sliding\"") || !points || !data) return -1;
+    count = atoi(points + strlen("NumberOfPoints=\""));
+    data += strlen(mark) + 8 + 3*sizeof(dem_real)*(size_t)count + 8;
+    for (k = 0; k < n; k++) {
+        int32_t id;
+        dem_real slide;
+        memcpy(&id, data + 4*k, 4);
+        memcpy(&slide, data + 4*n + 8 + sizeof slide*(size_t)k, sizeof slide);
+        other += id != wall.id || !(slide >= (dem_real)facet[k] && slide <= (dem_real)facet[k]);
+    }
+    return other;
+}
 /* What a run has told. */
 typedef struct stream {
     dem_event last, fast;          /* the last one that ended; the one that began fastest */
@@ -454,6 +481,9 @@ int main(int argc, char **argv) {
             CHECK_REL(second, sum, 1e-9);
             CHECK(facet[2*(8*1 + 2)] + facet[2*(8*1 + 2) + 1] + facet[2*(8*2 + 2)] +
                   facet[2*(8*2 + 2) + 1] > 0.05*sum);
+            CHECK(wall_column(world, wall, facet, n) == 0);             /* the same, as a column of the triangles */
+            CHECK_EQ(dem_events_stop(world), DEM_OK);
+            CHECK(wall_column(world, wall, facet, n) == -1);            /* no column */
             dem_world_destroy(world);
         }
     }
