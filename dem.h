@@ -86,6 +86,7 @@
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
+       >>steering          new motions of walls during a run
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
@@ -11919,44 +11920,6 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     *next = laid;
     return DEM_OK;
 }
-/* True if a new motion of a wall does not ask for another time step: a wall at rest, or one that is
-   slower than the impacts that the step was chosen for and moves less than a tenth of the smallest
-   radius in a step. */
-static int demi_motion_slow(const dem_world *w, const dem_motion *m) {
-    const double v = m->kind == DEM_MOTION_FIXED ? 0 : (double)demi_length(m->velocity);
-    return (m->kind == DEM_MOTION_FIXED || m->kind == DEM_MOTION_TRANSLATING) &&
-        10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
-        (w->asked.dt > 0 || v <= w->clock.assumed_speed);
-}
-DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
-    demi_wall next;
-    const void *rows;
-    void *old;
-    int dropped, alone;
-    dem_result result;
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
-    if (result != DEM_OK) return result;
-    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
-       decides which of its periodic images are at rest relative to it */
-    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
-        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
-                           next.motion.kind != DEM_MOTION_ROTATING));
-    dropped = alone || demi_list_drop(w);
-    rows = dropped ? w->walls[i].motion.table : next.motion.table;
-    memcpy(&old, &rows, sizeof old);
-    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
-    if (!alone) demi_surfaces_outdated(w);
-    w->walls[i] = next;
-    demi_built(w, "dem_wall_motion_set");
-    w->stage.forces_valid = w->stage.primed = 0;
-    if (!alone || !demi_motion_slow(w, motion)) demi_dt_outdated(w);
-    return DEM_OK;
-}
-
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
     if (demi_null_look(world, "dem_wall_pose_get", pose, "pose")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_pose_get", id);
@@ -12048,27 +12011,6 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
 DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, dem_vec3 n) {
     const dem_vec3 g = demi_rotate(pose->rotation, wall->glide);
     return demi_sub(g, demi_scale(n, demi_dot(g, n)));
-}
-DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
-    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
-    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
-    if (!wall) return DEM_ERROR_ARGUMENT;
-    if (!demi_place(velocity))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
-                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
-                         (double)velocity.z, DEMI_FARTHEST);
-    if (w->desc.planar && fabs((double)velocity.z) > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
-                         "grain moves along z", (int)id.id, (double)velocity.z);
-    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
-    wall->glides = demi_dot(velocity, velocity) > 0;
-    demi_built(w, "dem_wall_surface_velocity_set");
-    w->stage.forces_valid = w->stage.primed = 0;
-    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
-    return DEM_OK;
 }
 DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
                                                  dem_vec3 *velocity) {
@@ -22862,6 +22804,26 @@ DEM_INLINE void demi_kept_ahead(const demi_kept *k) {
     const char *at = (const char *)k, *end = (const char *)(k->memory + 4);
     for (; at < end; at += 64) DEMI_FETCH(at);
 }
+/* Empties a tile and sets the rows that no contact fills. */
+static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
+    int q;
+    t->count = t->lifted = t->shaped = 0;
+    for (q = 0; q < DEMI_TILE && q < rows; q++) {
+        t->rows.touch[q] = 1;
+        t->rows.memory[DEMI_MEMORY][q] = 0;
+        t->still[q] = 0;                        /* if none is lifted */
+        demi_row_put(t->rows.tangent, q, demi_v(0, 0, 0));      /* if no law sets it */
+        t->rows.slope[0][q] = t->rows.slope[1][q] = t->rows.kt[1][q] = (dem_real)NAN;
+    }
+    if (r->ledger) memset(t->rows.part, 0, sizeof t->rows.part);
+}
+/* Appends contact c, which continues `old`, to a tile. */
+DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old) {
+    t->contact[t->count] = c;
+    t->old[t->count++] = old;
+    t->lifted |= demi_kept_lifted(c);
+    t->shaped |= !(c->m_eff > 0);
+}
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -22869,19 +22831,11 @@ static void demi_kept_respond(dem_world *w, int d) {
     const demi_kept *now = demi_kept_of(w, d);
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, dt);
-    int i, q;
+    int i;
     domain->kept_walls = 0;
     if (!domain->kept_next) return;
     if (!w->desc.law) demi_run_laws(w, &run, 0);
-    tile.count = tile.lifted = tile.shaped = 0;
-    for (q = 0; q < DEMI_TILE && q < domain->kept_next + DEMI_LANES; q++) {
-        tile.rows.touch[q] = 1;
-        tile.rows.memory[DEMI_MEMORY][q] = 0;
-        tile.still[q] = 0;                      /* if none is lifted */
-        demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* if no law sets it */
-        tile.rows.slope[0][q] = tile.rows.slope[1][q] = tile.rows.kt[1][q] = (dem_real)NAN;
-    }
-    if (run.ledger) memset(tile.rows.part, 0, sizeof tile.rows.part);
+    demi_kept_tile_begin(&tile, &run, domain->kept_next + DEMI_LANES);
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old;
@@ -22897,10 +22851,7 @@ static void demi_kept_respond(dem_world *w, int d) {
             domain->kept_walls += c->b < 0;
             continue;
         }
-        tile.contact[tile.count] = c;
-        tile.old[tile.count++] = old;
-        tile.lifted |= demi_kept_lifted(c);
-        tile.shaped |= !(c->m_eff > 0);
+        demi_kept_tile_add(&tile, c, old);
         demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
         if (c->from >= 0) demi_kept_hold(w, now, c);
         if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);
@@ -28454,6 +28405,136 @@ static dem_result demi_dt_check(dem_world *h) {
     }
     demi_dt_share(h);
     return result;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>steering
+   New motions of walls, and new velocities of belts, during a run. After a change of the scene all
+   forces are computed again, from the velocities of the full step. A program that leads a wall
+   changes its motion at every step: that costs only the contacts of this wall, whose forces are
+   subtracted, and added again with the new velocity. This part writes motions of walls, and forces
+   and half-step velocities of grains at such a wall.
+   --------------------------------------------------------------------------------------------- */
+
+#define DEMI_LED 8.5               /* steps between two motions of a wall that a program leads */
+
+/* Evaluates a tile of contacts with a wall and adds `sign` times their forces to the grains, whose
+   half-step velocities follow. Contact histories stay as they are. */
+static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
+    int q;
+    demi_kept_tile_answer(w, r, t);
+    for (q = 0; q < t->count; q++) {
+        demi_kept *c = t->contact[q];
+        dem_vec3 force, torque;
+        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
+        c->force = force = demi_row(t->rows.force, q);
+        torque = demi_row(t->rows.torque[0], q);
+        if (w->desc.planar) force.z = torque.x = torque.y = 0;
+        demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
+        demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
+        if (w->stage.primed) demi_prime_body(w, c->a);
+    }
+    t->count = t->lifted = t->shaped = 0;
+}
+/* Adds `sign` times the forces of all contacts of a wall to its grains. */
+static void demi_steer(dem_world *w, int wall, dem_real sign) {
+    DEMI_ALIGNED demi_kept_tile tile;
+    demi_run run = demi_run_begin(w, 0);
+    int d, k;
+    if (!w->desc.law) demi_run_laws(w, &run, 0);
+    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
+    for (d = 0; d < w->domain_count; d++) {
+        for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
+            demi_kept_tile_add(&tile, c, c);
+            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
+        }
+        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+    }
+}
+/* Called before the velocity of a wall's surface changes, and after it. If all forces are valid,
+   those of the wall's contacts follow. Otherwise, with impulses, and with rails, whose reactions
+   depend on these forces, the next step computes all. */
+static void demi_wall_change(dem_world *w, int wall) {
+    demi_finish(w);                             /* the open half kick belongs to the old forces */
+    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || !w->stage.list_valid ||
+        w->stage.pairs_changed || w->stage.moved) w->stage.forces_valid = w->stage.primed = 0;
+    if (w->stage.forces_valid) demi_steer(w, wall, -1);
+}
+static void demi_wall_changed(dem_world *w, int wall) {
+    if (w->stage.forces_valid) demi_steer(w, wall, 1);
+}
+
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
+    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
+    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
+    if (!wall) return DEM_ERROR_ARGUMENT;
+    if (!demi_place(velocity))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
+                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
+                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
+                         (double)velocity.z, DEMI_FARTHEST);
+    if (w->desc.planar && fabs((double)velocity.z) > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
+                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
+                         "grain moves along z", (int)id.id, (double)velocity.z);
+    demi_wall_change(w, i);
+    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
+    wall->glides = demi_dot(velocity, velocity) > 0;
+    demi_wall_changed(w, i);
+    demi_built(w, "dem_wall_surface_velocity_set");
+    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
+    return DEM_OK;
+}
+
+/* True if a new motion of a wall does not ask for another time step: a wall that is slower than the
+   impacts that the step was chosen for, and that moves less than a tenth of the smallest radius in
+   a step. */
+static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
+    const double v = demi_pose_speed(wall);
+    return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
+        (!(v > 0) || w->asked.dt > 0 || v <= w->clock.assumed_speed);
+}
+/* True if a program leads a wall: its motion was last set a few steps ago, and the new one starts
+   at the present pose, a rotation up to rounding errors. */
+static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_wall *to) {
+    if (w->clock.time - from->motion.start > DEMI_LED*(double)w->clock.dt) return 0;
+    return to->motion.kind == DEM_MOTION_ROTATING ||
+        (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
+         !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
+}
+DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
+    demi_wall next;
+    const void *rows;
+    void *old;
+    int dropped, alone;
+    dem_result result;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
+    if (result != DEM_OK) return result;
+    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
+       decides which of its periodic images are at rest relative to it */
+    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
+        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
+                           next.motion.kind != DEM_MOTION_ROTATING));
+    dropped = alone || demi_list_drop(w);
+    rows = dropped ? w->walls[i].motion.table : next.motion.table;
+    memcpy(&old, &rows, sizeof old);
+    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
+    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    if (!alone) demi_surfaces_outdated(w);
+    if (!alone || !demi_wall_led(w, &w->walls[i], &next))
+        w->stage.forces_valid = w->stage.primed = 0;
+    demi_wall_change(w, i);
+    w->walls[i] = next;
+    demi_wall_changed(w, i);
+    demi_built(w, "dem_wall_motion_set");
+    if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -86,6 +86,7 @@
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
+       >>steering          new motions of walls during a run
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
@@ -249,6 +250,7 @@
 #include "scene/feed.h"
 #include "run/team.h"
 #include "run/advice.h"
+#include "run/steering.h"
 #include "run/servo.h"
 #include "run/rails.h"
 #include "run/growth.h"

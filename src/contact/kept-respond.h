@@ -582,6 +582,26 @@ DEM_INLINE void demi_kept_ahead(const demi_kept *k) {
     const char *at = (const char *)k, *end = (const char *)(k->memory + 4);
     for (; at < end; at += 64) DEMI_FETCH(at);
 }
+/* Empties a tile and sets the rows that no contact fills. */
+static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
+    int q;
+    t->count = t->lifted = t->shaped = 0;
+    for (q = 0; q < DEMI_TILE && q < rows; q++) {
+        t->rows.touch[q] = 1;
+        t->rows.memory[DEMI_MEMORY][q] = 0;
+        t->still[q] = 0;                        /* if none is lifted */
+        demi_row_put(t->rows.tangent, q, demi_v(0, 0, 0));      /* if no law sets it */
+        t->rows.slope[0][q] = t->rows.slope[1][q] = t->rows.kt[1][q] = (dem_real)NAN;
+    }
+    if (r->ledger) memset(t->rows.part, 0, sizeof t->rows.part);
+}
+/* Appends contact c, which continues `old`, to a tile. */
+DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old) {
+    t->contact[t->count] = c;
+    t->old[t->count++] = old;
+    t->lifted |= demi_kept_lifted(c);
+    t->shaped |= !(c->m_eff > 0);
+}
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -589,19 +609,11 @@ static void demi_kept_respond(dem_world *w, int d) {
     const demi_kept *now = demi_kept_of(w, d);
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, dt);
-    int i, q;
+    int i;
     domain->kept_walls = 0;
     if (!domain->kept_next) return;
     if (!w->desc.law) demi_run_laws(w, &run, 0);
-    tile.count = tile.lifted = tile.shaped = 0;
-    for (q = 0; q < DEMI_TILE && q < domain->kept_next + DEMI_LANES; q++) {
-        tile.rows.touch[q] = 1;
-        tile.rows.memory[DEMI_MEMORY][q] = 0;
-        tile.still[q] = 0;                      /* if none is lifted */
-        demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* if no law sets it */
-        tile.rows.slope[0][q] = tile.rows.slope[1][q] = tile.rows.kt[1][q] = (dem_real)NAN;
-    }
-    if (run.ledger) memset(tile.rows.part, 0, sizeof tile.rows.part);
+    demi_kept_tile_begin(&tile, &run, domain->kept_next + DEMI_LANES);
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old;
@@ -617,10 +629,7 @@ static void demi_kept_respond(dem_world *w, int d) {
             domain->kept_walls += c->b < 0;
             continue;
         }
-        tile.contact[tile.count] = c;
-        tile.old[tile.count++] = old;
-        tile.lifted |= demi_kept_lifted(c);
-        tile.shaped |= !(c->m_eff > 0);
+        demi_kept_tile_add(&tile, c, old);
         demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
         if (c->from >= 0) demi_kept_hold(w, now, c);
         if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);

@@ -14,27 +14,6 @@ DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, d
     const dem_vec3 g = demi_rotate(pose->rotation, wall->glide);
     return demi_sub(g, demi_scale(n, demi_dot(g, n)));
 }
-DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
-    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
-    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
-    if (!wall) return DEM_ERROR_ARGUMENT;
-    if (!demi_place(velocity))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
-                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
-                         (double)velocity.z, DEMI_FARTHEST);
-    if (w->desc.planar && fabs((double)velocity.z) > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
-                         "grain moves along z", (int)id.id, (double)velocity.z);
-    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
-    wall->glides = demi_dot(velocity, velocity) > 0;
-    demi_built(w, "dem_wall_surface_velocity_set");
-    w->stage.forces_valid = w->stage.primed = 0;
-    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
-    return DEM_OK;
-}
 DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
                                                  dem_vec3 *velocity) {
     const char *call = "dem_wall_surface_velocity_get";

@@ -729,44 +729,6 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     *next = laid;
     return DEM_OK;
 }
-/* True if a new motion of a wall does not ask for another time step: a wall at rest, or one that is
-   slower than the impacts that the step was chosen for and moves less than a tenth of the smallest
-   radius in a step. */
-static int demi_motion_slow(const dem_world *w, const dem_motion *m) {
-    const double v = m->kind == DEM_MOTION_FIXED ? 0 : (double)demi_length(m->velocity);
-    return (m->kind == DEM_MOTION_FIXED || m->kind == DEM_MOTION_TRANSLATING) &&
-        10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
-        (w->asked.dt > 0 || v <= w->clock.assumed_speed);
-}
-DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
-    demi_wall next;
-    const void *rows;
-    void *old;
-    int dropped, alone;
-    dem_result result;
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
-    if (result != DEM_OK) return result;
-    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
-       decides which of its periodic images are at rest relative to it */
-    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
-        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
-                           next.motion.kind != DEM_MOTION_ROTATING));
-    dropped = alone || demi_list_drop(w);
-    rows = dropped ? w->walls[i].motion.table : next.motion.table;
-    memcpy(&old, &rows, sizeof old);
-    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
-    if (!alone) demi_surfaces_outdated(w);
-    w->walls[i] = next;
-    demi_built(w, "dem_wall_motion_set");
-    w->stage.forces_valid = w->stage.primed = 0;
-    if (!alone || !demi_motion_slow(w, motion)) demi_dt_outdated(w);
-    return DEM_OK;
-}
-
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
     if (demi_null_look(world, "dem_wall_pose_get", pose, "pose")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_pose_get", id);

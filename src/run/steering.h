@@ -1,0 +1,129 @@
+/* ---------------------------------------------------------------------------------------------
+   >>steering
+   New motions of walls, and new velocities of belts, during a run. After a change of the scene all
+   forces are computed again, from the velocities of the full step. A program that leads a wall
+   changes its motion at every step: that costs only the contacts of this wall, whose forces are
+   subtracted, and added again with the new velocity. This part writes motions of walls, and forces
+   and half-step velocities of grains at such a wall.
+   --------------------------------------------------------------------------------------------- */
+
+#define DEMI_LED 8.5               /* steps between two motions of a wall that a program leads */
+
+/* Evaluates a tile of contacts with a wall and adds `sign` times their forces to the grains, whose
+   half-step velocities follow. Contact histories stay as they are. */
+static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
+    int q;
+    demi_kept_tile_answer(w, r, t);
+    for (q = 0; q < t->count; q++) {
+        demi_kept *c = t->contact[q];
+        dem_vec3 force, torque;
+        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
+        c->force = force = demi_row(t->rows.force, q);
+        torque = demi_row(t->rows.torque[0], q);
+        if (w->desc.planar) force.z = torque.x = torque.y = 0;
+        demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
+        demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
+        if (w->stage.primed) demi_prime_body(w, c->a);
+    }
+    t->count = t->lifted = t->shaped = 0;
+}
+/* Adds `sign` times the forces of all contacts of a wall to its grains. */
+static void demi_steer(dem_world *w, int wall, dem_real sign) {
+    DEMI_ALIGNED demi_kept_tile tile;
+    demi_run run = demi_run_begin(w, 0);
+    int d, k;
+    if (!w->desc.law) demi_run_laws(w, &run, 0);
+    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
+    for (d = 0; d < w->domain_count; d++) {
+        for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
+            demi_kept_tile_add(&tile, c, c);
+            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
+        }
+        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+    }
+}
+/* Called before the velocity of a wall's surface changes, and after it. If all forces are valid,
+   those of the wall's contacts follow. Otherwise, with impulses, and with rails, whose reactions
+   depend on these forces, the next step computes all. */
+static void demi_wall_change(dem_world *w, int wall) {
+    demi_finish(w);                             /* the open half kick belongs to the old forces */
+    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || !w->stage.list_valid ||
+        w->stage.pairs_changed || w->stage.moved) w->stage.forces_valid = w->stage.primed = 0;
+    if (w->stage.forces_valid) demi_steer(w, wall, -1);
+}
+static void demi_wall_changed(dem_world *w, int wall) {
+    if (w->stage.forces_valid) demi_steer(w, wall, 1);
+}
+
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
+    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
+    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
+    if (!wall) return DEM_ERROR_ARGUMENT;
+    if (!demi_place(velocity))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
+                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
+                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
+                         (double)velocity.z, DEMI_FARTHEST);
+    if (w->desc.planar && fabs((double)velocity.z) > 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
+                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
+                         "grain moves along z", (int)id.id, (double)velocity.z);
+    demi_wall_change(w, i);
+    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
+    wall->glides = demi_dot(velocity, velocity) > 0;
+    demi_wall_changed(w, i);
+    demi_built(w, "dem_wall_surface_velocity_set");
+    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
+    return DEM_OK;
+}
+
+/* True if a new motion of a wall does not ask for another time step: a wall that is slower than the
+   impacts that the step was chosen for, and that moves less than a tenth of the smallest radius in
+   a step. */
+static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
+    const double v = demi_pose_speed(wall);
+    return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
+        (!(v > 0) || w->asked.dt > 0 || v <= w->clock.assumed_speed);
+}
+/* True if a program leads a wall: its motion was last set a few steps ago, and the new one starts
+   at the present pose, a rotation up to rounding errors. */
+static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_wall *to) {
+    if (w->clock.time - from->motion.start > DEMI_LED*(double)w->clock.dt) return 0;
+    return to->motion.kind == DEM_MOTION_ROTATING ||
+        (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
+         !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
+}
+DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
+    demi_wall next;
+    const void *rows;
+    void *old;
+    int dropped, alone;
+    dem_result result;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
+    if (result != DEM_OK) return result;
+    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
+       decides which of its periodic images are at rest relative to it */
+    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
+        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
+                           next.motion.kind != DEM_MOTION_ROTATING));
+    dropped = alone || demi_list_drop(w);
+    rows = dropped ? w->walls[i].motion.table : next.motion.table;
+    memcpy(&old, &rows, sizeof old);
+    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
+    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    if (!alone) demi_surfaces_outdated(w);
+    if (!alone || !demi_wall_led(w, &w->walls[i], &next))
+        w->stage.forces_valid = w->stage.primed = 0;
+    demi_wall_change(w, i);
+    w->walls[i] = next;
+    demi_wall_changed(w, i);
+    demi_built(w, "dem_wall_motion_set");
+    if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
+    return DEM_OK;
+}
