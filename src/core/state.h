@@ -321,6 +321,9 @@ typedef struct demi_events {
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
     uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
+    int32_t *order;                /* entries of `open`, in the order of notes: of odd turns at odd
+                                      places, of even turns at even ones */
+    int ordered;                   /* their number in the last turn */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */

@@ -31,6 +31,27 @@ static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
         at = (at + 1) & mask;
     return e->table + at;
 }
+/* Returns the open contact of a key, -1 if there is none. Contacts are noted in nearly the order of
+   the last step. So the contacts of that step are tried first, from *next on: a few may have
+   ended. */
+static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
+    const int32_t *last = e->order + !(e->turn & 1);
+    int k;
+    for (k = *next; k < *next + 4 && k < e->ordered; k++)
+        if (last[2*k] < e->n.open && demi_event_same(&e->open[last[2*k]].event, key)) {
+            *next = k + 1;
+            return last[2*k];
+        }
+    return e->table_size ? *demi_event_place(e, key) - 1 : -1;
+}
+/* Prefetches an open contact that a coming note is likely to belong to. */
+DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
+    const int i = next + 6 < e->ordered ? e->order[2*(next + 6) + !(e->turn & 1)] : e->n.open;
+    const char *at = (const char *)(e->open + i), *end = (const char *)(e->open + i + 1);
+    if (i >= e->n.open) return;
+    DEMI_FETCH(e->seen + i);
+    for (; at < end; at += 64) DEMI_FETCH(at);
+}
 /* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
    out. */
 static int demi_event_widen(dem_world *w) {
@@ -191,9 +212,9 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
 static void demi_event_regrow(const dem_world *w, demi_ongoing *o, double stored) {
     if (demi_member(w, 0)->stage.grown) o->work += stored;
 }
-/* Adds a noted contact to its open contact, which begins if there is none. Returns 0 if memory ran
-   out. */
-static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n) {
+/* Adds a noted contact to its open contact, which begins if there is none. *next: see
+   demi_event_find. Returns that contact, -1 if memory ran out. */
+static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n, int *next) {
     demi_events *e = &w->events;
     const int later = !demi_response_is(w, DEMI_LASTING);
     const double lost[3] = {n->energy[DEMI_E_DASHPOT], n->energy[DEMI_E_SLIDE],
@@ -203,16 +224,15 @@ static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n)
     dem_event key;
     demi_ongoing *o;
     int i, k, facet = 0;
-    memset(&key, 0, sizeof key);
     demi_event_key(m, n, &key);
-    i = e->table_size ? *demi_event_place(e, &key) - 1 : -1;
+    i = demi_event_find(e, &key, next);
     if (i < 0) {
-        if (!demi_event_widen(w)) return 0;
+        if (!demi_event_widen(w)) return -1;
         i = e->n.open;
         memset(&e->open[i], 0, sizeof e->open[i]);
         e->seen[i] = e->turn - 1;
         demi_event_begin(w, m, n, &e->open[i].event);
-        if (!demi_event_wait(w, &e->open[i].event)) return 0;
+        if (!demi_event_wait(w, &e->open[i].event)) return -1;
         *demi_event_place(e, &key) = ++e->n.open;
     }
     o = &e->open[i];
@@ -234,12 +254,12 @@ static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n)
             : lost[1] + n->energy[DEMI_E_SHEAR_STORED];
         o->event.impulse += (double)n->force*dt;
         demi_event_lose(w, o, lost, facet);
-        return 1;
+        return i;
     }
     for (k = 0; k < 3; k++) o->due[k] += lost[k];
     o->due[3] += (double)n->force*dt;
     o->facet = facet;
-    return 1;
+    return i;
 }
 /* Impulses: books what was due when bodies have moved, see demi_due_book. */
 static void demi_events_due(dem_world *w) {
@@ -328,6 +348,7 @@ static int demi_event_end(dem_world *w, int i) {
 static void demi_events_clear(dem_world *w) {
     demi_events *e = &w->events;
     memset(&e->n, 0, sizeof e->n);
+    e->ordered = 0;
     if (e->table) memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
 }
 /* Allocates what a recording of the present counts needs. Returns 0 if memory ran out. */
@@ -349,6 +370,7 @@ static int demi_events_reserve(dem_world *w) {
 static void demi_events_index(dem_world *w) {
     demi_events *e = &w->events;
     int i;
+    e->ordered = 0;
     if (!e->n.on) return;
     memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
     for (i = 0; i < e->n.open; i++) {
@@ -392,17 +414,27 @@ static void demi_events_start(dem_world *w) {
    runs out, recording stops; demi_events_tell reports it. */
 static void demi_events_take(dem_world *w) {
     demi_events *e = &w->events;
-    int i, k, d, ok = 1;
+    int i, k, d, ok, next = 0, count = 0;
     e->turn++;
+    for (k = 0; k < demi_members(w); k++)
+        for (d = 0; d < DEMI_DOMAINS; d++) count += demi_member(w, k)->events.noted_count[d];
+    ok = DEMI_GROW(w, e->order, 2*(size_t)count);
+    count = 0;
     for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++)
         memset(e->open[i].due, 0, sizeof e->open[i].due);   /* a new solution replaces the last */
     for (k = 0; k < demi_members(w); k++) {
         const dem_world *m = demi_member(w, k);
         const demi_events *own = &m->events;
         for (d = 0; d < m->domain_count; d++)
-            for (i = 0; i < own->noted_count[d] && ok; i++)
-                ok = demi_event_add(w, m, own->noted + own->noted_first[d] + i);
+            for (i = 0; i < own->noted_count[d] && ok; i++) {
+                int at;
+                demi_event_ahead(e, next);
+                at = demi_event_add(w, m, own->noted + own->noted_first[d] + i, &next);
+                e->order[2*(size_t)count++ + (e->turn & 1)] = at;
+                ok = at >= 0;
+            }
     }
+    e->ordered = count;
     for (i = e->n.open - 1; i >= 0 && ok; i--)
         if (e->seen[i] != e->turn) ok = demi_event_end(w, i);
     e->n.fresh = 0;
