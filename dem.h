@@ -28462,8 +28462,9 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
 static void demi_wall_change(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
     if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || !w->stage.list_valid ||
-        w->stage.pairs_changed || w->stage.moved) w->stage.forces_valid = w->stage.primed = 0;
-    if (w->stage.forces_valid) demi_steer(w, wall, -1);
+        w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
+        w->stage.forces_valid = w->stage.primed = 0;
+    else demi_steer(w, wall, -1);
 }
 static void demi_wall_changed(dem_world *w, int wall) {
     if (w->stage.forces_valid) demi_steer(w, wall, 1);
