@@ -3,7 +3,7 @@
    make bench                    all of it in under three minutes, in double, in single and built with -O2
    build/bench --scene bed       one scene: rate, threads, memory, ledger
    build/bench --scene effects   what effects, laws, searches and integrators cost, present and absent; --effect NAME
-   build/bench --scene walls     what a contact with a wall costs, against facets per grain
+   build/bench --scene walls     what a contact with a wall costs, beside one of two beads and against facets per grain
    build/bench --scene sizes     what a grain costs among much larger ones, by levels and on one grid
    build/bench --settle bed      makes a start state anew (minutes), as build/out/bench/bed_20k.txt
 
@@ -314,10 +314,11 @@ static void effects(double load) {
 
 /* ---- what a contact with a wall costs ---- */
 
-/* Beads that slide slowly on a floor, none touching another; on the same floor as a plane, in a wide
-   cylinder, and cut into more and more triangles. The time of the same beads in the air is taken off. */
+/* Beads that slide slowly, none touching another: each on a bead of its own that is fixed (a pair), on a
+   floor as a plane, in a wide cylinder, and on the floor cut into more and more triangles. The time of the
+   same beads in the air is taken off. All worlds hold the fixed beads, out of reach where they carry none. */
 enum { WALLS_SIDE = 64, WALLS_BEADS = WALLS_SIDE*WALLS_SIDE };
-typedef enum walls_kind { WALLS_NONE, WALLS_PLANE, WALLS_CYLINDER, WALLS_MESH } walls_kind;
+typedef enum walls_kind { WALLS_NONE, WALLS_PAIR, WALLS_PLANE, WALLS_CYLINDER, WALLS_MESH } walls_kind;
 static int walls_mesh(dem_world *world, dem_material glass, int n, double side) {
     dem_mesh mesh;
     int i, j, k = 0, ok;
@@ -370,11 +371,16 @@ static dem_world *walls_world(walls_kind kind, int n) {
     for (i = 0; i < WALLS_BEADS && ok; i++) {
         const double x = 2.1*r*(i%WALLS_SIDE + 0.5), y = 2.1*r*(i/WALLS_SIDE + 0.5), off = x - side/2;
         const double z = kind == WALLS_CYLINDER ? drum - sqrt((drum - r + deep)*(drum - r + deep) - off*off) : r - deep;
-        const dem_body bead = dem_sphere_add(world, glass, (dem_real)r, dem_vec3_make((dem_real)x, (dem_real)y, (dem_real)z));
-        dem_body_state state;
-        ok = dem_body_get(world, bead, &state) == DEM_OK;
-        state.velocity.y = DEM_R(0.002);
-        ok = ok && dem_body_set(world, bead, &state) == DEM_OK;
+        int k;
+        for (k = 0; k < 2 && ok; k++) {         /* the bead; the fixed one below it */
+            const double at = k ? kind == WALLS_PAIR ? -r : -9*r : z;
+            const dem_body bead = dem_sphere_add(world, glass, (dem_real)r, dem_vec3_make((dem_real)x, (dem_real)y, (dem_real)at));
+            dem_body_state state;
+            ok = dem_body_get(world, bead, &state) == DEM_OK;
+            state.velocity.y = k ? 0 : DEM_R(0.002);
+            state.fixed = k;
+            ok = ok && dem_body_set(world, bead, &state) == DEM_OK;
+        }
     }
     if (ok && dem_world_step(world, WARM_UP) == DEM_OK) return world;
     study_fail("walls: %s", dem_world_error_get(world));
@@ -383,9 +389,10 @@ static dem_world *walls_world(walls_kind kind, int n) {
 }
 static void walls(void) {
     static const struct { const char *name; walls_kind kind; int n; } rows[] = {
-        {"plane", WALLS_PLANE, 0}, {"cylinder", WALLS_CYLINDER, 0}, {"mesh_242", WALLS_MESH, 11},
+        {"pair", WALLS_PAIR, 0}, {"plane", WALLS_PLANE, 0}, {"cylinder", WALLS_CYLINDER, 0}, {"mesh_242", WALLS_MESH, 11},
         {"mesh_5000", WALLS_MESH, 50}, {"mesh_50000", WALLS_MESH, 158}, {"mesh_500000", WALLS_MESH, 500}};
     const int steps = steps_asked ? steps_asked : full ? 1000 : 100;
+    double pair = 0;
     size_t i;
     for (i = 0; i < sizeof rows/sizeof *rows; i++) {
         dem_world *air = walls_world(WALLS_NONE, 0), *floor = air ? walls_world(rows[i].kind, rows[i].n) : 0;
@@ -393,7 +400,8 @@ static void walls(void) {
         int r, turns = floor ? take_turns("walls", air, floor, steps, ta, tb) : 0;
         char name[64];
         if (turns) {
-            const int contacts = dem_counters_get(floor).wall_contacts;
+            const dem_counters c = dem_counters_get(floor);
+            const int contacts = c.contacts + c.wall_contacts;
             for (r = 0; r < turns; r++) each[r] = 1e9*(tb[r] - ta[r])/steps/(contacts ? contacts : 1);
             snprintf(name, sizeof name, "walls.%s.facets_per_bead", rows[i].name);
             if (rows[i].n) bench_result_short(name, 2.0*rows[i].n*rows[i].n/WALLS_BEADS, "");
@@ -401,6 +409,9 @@ static void walls(void) {
             bench_result_short(name, (double)contacts/WALLS_BEADS, "");
             snprintf(name, sizeof name, "walls.%s.contact", rows[i].name);
             bench_result_short(name, bench_median(each, turns), "ns");
+            if (!i) pair = bench_median(each, turns);
+            snprintf(name, sizeof name, "walls.%s.over_pair", rows[i].name);
+            if (i) bench_result_short(name, bench_median(each, turns)/pair, "");
         }
         if (air) dem_world_destroy(air);
         if (floor) dem_world_destroy(floor);
