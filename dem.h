@@ -28457,12 +28457,12 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
     }
 }
 /* Called before the velocity of a wall's surface changes, and after it. If all forces are valid,
-   those of the wall's contacts follow. Otherwise, with impulses, and with rails, whose reactions
-   depend on these forces, the next step computes all. */
+   those of the wall's contacts follow. Otherwise, with impulses, with rails, whose reactions depend
+   on these forces, and with numbers of bodies that a law exchanges, the next step computes all. */
 static void demi_wall_change(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
-    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || !w->stage.list_valid ||
-        w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
+    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
+        !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
         w->stage.forces_valid = w->stage.primed = 0;
     else demi_steer(w, wall, -1);
 }
