@@ -4299,6 +4299,7 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
+    double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
     dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
                                       over the smaller half width (of a sphere: its radius) */
@@ -4310,7 +4311,6 @@ typedef struct demi_kept {
     dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
-    double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
     /* kept from step to step: respond writes these, touch does not */
@@ -7130,13 +7130,15 @@ static void demi_ball_matrix(dem_real r, double *Q) {
     Q[0] = Q[1] = Q[2] = (double)r*(double)r;
     Q[3] = Q[4] = Q[5] = 0;
 }
+/* Returns sqrt(r.Q r): the support height of an ellipsoid along r, times the length of r. */
+static double demi_sym_height(const double *Q, const double *r) {
+    double t[3];
+    demi_sym_times(Q, r, t);
+    return sqrt(demi_dot3(r, t));
+}
 /* Returns an initial lambda: exact for spheres and for equal, parallel ellipsoids. */
 static double demi_meet_start(const double *A, const double *B, const double *r) {
-    double t[3], ha, hb;
-    demi_sym_times(A, r, t);
-    ha = sqrt(demi_dot3(r, t));
-    demi_sym_times(B, r, t);
-    hb = sqrt(demi_dot3(r, t));
+    const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
 }
 /* Takes the last step without another evaluation: s follows ds/dl = K^-1 (QA - QB) s =
@@ -7165,9 +7167,9 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
         J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
         J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
-        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);
-        for (k = 0; k < 6; k++) J[k] *= t;      /* K^-1, by cofactors: one quotient */
+        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);     /* K^-1 = t J, by cofactors */
         demi_sym_times(J, r, m->s);
+        for (k = 0; k < 3; k++) m->s[k] *= t;
         m->l = l;
         m->f = l*(1 - l)*demi_dot3(r, m->s);
         demi_sym_times(A, m->s, m->a);
@@ -7176,6 +7178,7 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         m->fb = l*l*demi_dot3(m->s, m->b);
         if (m->f > enough) return;
         demi_sym_times(J, m->b, m->v);
+        for (k = 0; k < 3; k++) m->v[k] *= t;
         sum = m->fa + m->fb;
         if (!(sum > 0)) return;
         u = (m->fa - m->fb)/sum;
@@ -7257,31 +7260,41 @@ static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
 }
+/* The only part of a body with a shape that is neither a cluster nor a union. */
+DEM_INLINE void demi_part_single(const dem_world *w, int body, const demi_shape *shape,
+                                 demi_part *p) {
+    p->kind = shape->kind;
+    p->radius = w->bodies.pos[4*body + 3];
+    p->centre = demi_v(0, 0, 0);
+    p->scale = demi_scale_of(w, body, shape);
+    p->axes = demi_scale(shape->axes, p->scale);
+    p->q = demi_quat_at(w->bodies.orient + 4*body);
+    p->shape = shape;
+}
 /* Returns part k of a body in its present orientation, computed from its quaternion. */
 static demi_part demi_part_of(const dem_world *w, int body, int k) {
     const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
-    memset(&p, 0, sizeof p);
-    p.kind = demi_shape_kind(shape);
-    p.radius = w->bodies.pos[4*body + 3];
     if (shape) {
-        const dem_real scale = demi_scale_of(w, body, shape);
-        p.q = demi_quat_at(w->bodies.orient + 4*body);
-        p.shape = shape;
-        p.scale = scale;
+        demi_part_single(w, body, shape, &p);
         if (shape->count) {
-            p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), scale);
-            p.radius = shape->parts[4*k + 3]*scale;
+            p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), p.scale);
+            p.radius = shape->parts[4*k + 3]*p.scale;
+            p.axes = demi_v(0, 0, 0);
         } else if (shape->pieces) {
             const demi_piece *piece = shape->piece + k;
             p.shape = &w->shapes[piece->shape];
             p.kind = p.shape->kind;
-            p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), scale);
+            p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), p.scale);
             p.q = dem_quat_multiply(p.q, piece->q);
-            p.radius = p.shape->radius*scale;
-            p.axes = demi_scale(p.shape->axes, scale);
-        } else p.axes = demi_scale(shape->axes, scale);
+            p.radius = p.shape->radius*p.scale;
+            p.axes = demi_scale(p.shape->axes, p.scale);
+        }
+        return p;
     }
+    memset(&p, 0, sizeof p);
+    p.kind = DEMI_BALL;
+    p.radius = w->bodies.pos[4*body + 3];
     return p;
 }
 /* Returns the rotated spheres of a cluster: rows of centre (from the body's) and radius, m. */
@@ -21137,7 +21150,8 @@ static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(D
    Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
    polyhedra their common volume (>>polyhedra) or their gaps (>>gaps), and unlike parts the nearest
-   point. At the end, the table of functions by kinds of parts.
+   point. Then the table of functions by kinds of parts, and overlap, arm and radius of contacts
+   with walls.
    --------------------------------------------------------------------------------------------- */
 
 /* --- Each function returns 1 if two parts touch, and writes the geometry to c. gap: m, from p's
@@ -21166,43 +21180,81 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* Two ellipsoids, or one and a sphere, by Perram and Wertheim's contact point. If they are apart,
-   their gap is taken as d (1 - 1/W0), the distance of the two surface points that coincide when
-   both are scaled by W0. It is never less than the true distance, which the candidate lists use. */
+/* A body that is an ellipsoid or a sphere, with its matrix. */
+typedef struct demi_egg { int body; demi_part part; double Q[6]; } demi_egg;
+static int demi_egg_is(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
+}
+static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    egg->body = body;
+    if (shape) demi_part_single(w, body, shape, &egg->part);    /* without a copy */
+    else egg->part = demi_part_now(w, body, 0);
+    demi_part_matrix(&egg->part, egg->Q);
+}
+/* Returns 1 if two ellipsoids with matrices A and B, or one and a sphere, touch or are within the
+   range of the law. gap: as above. If they are apart, their gap is taken as d (1 - 1/W0), the
+   distance of the two surface points that coincide when both are scaled by W0. It is never less
+   than the true distance, which the candidate lists use. Without a start value of lambda, the plane
+   across the line of centres is tried first: if it separates the two, they are apart, since
+   W0 >= d/(h_A + h_B) with the support heights along that line. */
+static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *A,
+                          const demi_part *q, const double *B, dem_vec3 gap, double lambda,
+                          demi_meet *m) {
+    const double range = (double)demi_range(w, p->radius + q->radius);
+    double r[3], d2, most = 1;
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    d2 = demi_dot3(r, r);
+    if (range > 0) most += range/(double)(demi_part_thin(p) + demi_part_thin(q));
+    if (!(d2 > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
+    m->l = lambda;
+    if (!(lambda > 0)) {
+        const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
+        if (d2 - (ha + hb) > (range > 0 ? range*sqrt(d2) : 0)) return 0;
+        m->l = ha + hb > 0 ? ha/(ha + hb) : 0.5;
+    }
+    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, m);
+    return m->f < 1 || (range > 0 && sqrt(d2)*(1 - 1/sqrt(m->f)) < range);
+}
+/* Sets the contact of two ellipsoids, or of one and a sphere, from Perram and Wertheim's contact
+   point m. There both scaled distances are W0, so the support heights are h_A = W0/((1 - l) |s|)
+   and h_B = W0/(l |s|). */
+static void demi_eggs_set(const dem_world *w, const demi_part *p, const double *A,
+                          const demi_part *q, dem_vec3 gap, const demi_meet *m, demi_kept *c) {
+    const double l = m->l, w0 = sqrt(m->f), per = 1/sqrt(demi_dot3(m->s, m->s));
+    const double both = w0*per/(l*(1 - l));     /* h_A + h_B */
+    double ra = (double)p->radius, rb = (double)q->radius;
+    c->lambda = l;
+    c->normal = demi_v((dem_real)(m->s[0]*per), (dem_real)(m->s[1]*per), (dem_real)(m->s[2]*per));
+    c->deep = (dem_real)((1 - w0)/DEMI_MIN(l, 1 - l));
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
+        if (p->kind != DEMI_BALL) ra = demi_ellipsoid_equal(p);
+        if (q->kind != DEMI_BALL) rb = demi_ellipsoid_equal(q);
+        c->overlap = (dem_real)((1 - w0)*(ra + rb));
+        c->slope = (dem_real)((ra + rb)/both);
+    } else {
+        ra = demi_part_round(w, p, l*both);
+        rb = demi_part_round(w, q, (1 - l)*both);
+        c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
+            ? demi_meet_chord(m, A) : (1 - w0)*both);
+    }
+    c->r_eff = (dem_real)(ra*rb/(ra + rb));
+    c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - l)*m->a[0]),
+        (dem_real)((1 - l)*m->a[1]), (dem_real)((1 - l)*m->a[2])));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+}
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
-    const dem_real d = demi_length(gap), range = demi_range(w, p->radius + q->radius);
-    const double most = 1 + (double)range/(double)(demi_part_thin(p) + demi_part_thin(q));
-    double A[6], B[6], r[3], n[3], ha, hb, w0, ra, rb;
+    double A[6], B[6];
     demi_meet m;
     (void)spots;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    if (!(d > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
-    m.l = lambda > 0 ? lambda : demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, &m);
-    if (!(m.f < 1) && !((double)d*(1 - 1/sqrt(m.f)) < (double)range)) return 0;
-    w0 = sqrt(m.f);
-    demi_meet_heights(&m, n, &ha, &hb);
-    c->lambda = m.l;
-    c->normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    c->deep = (dem_real)((1 - w0)*(ha + hb)/DEMI_MIN(ha, hb));
-    c->overlap = (dem_real)((1 - w0)*(ha + hb));
-    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
-        const double l = demi_part_equal(p) + demi_part_equal(q);
-        c->overlap = (dem_real)((1 - w0)*l);
-        c->slope = (dem_real)(l/(ha + hb));
-    } else if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD)
-        c->overlap = (dem_real)demi_meet_chord(&m, A);
-    ra = demi_part_round(w, p, ha);
-    rb = demi_part_round(w, q, hb);
-    c->r_eff = (dem_real)(ra*rb/(ra + rb));
-    c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - m.l)*m.a[0]),
-        (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
-    /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    if (!demi_eggs_meet(w, p, A, q, B, gap, lambda, &m)) return 0;
+    demi_eggs_set(w, p, A, q, gap, &m, c);
     return 1;
 }
 /* Sets overlap and arm of an ellipsoid at its normal, from left = 1 - W0: with a plane or a
@@ -21352,6 +21404,52 @@ DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
     return demi_meets[DEMI_MAX(kind, other)][DEMI_MIN(kind, other)];
 }
 
+/* --- overlap, arm and radius of a part's contact with a wall, from a contact point that was found
+   --- */
+typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                const demi_touching *place, demi_kept *c);
+/* A sphere's. */
+DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                  const demi_touching *place, demi_kept *c) {
+    (void)w; (void)wall;
+    c->overlap = place->overlap;
+    c->deep = c->overlap/p->radius;
+    c->r_eff = p->radius;
+    c->arm_a = demi_add(p->centre, demi_scale(c->normal, p->radius));
+}
+/* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
+static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                   const demi_touching *place, demi_kept *c) {
+    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
+                     c);
+}
+/* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
+   set so large that demi_wall_r_eff returns the radius of these grains. */
+static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                    const demi_touching *place, demi_kept *c) {
+    const int ball = demi_wall_is(wall, DEMI_BALLS);
+    c->overlap = place->overlap;
+    c->deep = place->deep;
+    c->slope = place->slope;
+    c->corner = place->corner;
+    c->corners = place->corners;
+    demi_kept_odd(c)->couple = place->couple;
+    c->more.spread = place->spread;
+    c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
+    c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
+}
+#define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
+static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
+/* Effective radius R* [m] of a part of radius r with a wall. On a round wire of radius q the two
+   principal radii of the contact differ: r and r q/(r + q). Their geometric mean gives a force 1.5
+   % below that of Hertz's ellipse if the wire is as thick as the grain, and 7 % below for a wire a
+   fifth as thick. */
+static double demi_wall_r_eff(const demi_wall *wall, double r) {
+    const double q = (double)wall->sieve.bar/2;
+    if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
+    return demi_sieve_wires(&wall->sieve) ? r*sqrt(q/(r + q)) : r;
+}
+
 /* ---------------------------------------------------------------------------------------------
    >>kept
    Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
@@ -21371,6 +21469,15 @@ DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
    for a body on its way through a hole of a reduced sieve, whose weight is 0. */
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
+}
+/* Prefetches the part that all contacts use, of the one that is `by` after k. It may lie beyond the
+   end of the list. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by) {
+    const uintptr_t at = (uintptr_t)k + by*sizeof *k;
+    size_t e;
+    DEMI_UNROLL
+    for (e = 0; e < offsetof(demi_kept, memory) + 4*sizeof(dem_real); e += 64)
+        DEMI_FETCH((const void *)(at + e));
 }
 /* Appends a contact to the new list of work group d and returns it, cleared except for the part
    that >>kept-respond writes. Returns null if the list is full. */
@@ -21823,8 +21930,44 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
-/* Finds the contacts of one candidate pair, then merges them and passes grip on. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
+/* Returns the index within its work group of the old contact with body b, where both bodies are one
+   part each; -1 if there is none. As demi_kept_same. */
+DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, int olds, int b) {
+    const int first = (int)(old - demi_kept_of(w, d));
+    int *next = &w->domains[d].kept_same, n, i = *next - first;
+    if (i < 0 || i >= olds) i = 0;
+    for (n = 0; n < olds; n++) {
+        if (old[i].b == b) return *next = first + i + 1, first + i;
+        if (++i == olds) i = 0;
+    }
+    return -1;
+}
+/* Appends the contact of two ellipsoids, or of one and a sphere, if they touch. one: body a. Such a
+   contact is the only one of its pair, so that all its weights are 1. */
+DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, int send,
+                               dem_vec3 r, const demi_kept *old, int olds) {
+    const int from = demi_kept_with(w, d, old, olds, b);
+    demi_egg other;
+    demi_meet m;
+    demi_kept *c = w->kept_next + w->kept_first[d] + w->domains[d].kept_next;
+    demi_kept_ahead(c, 2);
+    demi_kept_ahead(old, (size_t)olds + 3);
+    demi_egg_of(w, b, &other);
+    if (!demi_eggs_meet(w, &one->part, one->Q, &other.part, other.Q, r,
+                        from < 0 ? 0 : demi_kept_of(w, d)[from].lambda, &m)) return;
+    c = demi_kept_new(w, d);
+    if (!c) return;
+    c->a = one->body; c->b = b;
+    c->wall = c->element = -1;
+    c->send = send;
+    c->from = from;
+    c->weight = c->lift = c->grip = 1;
+    c->held = -1;                               /* do not load the old one yet */
+    demi_eggs_set(w, &one->part, one->Q, &other.part, r, &m, c);
+}
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a, or
+   another one, if it is an ellipsoid or a sphere. */
+static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, demi_egg *one,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
@@ -21837,6 +21980,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, &na);
     y = demi_balls_of(w, b, &nb);
+    if (!(x && y) && demi_egg_is(w, a) && demi_egg_is(w, b)) {
+        if (one->body != a) demi_egg_of(w, a, one);
+        demi_kept_eggs(w, d, one, b, send, r, old, olds);
+        return;
+    }
     if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
@@ -21845,51 +21993,6 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     demi_kept_inherit(now, from, count);
 }
 
-/* --- overlap, arm and radius of a part's contact with a wall, from a contact point that was found
-   --- */
-typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                const demi_touching *place, demi_kept *c);
-/* A sphere's. */
-DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                  const demi_touching *place, demi_kept *c) {
-    (void)w; (void)wall;
-    c->overlap = place->overlap;
-    c->deep = c->overlap/p->radius;
-    c->r_eff = p->radius;
-    c->arm_a = demi_add(p->centre, demi_scale(c->normal, p->radius));
-}
-/* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
-static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                   const demi_touching *place, demi_kept *c) {
-    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
-                     c);
-}
-/* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
-   set so large that demi_wall_r_eff returns the radius of these grains. */
-static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                    const demi_touching *place, demi_kept *c) {
-    const int ball = demi_wall_is(wall, DEMI_BALLS);
-    c->overlap = place->overlap;
-    c->deep = place->deep;
-    c->slope = place->slope;
-    c->corner = place->corner;
-    c->corners = place->corners;
-    demi_kept_odd(c)->couple = place->couple;
-    c->more.spread = place->spread;
-    c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
-    c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
-}
-#define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
-static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
-/* Effective radius R* [m] of a part of radius r with a wall. On a round wire of radius q the two
-   principal radii of the contact differ: r and r q/(r + q). Their geometric mean gives a force 1.5
-   % below that of Hertz's ellipse if the wire is as thick as the grain, and 7 % below for a wire a
-   fifth as thick. */
-static double demi_wall_r_eff(const demi_wall *wall, double r) {
-    const double q = (double)wall->sieve.bar/2;
-    if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
-    return demi_sieve_wires(&wall->sieve) ? r*sqrt(q/(r + q)) : r;
-}
 /* Handles a body whose centre has passed through an open surface, which repels on both sides: from
    then on it pushes the body out on the far side. The normal of contact c then reverses within one
    step, and no contact with the old normal is left. The relative depth continues that of the old
@@ -22155,6 +22258,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
+    demi_egg one;
+    one.body = -1;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
@@ -22169,9 +22274,10 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
-            demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
+            demi_kept_pair(w, d, base + p, 0, &one, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], old, (int)(old_end - old));
+            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], &one, old,
+                           (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
@@ -22802,11 +22908,6 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Prefetches the part of a contact that all of them use. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k) {
-    const char *at = (const char *)k, *end = (const char *)(k->memory + 4);
-    for (; at < end; at += 64) DEMI_FETCH(at);
-}
 /* Empties a tile and sets the rows that no contact fills. */
 static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
     int q;
@@ -22842,11 +22943,11 @@ static void demi_kept_respond(dem_world *w, int d) {
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old;
-        if (i + 5 < domain->kept_next) demi_kept_ahead(c + 5);
+        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5);
         if (i + 2 < domain->kept_next) {
             demi_body_fetch(w, c[2].a);
             if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
-            if (c[2].from >= 0) demi_kept_ahead(now + c[2].from);
+            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from);
         }
         old = demi_kept_recall(w, now, c);
         if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */

@@ -613,13 +613,15 @@ static void demi_ball_matrix(dem_real r, double *Q) {
     Q[0] = Q[1] = Q[2] = (double)r*(double)r;
     Q[3] = Q[4] = Q[5] = 0;
 }
+/* Returns sqrt(r.Q r): the support height of an ellipsoid along r, times the length of r. */
+static double demi_sym_height(const double *Q, const double *r) {
+    double t[3];
+    demi_sym_times(Q, r, t);
+    return sqrt(demi_dot3(r, t));
+}
 /* Returns an initial lambda: exact for spheres and for equal, parallel ellipsoids. */
 static double demi_meet_start(const double *A, const double *B, const double *r) {
-    double t[3], ha, hb;
-    demi_sym_times(A, r, t);
-    ha = sqrt(demi_dot3(r, t));
-    demi_sym_times(B, r, t);
-    hb = sqrt(demi_dot3(r, t));
+    const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
 }
 /* Takes the last step without another evaluation: s follows ds/dl = K^-1 (QA - QB) s =
@@ -648,9 +650,9 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
         J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
         J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
-        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);
-        for (k = 0; k < 6; k++) J[k] *= t;      /* K^-1, by cofactors: one quotient */
+        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);     /* K^-1 = t J, by cofactors */
         demi_sym_times(J, r, m->s);
+        for (k = 0; k < 3; k++) m->s[k] *= t;
         m->l = l;
         m->f = l*(1 - l)*demi_dot3(r, m->s);
         demi_sym_times(A, m->s, m->a);
@@ -659,6 +661,7 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         m->fb = l*l*demi_dot3(m->s, m->b);
         if (m->f > enough) return;
         demi_sym_times(J, m->b, m->v);
+        for (k = 0; k < 3; k++) m->v[k] *= t;
         sum = m->fa + m->fb;
         if (!(sum > 0)) return;
         u = (m->fa - m->fb)/sum;
@@ -740,31 +743,41 @@ static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
 }
+/* The only part of a body with a shape that is neither a cluster nor a union. */
+DEM_INLINE void demi_part_single(const dem_world *w, int body, const demi_shape *shape,
+                                 demi_part *p) {
+    p->kind = shape->kind;
+    p->radius = w->bodies.pos[4*body + 3];
+    p->centre = demi_v(0, 0, 0);
+    p->scale = demi_scale_of(w, body, shape);
+    p->axes = demi_scale(shape->axes, p->scale);
+    p->q = demi_quat_at(w->bodies.orient + 4*body);
+    p->shape = shape;
+}
 /* Returns part k of a body in its present orientation, computed from its quaternion. */
 static demi_part demi_part_of(const dem_world *w, int body, int k) {
     const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
-    memset(&p, 0, sizeof p);
-    p.kind = demi_shape_kind(shape);
-    p.radius = w->bodies.pos[4*body + 3];
     if (shape) {
-        const dem_real scale = demi_scale_of(w, body, shape);
-        p.q = demi_quat_at(w->bodies.orient + 4*body);
-        p.shape = shape;
-        p.scale = scale;
+        demi_part_single(w, body, shape, &p);
         if (shape->count) {
-            p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), scale);
-            p.radius = shape->parts[4*k + 3]*scale;
+            p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), p.scale);
+            p.radius = shape->parts[4*k + 3]*p.scale;
+            p.axes = demi_v(0, 0, 0);
         } else if (shape->pieces) {
             const demi_piece *piece = shape->piece + k;
             p.shape = &w->shapes[piece->shape];
             p.kind = p.shape->kind;
-            p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), scale);
+            p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), p.scale);
             p.q = dem_quat_multiply(p.q, piece->q);
-            p.radius = p.shape->radius*scale;
-            p.axes = demi_scale(p.shape->axes, scale);
-        } else p.axes = demi_scale(shape->axes, scale);
+            p.radius = p.shape->radius*p.scale;
+            p.axes = demi_scale(p.shape->axes, p.scale);
+        }
+        return p;
     }
+    memset(&p, 0, sizeof p);
+    p.kind = DEMI_BALL;
+    p.radius = w->bodies.pos[4*body + 3];
     return p;
 }
 /* Returns the rotated spheres of a cluster: rows of centre (from the body's) and radius, m. */

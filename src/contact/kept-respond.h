@@ -577,11 +577,6 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Prefetches the part of a contact that all of them use. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k) {
-    const char *at = (const char *)k, *end = (const char *)(k->memory + 4);
-    for (; at < end; at += 64) DEMI_FETCH(at);
-}
 /* Empties a tile and sets the rows that no contact fills. */
 static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
     int q;
@@ -617,11 +612,11 @@ static void demi_kept_respond(dem_world *w, int d) {
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old;
-        if (i + 5 < domain->kept_next) demi_kept_ahead(c + 5);
+        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5);
         if (i + 2 < domain->kept_next) {
             demi_body_fetch(w, c[2].a);
             if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
-            if (c[2].from >= 0) demi_kept_ahead(now + c[2].from);
+            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from);
         }
         old = demi_kept_recall(w, now, c);
         if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */

@@ -18,6 +18,15 @@
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
+/* Prefetches the part that all contacts use, of the one that is `by` after k. It may lie beyond the
+   end of the list. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by) {
+    const uintptr_t at = (uintptr_t)k + by*sizeof *k;
+    size_t e;
+    DEMI_UNROLL
+    for (e = 0; e < offsetof(demi_kept, memory) + 4*sizeof(dem_real); e += 64)
+        DEMI_FETCH((const void *)(at + e));
+}
 /* Appends a contact to the new list of work group d and returns it, cleared except for the part
    that >>kept-respond writes. Returns null if the list is full. */
 static demi_kept *demi_kept_new(dem_world *w, int d) {
@@ -469,8 +478,44 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
-/* Finds the contacts of one candidate pair, then merges them and passes grip on. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
+/* Returns the index within its work group of the old contact with body b, where both bodies are one
+   part each; -1 if there is none. As demi_kept_same. */
+DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, int olds, int b) {
+    const int first = (int)(old - demi_kept_of(w, d));
+    int *next = &w->domains[d].kept_same, n, i = *next - first;
+    if (i < 0 || i >= olds) i = 0;
+    for (n = 0; n < olds; n++) {
+        if (old[i].b == b) return *next = first + i + 1, first + i;
+        if (++i == olds) i = 0;
+    }
+    return -1;
+}
+/* Appends the contact of two ellipsoids, or of one and a sphere, if they touch. one: body a. Such a
+   contact is the only one of its pair, so that all its weights are 1. */
+DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, int send,
+                               dem_vec3 r, const demi_kept *old, int olds) {
+    const int from = demi_kept_with(w, d, old, olds, b);
+    demi_egg other;
+    demi_meet m;
+    demi_kept *c = w->kept_next + w->kept_first[d] + w->domains[d].kept_next;
+    demi_kept_ahead(c, 2);
+    demi_kept_ahead(old, (size_t)olds + 3);
+    demi_egg_of(w, b, &other);
+    if (!demi_eggs_meet(w, &one->part, one->Q, &other.part, other.Q, r,
+                        from < 0 ? 0 : demi_kept_of(w, d)[from].lambda, &m)) return;
+    c = demi_kept_new(w, d);
+    if (!c) return;
+    c->a = one->body; c->b = b;
+    c->wall = c->element = -1;
+    c->send = send;
+    c->from = from;
+    c->weight = c->lift = c->grip = 1;
+    c->held = -1;                               /* do not load the old one yet */
+    demi_eggs_set(w, &one->part, one->Q, &other.part, r, &m, c);
+}
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a, or
+   another one, if it is an ellipsoid or a sphere. */
+static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, demi_egg *one,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
@@ -483,6 +528,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, &na);
     y = demi_balls_of(w, b, &nb);
+    if (!(x && y) && demi_egg_is(w, a) && demi_egg_is(w, b)) {
+        if (one->body != a) demi_egg_of(w, a, one);
+        demi_kept_eggs(w, d, one, b, send, r, old, olds);
+        return;
+    }
     if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
@@ -491,51 +541,6 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     demi_kept_inherit(now, from, count);
 }
 
-/* --- overlap, arm and radius of a part's contact with a wall, from a contact point that was found
-   --- */
-typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                const demi_touching *place, demi_kept *c);
-/* A sphere's. */
-DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                  const demi_touching *place, demi_kept *c) {
-    (void)w; (void)wall;
-    c->overlap = place->overlap;
-    c->deep = c->overlap/p->radius;
-    c->r_eff = p->radius;
-    c->arm_a = demi_add(p->centre, demi_scale(c->normal, p->radius));
-}
-/* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
-static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                   const demi_touching *place, demi_kept *c) {
-    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
-                     c);
-}
-/* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
-   set so large that demi_wall_r_eff returns the radius of these grains. */
-static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                    const demi_touching *place, demi_kept *c) {
-    const int ball = demi_wall_is(wall, DEMI_BALLS);
-    c->overlap = place->overlap;
-    c->deep = place->deep;
-    c->slope = place->slope;
-    c->corner = place->corner;
-    c->corners = place->corners;
-    demi_kept_odd(c)->couple = place->couple;
-    c->more.spread = place->spread;
-    c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
-    c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
-}
-#define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
-static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
-/* Effective radius R* [m] of a part of radius r with a wall. On a round wire of radius q the two
-   principal radii of the contact differ: r and r q/(r + q). Their geometric mean gives a force 1.5
-   % below that of Hertz's ellipse if the wire is as thick as the grain, and 7 % below for a wire a
-   fifth as thick. */
-static double demi_wall_r_eff(const demi_wall *wall, double r) {
-    const double q = (double)wall->sieve.bar/2;
-    if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
-    return demi_sieve_wires(&wall->sieve) ? r*sqrt(q/(r + q)) : r;
-}
 /* Handles a body whose centre has passed through an open surface, which repels on both sides: from
    then on it pushes the body out on the far side. The normal of contact c then reverses within one
    step, and no contact with the old normal is left. The relative depth continues that of the old
@@ -801,6 +806,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
+    demi_egg one;
+    one.body = -1;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
@@ -815,9 +822,10 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
-            demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
+            demi_kept_pair(w, d, base + p, 0, &one, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], old, (int)(old_end - old));
+            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], &one, old,
+                           (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);

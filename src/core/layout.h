@@ -189,6 +189,7 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
+    double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
     dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
                                       over the smaller half width (of a sphere: its radius) */
@@ -200,7 +201,6 @@ typedef struct demi_kept {
     dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
-    double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
     /* kept from step to step: respond writes these, touch does not */
