@@ -4136,8 +4136,8 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
                                                    apart would compete for the same cache lines */
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
-/* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows, rounded
-   up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
+/* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows,
+   rounded up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
 #define DEMI_ROWS(full) { int g, l; \
     for (g = 0; g < (full); g += DEMI_LANES) { \
         DEMI_VECTOR \
@@ -7031,8 +7031,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from it
-   by its moments of inertia and an orientation. */
+/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from
+   it by its moments of inertia and an orientation. */
 DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || shape->lone;
@@ -7508,7 +7508,8 @@ static int demi_centres_lay(dem_world *w) {
     }
     return 1;
 }
-/* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a tile. */
+/* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a
+   tile. */
 static void demi_yields_turn(const dem_world *w, int begin, int end) {
     const int count = end - begin, full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_frames f;
@@ -10215,8 +10216,8 @@ DEM_INLINE int demi_turns_round(const dem_world *w, int i) {
     const dem_real *I = w->bodies.moment + 4*(size_t)i;
     return I[0] == I[1] && I[1] == I[2] && w->desc.rotation == DEM_ROTATION_SPIRAL;
 }
-/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless `domain` is null, it
-   receives the largest speeds of rotation and their changes. */
+/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless
+   `domain` is null, it receives the largest speeds of rotation and their changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
     const dem_real dt = w->clock.dt;
@@ -23001,9 +23002,9 @@ static void demi_cross_gather(dem_world *w, int d) {
    its body. Pairs of lone spheres come first in the list, and >>pairs computes them. A step tests
    the others. Those that touch fill a tile with the relative motion of the two spheres, which are
    points of their bodies, and the stages of >>respond evaluate the laws as for lone spheres, whose
-   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
-   same two bodies may be merged (>>kept), and a force acts at the centre of a member sphere. Owns
-   near.on, near.hit and the slots of its pairs.
+   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends
+   on the orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a
+   force acts at the centre of a member sphere. Owns near.on, near.hit and the slots of its pairs.
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */

@@ -101,7 +101,8 @@ static int demi_centres_lay(dem_world *w) {
     }
     return 1;
 }
-/* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a tile. */
+/* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a
+   tile. */
 static void demi_yields_turn(const dem_world *w, int begin, int end) {
     const int count = end - begin, full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_frames f;

@@ -405,8 +405,8 @@ DEM_INLINE int demi_turns_round(const dem_world *w, int i) {
     const dem_real *I = w->bodies.moment + 4*(size_t)i;
     return I[0] == I[1] && I[1] == I[2] && w->desc.rotation == DEM_ROTATION_SPIRAL;
 }
-/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless `domain` is null, it
-   receives the largest speeds of rotation and their changes. */
+/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless
+   `domain` is null, it receives the largest speeds of rotation and their changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
     const dem_real dt = w->clock.dt;

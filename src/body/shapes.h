@@ -514,8 +514,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from it
-   by its moments of inertia and an orientation. */
+/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from
+   it by its moments of inertia and an orientation. */
 DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || shape->lone;

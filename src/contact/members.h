@@ -5,9 +5,9 @@
    its body. Pairs of lone spheres come first in the list, and >>pairs computes them. A step tests
    the others. Those that touch fill a tile with the relative motion of the two spheres, which are
    points of their bodies, and the stages of >>respond evaluate the laws as for lone spheres, whose
-   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends on the orientations of the bodies, contacts of the
-   same two bodies may be merged (>>kept), and a force acts at the centre of a member sphere. Owns
-   near.on, near.hit and the slots of its pairs.
+   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends
+   on the orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a
+   force acts at the centre of a member sphere. Owns near.on, near.hit and the slots of its pairs.
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */

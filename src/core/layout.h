@@ -26,8 +26,8 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
                                                    apart would compete for the same cache lines */
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
-/* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows, rounded
-   up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
+/* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows,
+   rounded up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
 #define DEMI_ROWS(full) { int g, l; \
     for (g = 0; g < (full); g += DEMI_LANES) { \
         DEMI_VECTOR \
