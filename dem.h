@@ -1740,12 +1740,13 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
    destroy its world. */
 DEM_API void dem_world_destroy(dem_world *world);
 /* Returns the error message of the last call on this world that failed; "" if none failed. For a
-   null world the message says that it is null. After a failed call that builds the scene (one whose
-   name ends in _add, _fill or _pack, dem_pair_set, dem_material_set, dem_wall_motion_set),
-   dem_world_step, dem_world_run and others that run the scene return an error that quotes its
-   message, because a scene without its floor would run and return DEM_OK. They work again after a
-   call of this function or after the failed call has been repeated with success. A program that
-   handles such an error and continues calls this function first. */
+   null world the message says that it is null.
+   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
+   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
+   that run the scene return an error that quotes its message, because a scene without its floor
+   would run and return DEM_OK. They work again after a call of this function or after the failed
+   call has been repeated with success. A program that handles such an error and continues calls
+   this function first. */
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
@@ -2627,10 +2628,10 @@ DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
    What a program does with a scene: check it, run it, compare choices, measure it.
    --------------------------------------------------------------------------------------------- */
 
-/* Errors in this part are those of >>scene and dem_result; the comments state only further reasons.
-   Instead of a count a failing function returns -1. Other functions that return a number or a
-   struct return zeros for a null world. An argument or field may be null only where "or null" is
-   written. */
+/* Errors in this part. Functions fail as in >>scene and return the codes of dem_result; comments
+   below state only further reasons. A function that returns a count returns -1 if it fails, unless
+   its comment says otherwise. Other functions that return a number or a struct return zeros for a
+   null world. An argument or field may be null only where "or null" is written. */
 
 /* ---- before a run: time step, mistakes ---- */
 
@@ -2725,10 +2726,11 @@ DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_
    and no body is faster than 10 times that. Spins do not count, because nothing brakes a sphere
    that spins on a point. Checks are at most sqrt(R/g) apart, the time of a fall by half the mean
    radius R (without gravity: the time in which `speed` covers R/2). All feeds, also those that
-   begin later, must have inserted all their grains first. speed: m/s, >= 0; 0: 0.01 sqrt(2 g R),
-   which needs gravity. progress: or null. Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for
-   a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the message
-   gives the speeds, or the feed that is not done, and the state is intact. */
+   begin later, must have inserted all their grains first.
+   speed: m/s, >= 0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null.
+   Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for a feed with neither `limited` nor
+   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, or the feed that is
+   not done, and the state is intact. */
 DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user);
 /* Prints the progress of a run to the FILE that is passed as user, and returns 0: a progress
@@ -3148,11 +3150,12 @@ typedef struct dem_field_data {
     const double *mass;       /* cells: sum of masses, kg */
     const double *momentum;   /* cells x 3: sum of momenta, kg m/s; velocity = momentum/mass */
     const double *grains;     /* cells: sum of the number of grains */
-    /* null unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v
-       v over the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of
-       force x branch over the volume of the cell. A contact of two grains acts along the line
-       between their centres, and each grain accounts for its half; one with a wall acts from the
-       centre to the contact. contacts: cells: sum of the number of contacts of the grains */
+    /* null unless desc.stress is 1.
+       flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over the volume of the cell
+       stress: cells x 6, Pa, pressure positive: sum over contacts of force x branch over the volume
+       of the cell. A contact of two grains acts along the line between their centres, and each
+       grain accounts for its half; one with a wall acts from the centre to the contact.
+       contacts: cells: sum of the number of contacts of the grains */
     const double *flux, *stress, *contacts;
 } dem_field_data;
 /* Means of one cell over the samples; 0 where no grain was. */
@@ -3399,9 +3402,10 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
    changed. */
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path);
 /* Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose
-   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). If contacts are
-   recorded (dem_events_record), also `sliding`: the work of sliding on the facet or segment of each
-   triangle, J, as dem_wall_wear_facets_get; 0 on surfaces of revolution. */
+   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). While contacts
+   are recorded (dem_events_record), the column `sliding` has the work of sliding on the facet or
+   segment of each triangle, J, as returned by dem_wall_wear_facets_get. It is 0 on surfaces of
+   revolution. */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1);
 /* Writes the surfaces of all bodies as polygons (VTP), with velocity (of each corner), id, material
@@ -3463,9 +3467,10 @@ typedef struct dem_replay_desc {
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
        run: dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write. */
     double interval;
-    /* >= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to
-       the contact point with a wall), wider and redder for larger forces. At most the 50,000
-       strongest of a frame, and none below 1 % of its strongest. 0 means none. */
+    /* >= 0: n records the contact forces in every n-th frame. The viewer draws them as lines
+       between centres, or from a centre to the contact point with a wall, wider and redder for
+       larger forces. A frame has at most the 50,000 largest, and none below 1 % of its largest. 0
+       means none. */
     int contacts;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
@@ -3543,7 +3548,7 @@ typedef struct dem_output_desc {
     /* CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write;
        the counts of an outlet; the mixing of two components, if mixing.cells are set; the values
        that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied);
-       or, if all are zero, steps, bodies, contacts, kinetic and rotational energy (J) and
+       or, if none of these is set, steps, bodies, contacts, kinetic and rotational energy (J) and
        overlap_max */
     dem_wall wall;
     const char *columns;
@@ -3565,12 +3570,13 @@ static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
    older file of that name; a file with other columns is an error of the run. If a file cannot be
    written, the run stops with the state intact, and the next run tries that output again. Slabs
-   have no outputs. After a restart: a checkpoint stores what each output has written. A world that
-   reads it continues from there, with nothing missing and nothing twice, and removes later lines of
-   a CSV file before it appends the next. Outputs are matched by kind and path, so add them before
-   reading the checkpoint. Other outputs may be added, and times may differ. A function
-   (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes
-   counts the present call as done. */
+   have no outputs.
+   After a restart: a checkpoint stores what each output has written. A world that reads it
+   continues from there, with nothing missing and nothing twice, and removes later lines of a CSV
+   file before it appends the next. Outputs are matched by kind and path, so add them before reading
+   the checkpoint. Other outputs may be added, and times may differ.
+   A function (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that
+   it writes counts the present call as done. */
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
 /* Adds an output by kind, path and interval (s) alone:
    dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */

@@ -3508,9 +3508,9 @@ class ReplayDesc(Struct):
          'to multiples of the interval. A frame that cannot be written ends the replay, not the run: '
          'dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.'),
         ('contacts', ctypes.c_int,
-         '>= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to the '
-         'contact point with a wall), wider and redder for larger forces. At most the 50,000 strongest of a '
-         'frame, and none below 1 % of its strongest. 0 means none.'),
+         '>= 0: n records the contact forces in every n-th frame. The viewer draws them as lines between '
+         'centres, or from a centre to the contact point with a wall, wider and redder for larger forces. A '
+         'frame has at most the 50,000 largest, and none below 1 % of its largest. 0 means none.'),
     ]
 
 
@@ -3578,8 +3578,8 @@ class OutputDesc(Struct):
         ('wall', Wall,
          'CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write; the '
          'counts of an outlet; the mixing of two components, if mixing.cells are set; the values that `values`'
-         ' writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if all are '
-         'zero, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
+         ' writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of '
+         'these is set, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
         ('columns', str, ''),
         ('values', OutputDescValues, ''),
         ('function', OutputDescFunction,
@@ -4925,9 +4925,9 @@ class World(WorldBase):
 
     def walls_vtp_write(self, path, z0, z1):
         """Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose (VTP), with the
-        id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). If contacts are recorded
-        (dem_events_record), also `sliding`: the work of sliding on the facet or segment of each triangle, J, as
-        dem_wall_wear_facets_get; 0 on surfaces of revolution.
+        id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). While contacts are recorded
+        (dem_events_record), the column `sliding` has the work of sliding on the facet or segment of each triangle, J,
+        as returned by dem_wall_wear_facets_get. It is 0 on surfaces of revolution.
         """
         self._ok(_lib.dem_walls_vtp_write(self._at, os.fsencode(path), z0, z1))
 
@@ -4965,9 +4965,9 @@ class World(WorldBase):
         interval: s, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest
             to multiples of the interval. A frame that cannot be written ends the replay, not the run:
             dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.
-        contacts: >= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to the
-            contact point with a wall), wider and redder for larger forces. At most the 50,000 strongest of a frame,
-            and none below 1 % of its strongest. 0 means none.
+        contacts: >= 0: n records the contact forces in every n-th frame. The viewer draws them as lines between
+            centres, or from a centre to the contact point with a wall, wider and redder for larger forces. A frame
+            has at most the 50,000 largest, and none below 1 % of its largest. 0 means none.
         """
         desc = ReplayDesc(title=title, number=number, number_fn=number_fn, user=user, resolution=resolution,
             interval=interval, contacts=contacts)
@@ -5028,8 +5028,8 @@ class World(WorldBase):
         start: s, times of the first and the last; end 0 means no last
         wall: CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write; the counts
             of an outlet; the mixing of two components, if mixing.cells are set; the values that `values` writes, with
-            `columns` as their names (1 to 32 words as in body_reals, copied); or, if all are zero, steps, bodies,
-            contacts, kinetic and rotational energy (J) and overlap_max
+            `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these is set, steps,
+            bodies, contacts, kinetic and rotational energy (J) and overlap_max
         function: CALL: may change the world, but not step it. A return value other than 0 stops the run
             (DEM_ERROR_STOPPED).
         user: passed to `values` and `function`; or null

@@ -153,9 +153,10 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
    changed. */
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path);
 /* Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose
-   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). If contacts are
-   recorded (dem_events_record), also `sliding`: the work of sliding on the facet or segment of each
-   triangle, J, as dem_wall_wear_facets_get; 0 on surfaces of revolution. */
+   (VTP), with the id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). While contacts
+   are recorded (dem_events_record), the column `sliding` has the work of sliding on the facet or
+   segment of each triangle, J, as returned by dem_wall_wear_facets_get. It is 0 on surfaces of
+   revolution. */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1);
 /* Writes the surfaces of all bodies as polygons (VTP), with velocity (of each corner), id, material
@@ -217,9 +218,10 @@ typedef struct dem_replay_desc {
        nearest to multiples of the interval. A frame that cannot be written ends the replay, not the
        run: dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write. */
     double interval;
-    /* >= 0: every n-th frame also has the contact forces, drawn as lines from centre to centre (to
-       the contact point with a wall), wider and redder for larger forces. At most the 50,000
-       strongest of a frame, and none below 1 % of its strongest. 0 means none. */
+    /* >= 0: n records the contact forces in every n-th frame. The viewer draws them as lines
+       between centres, or from a centre to the contact point with a wall, wider and redder for
+       larger forces. A frame has at most the 50,000 largest, and none below 1 % of its largest. 0
+       means none. */
     int contacts;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = DEM_ZERO;
@@ -297,7 +299,7 @@ typedef struct dem_output_desc {
     /* CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write;
        the counts of an outlet; the mixing of two components, if mixing.cells are set; the values
        that `values` writes, with `columns` as their names (1 to 32 words as in body_reals, copied);
-       or, if all are zero, steps, bodies, contacts, kinetic and rotational energy (J) and
+       or, if none of these is set, steps, bodies, contacts, kinetic and rotational energy (J) and
        overlap_max */
     dem_wall wall;
     const char *columns;
@@ -319,12 +321,13 @@ static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
    older file of that name; a file with other columns is an error of the run. If a file cannot be
    written, the run stops with the state intact, and the next run tries that output again. Slabs
-   have no outputs. After a restart: a checkpoint stores what each output has written. A world that
-   reads it continues from there, with nothing missing and nothing twice, and removes later lines of
-   a CSV file before it appends the next. Outputs are matched by kind and path, so add them before
-   reading the checkpoint. Other outputs may be added, and times may differ. A function
-   (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes
-   counts the present call as done. */
+   have no outputs.
+   After a restart: a checkpoint stores what each output has written. A world that reads it
+   continues from there, with nothing missing and nothing twice, and removes later lines of a CSV
+   file before it appends the next. Outputs are matched by kind and path, so add them before reading
+   the checkpoint. Other outputs may be added, and times may differ.
+   A function (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that
+   it writes counts the present call as done. */
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
 /* Adds an output by kind, path and interval (s) alone:
    dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */

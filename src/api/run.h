@@ -3,10 +3,10 @@
    What a program does with a scene: check it, run it, compare choices, measure it.
    --------------------------------------------------------------------------------------------- */
 
-/* Errors in this part are those of >>scene and dem_result; the comments state only further reasons.
-   Instead of a count a failing function returns -1. Other functions that return a number or a
-   struct return zeros for a null world. An argument or field may be null only where "or null" is
-   written. */
+/* Errors in this part. Functions fail as in >>scene and return the codes of dem_result; comments
+   below state only further reasons. A function that returns a count returns -1 if it fails, unless
+   its comment says otherwise. Other functions that return a number or a struct return zeros for a
+   null world. An argument or field may be null only where "or null" is written. */
 
 /* ---- before a run: time step, mistakes ---- */
 
@@ -101,10 +101,11 @@ DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_
    and no body is faster than 10 times that. Spins do not count, because nothing brakes a sphere
    that spins on a point. Checks are at most sqrt(R/g) apart, the time of a fall by half the mean
    radius R (without gravity: the time in which `speed` covers R/2). All feeds, also those that
-   begin later, must have inserted all their grains first. speed: m/s, >= 0; 0: 0.01 sqrt(2 g R),
-   which needs gravity. progress: or null. Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for
-   a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the message
-   gives the speeds, or the feed that is not done, and the state is intact. */
+   begin later, must have inserted all their grains first.
+   speed: m/s, >= 0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null.
+   Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for a feed with neither `limited` nor
+   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, or the feed that is
+   not done, and the state is intact. */
 DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user);
 /* Prints the progress of a run to the FILE that is passed as user, and returns 0: a progress
@@ -524,11 +525,12 @@ typedef struct dem_field_data {
     const double *mass;       /* cells: sum of masses, kg */
     const double *momentum;   /* cells x 3: sum of momenta, kg m/s; velocity = momentum/mass */
     const double *grains;     /* cells: sum of the number of grains */
-    /* null unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v
-       v over the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of
-       force x branch over the volume of the cell. A contact of two grains acts along the line
-       between their centres, and each grain accounts for its half; one with a wall acts from the
-       centre to the contact. contacts: cells: sum of the number of contacts of the grains */
+    /* null unless desc.stress is 1.
+       flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over the volume of the cell
+       stress: cells x 6, Pa, pressure positive: sum over contacts of force x branch over the volume
+       of the cell. A contact of two grains acts along the line between their centres, and each
+       grain accounts for its half; one with a wall acts from the centre to the contact.
+       contacts: cells: sum of the number of contacts of the grains */
     const double *flux, *stress, *contacts;
 } dem_field_data;
 /* Means of one cell over the samples; 0 where no grain was. */

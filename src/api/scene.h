@@ -154,12 +154,13 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
    destroy its world. */
 DEM_API void dem_world_destroy(dem_world *world);
 /* Returns the error message of the last call on this world that failed; "" if none failed. For a
-   null world the message says that it is null. After a failed call that builds the scene (one whose
-   name ends in _add, _fill or _pack, dem_pair_set, dem_material_set, dem_wall_motion_set),
-   dem_world_step, dem_world_run and others that run the scene return an error that quotes its
-   message, because a scene without its floor would run and return DEM_OK. They work again after a
-   call of this function or after the failed call has been repeated with success. A program that
-   handles such an error and continues calls this function first. */
+   null world the message says that it is null.
+   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
+   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
+   that run the scene return an error that quotes its message, because a scene without its floor
+   would run and return DEM_OK. They work again after a call of this function or after the failed
+   call has been repeated with success. A program that handles such an error and continues calls
+   this function first. */
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
