@@ -68,7 +68,7 @@
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
-       >>meets             contacts of two bodies, by their shapes
+       >>meets             contact geometry of two bodies, and of a body on a wall, by shape
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
        >>members           contacts of spheres that may be members of clusters
@@ -86,7 +86,7 @@
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
-       >>steering          new motions of walls during a run
+       >>steering          new motions and belt speeds of walls, and the forces that follow
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
@@ -4143,7 +4143,7 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
 /* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows,
-   rounded up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
+   rounded up to a multiple of DEMI_LANES; results of the rows that pad it are ignored. */
 #define DEMI_ROWS(full) { int g, l; \
     for (g = 0; g < (full); g += DEMI_LANES) { \
         DEMI_VECTOR \
@@ -4346,9 +4346,9 @@ typedef struct demi_domain {
                                       pairs with later groups; */
     int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
                                       a body that is not a sphere */
-    int near_lone[2];              /* of the pairs inside, and of those with later groups: the
-                                      first ones that are pairs of lone spheres (demi_lone); 0
-                                      unless effects.clustered */
+    int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
+                                      first among the pairs inside, and among those with later
+                                      groups; 0 unless effects.clustered */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
@@ -4375,7 +4375,7 @@ typedef struct demi_domain {
    contacts with it; its functions, above demi_touches. A row has these fields:
      constant;
      NAME, which names the functions demi_NAME_support, _thin, _equal, _curve, _drawn (described in
-       >>shapes) and _on_wall (>>kept);
+       >>shapes) and _on_wall (>>meets);
      name in messages;
      function that returns the gap of two parts, the other one of this kind or of a kind above (it
        may return less than the gap);
@@ -4542,7 +4542,8 @@ typedef struct demi_wall {
     dem_pose mid;                  /* in the middle of the last step */
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
-    dem_vec3 glide;                /* m/s, velocity of its surface, in its frame: >>belts */
+    dem_vec3 glide;                /* m/s, velocity of its surface, in its frame; >>steering sets
+                                      it, >>belts uses it */
     int glides;                    /* 1: that is not 0 */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes
@@ -4965,9 +4966,9 @@ typedef struct demi_events {
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
     uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
-    int32_t *order;                /* entries of `open`, in the order of notes: of odd turns at odd
-                                      places, of even turns at even ones */
-    int ordered;                   /* their number in the last turn */
+    int32_t *order;                /* x 2: entries of `open` in the order of notes; odd turns are at
+                                      odd indices, even turns at even ones */
+    int ordered;                   /* number of notes in the last turn */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */
@@ -5037,7 +5038,7 @@ struct dem_world {
     /* >>bodies; motion: >>integrators; forces: >>respond, >>kept */
     demi_bodies bodies;
     demi_filed filed;
-    /* >>walls; weights of facets: >>facets; poses and loads: >>step */
+    /* >>walls; weights of facets: >>facets; poses and loads: >>step; new motions: >>steering */
     int wall_count;
     demi_wall *walls;
     double wall_fastest;           /* m/s, fastest wall point of the step */
@@ -5117,7 +5118,7 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     /* >>near */
-    demi_near near, near_last;     /* the pruned list; the previous one, swapped for a new one */
+    demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
                                       species a and b when lists were built */
     int species_vary;              /* bits of the columns that differ between pairs */
@@ -5339,8 +5340,8 @@ static void demi_refused_note(dem_world *w, size_t n) {
         w->refused_calls[w->refused++][n] = 0;
     }
 }
-/* Stores the error message of a failed call. `call`, unless null, is its name and begins the
-   message. */
+/* Stores the error message of a failed call. The message begins with `call`, the name of the call;
+   if that is null, `format` contains the name. */
 static void demi_tell(dem_world *w, const char *call, const char *format,
                       va_list args) DEMI_FORMAT(3, 0);
 static void demi_tell(dem_world *w, const char *call, const char *format, va_list args) {
@@ -5561,7 +5562,8 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
     demi_free(w, old);
     return 1;
 }
-/* Grows an array likewise and copies the first `count` items of another one to it. */
+/* Grows an array for `count` items, as DEMI_GROW, and copies those of another one to it. Returns 0
+   if memory ran out. */
 #define DEMI_COPY(w, array, from, count) demi_copy(w, &(array), from, sizeof *(array), count)
 static int demi_copy(dem_world *w, void *array, const void *from, size_t item, int count) {
     void *to;
@@ -7037,8 +7039,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from
-   it by its moments of inertia and an orientation. */
+/* True if contacts see a body as a lone sphere: it is a sphere, or a cluster of one sphere, which
+   differs from it only by its moments of inertia and an orientation. */
 DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || shape->lone;
@@ -7266,7 +7268,8 @@ static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
 }
-/* The only part of a body with a shape that is neither a cluster nor a union. */
+/* Writes the part of a body with a shape to p. demi_part_of corrects it for clusters and unions;
+   all other shapes have one part. */
 DEM_INLINE void demi_part_single(const dem_world *w, int body, const demi_shape *shape,
                                  demi_part *p) {
     p->kind = shape->kind;
@@ -7415,16 +7418,18 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
    >>balls
    The spheres of which bodies consist: members of clusters, and lone spheres, each the only member
    of its body. They have two forms: as seen from the body's centre (bodies.centre), rotated with
-   the body in each step; and, where forces need it (effects.clustered), as points in space with a
-   velocity and an effective mass (bodies.ball). This part owns both.
+   the body in each step; and, where forces need it (effects.clustered), as points in space
+   (bodies.ball), with the inverse inertia of their bodies (bodies.yield). This part owns all three.
    --------------------------------------------------------------------------------------------- */
+
 /* A tile of bodies in their orientations, as a structure of arrays. */
 typedef struct demi_frames {
     dem_real q[4][DEMI_ROOM], R[9][DEMI_ROOM];  /* quaternions; their matrices, by rows */
     dem_real I[3][DEMI_ROOM];                   /* kg m2, principal moments, 0 < I */
-    dem_real free[DEMI_ROOM];                   /* 1, or 0 if W is 0 */
+    dem_real free[DEMI_ROOM];                   /* 1; 0: fixed, or a sphere, whose W is 0 */
     dem_real W[6][DEMI_ROOM];                   /* inverse inertia in space, as bodies.yield */
 } demi_frames;
+/* Computes the rotation matrices of a tile from its quaternions. */
 DEMI_CLONES static void demi_frames_turn(demi_frames *DEMI_RESTRICT f, int full) {
     DEMI_ROWS(full)
         const dem_real w = f->q[0][q], x = f->q[1][q], y = f->q[2][q], z = f->q[3][q];
@@ -7439,10 +7444,12 @@ DEMI_CLONES static void demi_frames_turn(demi_frames *DEMI_RESTRICT f, int full)
         f->R[8][q] = 1 - 2*(x*x + y*y);
     DEMI_ROWS_END
 }
+/* Returns an element of R I^-1 R^T of body q. i, j: 3 times its row and its column. */
 DEM_INLINE dem_real demi_frame_yield(const demi_frames *f, int i, int j, dem_vec3 inv, int q) {
     return f->R[i][q]*f->R[j][q]*inv.x + f->R[i + 1][q]*f->R[j + 1][q]*inv.y +
         f->R[i + 2][q]*f->R[j + 2][q]*inv.z;
 }
+/* Computes the inverse inertia in space of a tile, after demi_frames_turn. */
 DEMI_CLONES static void demi_frames_yield(demi_frames *DEMI_RESTRICT f, int full) {
     DEMI_ROWS(full)
         const dem_vec3 inv = demi_v(f->free[q]/f->I[0][q], f->free[q]/f->I[1][q],
@@ -7455,8 +7462,9 @@ DEMI_CLONES static void demi_frames_yield(demi_frames *DEMI_RESTRICT f, int full
         f->W[5][q] = demi_frame_yield(f, 3, 6, inv, q);
     DEMI_ROWS_END
 }
-/* Rotates the member spheres of those of the listed bodies that have several to their present
-   orientations, once a step for all contacts. who: bodies, at most a tile. */
+/* Rotates member spheres to the present orientations of the listed bodies, once a step for all
+   contacts. who: bodies, at most a tile; lone spheres and bodies without member spheres are
+   skipped. */
 static void demi_centres_rotate(const dem_world *w, const int *who, int listed) {
     int32_t body[DEMI_TILE];
     demi_frames f;
@@ -9822,7 +9830,8 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
    v(t_n - dt/2). Each scheme is one function over a range of bodies. `synced` = 0 means that the
    last half kick of the step before is still due; it is merged with the first one of this step, in
    the same arithmetic. Spins are integrated by the same scheme (with position Verlet: leapfrog).
-   Moves w->bodies and nothing else.
+   Bodies with three equal moments of inertia rotate with a constant spin between kicks. Moves
+   w->bodies, and writes the speeds of rotation of work groups (turn, turn_rate, turn_speed).
    >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
    --------------------------------------------------------------------------------------------- */
 typedef struct demi_lane {           /* translation or rotation of one body */
@@ -10158,11 +10167,12 @@ typedef struct demi_turning {
     dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
     dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the end of moment_arm */
     dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
-    int round;                     /* 1: the moments of each body are equal */
+    int round;                     /* 1: the three moments of each body are equal */
 } demi_turning;
-enum { DEMI_ROTATION_ROUND = -1 };
+enum { DEMI_ROTATION_ROUND = -1 };             /* beside dem_rotation: a constant spin */
 /* Body l of a tile: kicks L by T kick, rotates freely for dt, and predicts spin with L + T after.
-   Also stores the squares of its speed and change of speed. */
+   Also stores the squares of its speed and change of speed. rotation: a dem_rotation, or
+   DEMI_ROTATION_ROUND. */
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
                                  dem_real after) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
@@ -10216,14 +10226,15 @@ static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem
 /* How bodies rotate: over a whole step, with springs; over two halves with a kick in between, with
    impulses; over half a step without a kick, for contact detection with impulses (demi_ahead). */
 enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
-/* True if the moments of inertia of a body are equal, as those of a ball or a cube, and the default
-   scheme rotates it. */
+/* True if the default scheme rotates a body whose three moments of inertia are equal, as those of a
+   ball or a cube: its free rotation has a constant spin. */
 DEM_INLINE int demi_turns_round(const dem_world *w, int i) {
     const dem_real *I = w->bodies.moment + 4*(size_t)i;
     return I[0] == I[1] && I[1] == I[2] && w->desc.rotation == DEM_ROTATION_SPIRAL;
 }
-/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless
-   `domain` is null, it receives the largest speeds of rotation and their changes. */
+/* Rotates the listed bodies other than spheres, at most a tile. demi_turns_round must be the same
+   for all of them. Unless `domain` is null, it receives the largest speeds of rotation and their
+   changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
     const dem_real dt = w->clock.dt;
@@ -10309,6 +10320,8 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
+/* Rotates the listed bodies, at most a tile: spheres if `shaped` is 0, otherwise as
+   demi_orient_some. */
 static void demi_orient_list(dem_world *w, demi_domain *domain, const int *who, int count, int how,
                              int shaped) {
     if (count && shaped) demi_orient_some(w, domain, who, count, how);
@@ -12026,7 +12039,7 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
    contact normal n: g - n (n.g). This part is continuous where a contact goes round a rim or a
    corner, and 0 where n is along g. A velocity along n would do work against the elastic force
    although the place of the surface, and with it the elastic energy, does not change: that creates
-   energy. Owns `glide` and `glides` of walls.
+   energy. `glide` and `glides` of walls hold the velocity; >>steering sets them.
    --------------------------------------------------------------------------------------------- */
 
 /* Returns the velocity of the surface of a wall in this pose at a contact with normal n, m/s,
@@ -15129,16 +15142,17 @@ static void demi_kept_move(dem_world *w, const int *first) {
    candidates that touch or could touch within the time margin.span if they approached head-on at
    their present relative speed, plus margin.slack for changes of speed. Forces are computed for all
    its pairs; those that do not touch give zero. So a step neither tests candidates nor collects
-   pairs. The list is rebuilt from the candidates after the time margin.span, or earlier if
-   accelerations may have used up the slack. It takes contact histories from the previous pruned
-   list or, after a search, from demi_filed. Results do not depend on how long a list lasts, because
-   one zero more or less does not change a sum.
-   Proof that no contact is missed: let v be the relative speed of two bodies when the list is
-   built. A step changes a velocity by at most last_change, that is dt times the largest
-   acceleration of all bodies. After n steps the relative velocity has changed by at most 2 change,
-   where change is the sum of last_change. So the two have approached by at most v t + creep, where
-   creep is the sum over steps of 2 dt change. A pair that is not in the list had a gap larger than
-   v span + slack. As long as age < span and creep < slack, the pair does not touch.
+   pairs. With clusters (effects.clustered) the pairs are of member spheres: those of two lone
+   spheres come first, and >>members tests the others. The list is rebuilt from the candidates after
+   the time margin.span, or earlier if accelerations may have used up the slack. It takes contact
+   histories from the previous pruned list or, after a search, from demi_filed. Results do not
+   depend on how long a list lasts, because one zero more or less does not change a sum. Proof that
+   no contact is missed: let v be the relative speed of two bodies when the list is built. A step
+   changes a velocity by at most last_change, that is dt times the largest acceleration of all
+   bodies. After n steps the relative velocity has changed by at most 2 change, where change is the
+   sum of last_change. So the two have approached by at most v t + creep, where creep is the sum
+   over steps of 2 dt change. A pair that is not in the list had a gap larger than v span + slack.
+   As long as age < span and creep < slack, the pair does not touch.
    --------------------------------------------------------------------------------------------- */
 
 /* --- species: classes of equal spheres, and the coefficients of every two species. A scene has few
@@ -15477,8 +15491,8 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     }
 }
 
-/* Returns the number of pairs of two lone spheres that entries begin .. end - 1 of a work group's
-   list begin with. */
+/* Returns how many pairs of two lone spheres come first among entries begin .. end - 1 of a work
+   group's list; 0 without clusters. */
 static int demi_near_lone(const dem_world *w, int d, int begin, int end) {
     const int32_t *a = w->near.a + d*w->near.stride, *b = w->near.b + d*w->near.stride;
     int p = begin;
@@ -15624,14 +15638,14 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     return left;
 }
 
-/* Moves the pairs of two lone spheres to the front of entries first .. end - 1, so that they form
-   tiles of their own. Both kinds keep their order. */
+/* Moves the pairs of two lone spheres to the front of entries first .. end - 1, so that >>pairs can
+   compute them in full tiles. Both kinds keep their order. near.hit is used as temporary memory. */
 static void demi_near_lone_first(dem_world *w, const demi_list *list, int d, int first, int end) {
     const int at = d*w->near.stride;
     int32_t *column[3], *aside = w->near.hit + at;
     int e, p, lone, left;
     column[0] = w->near.ball_a + at; column[1] = w->near.ball_b + at; column[2] = w->near.k + at;
-    for (e = 0; e < 3; e++) {                   /* k last: it tells which are lone */
+    for (e = 0; e < 3; e++) {                   /* k last, because the test reads it */
         for (p = left = first, lone = 0; p < end; p++) {
             const int k = w->near.k[at + p], value = column[e][p];
             if (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])) column[e][left++] = value;
@@ -17852,7 +17866,7 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     demi_tile_fetch(r, full, t);
     if (w->cell.on) demi_tile_flow(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
-    for (q = 0; q < r->keep; q++) {             /* not of the pairs behind, which may be others */
+    for (q = 0; q < r->keep; q++) {             /* `count` only: pairs of >>members may follow */
         dem_real *memory = span->memory + (size_t)q*span->stride;
         demi_row_copy(memory, t->memory[q], span->count/DEMI_LANES*DEMI_LANES);
         for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
@@ -17960,9 +17974,9 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
                       t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
                       (double)t->overlap[q], (double)share);
 }
-/* Computes all pairs of a work group: those within it, then those with later ones. With clusters in
-   the world it leaves out those that demi_pairs_members computes. note: called for every tile when
-   its forces are known, or null. */
+/* Computes all pairs of a work group: those inside it, then those with later groups. In a world
+   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the others.
+   note: called for every tile when its forces are known, or null. */
 DEM_INLINE void demi_pairs_with(dem_world *w, int d,
                                 void (*note)(dem_world *w, int d, demi_tile *t,
                                              const demi_span *span, const demi_run *r)) {
@@ -21157,8 +21171,9 @@ static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(D
    Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
    polyhedra their common volume (>>polyhedra) or their gaps (>>gaps), and unlike parts the nearest
-   point. Then the table of functions by kinds of parts, and overlap, arm and radius of contacts
-   with walls.
+   point. A table selects the function by the kinds of the parts. At the end of this part, functions
+   write the overlap, arm and radius of contacts with walls, whose points >>touch has found. Owns
+   nothing, and writes only the contacts that it is given.
    --------------------------------------------------------------------------------------------- */
 
 /* --- Each function returns 1 if two parts touch, and writes the geometry to c. gap: m, from p's
@@ -21187,12 +21202,14 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* A body that is an ellipsoid or a sphere, with its matrix. */
+/* A body that is an ellipsoid or a sphere, with its matrix ("egg" in names). */
 typedef struct demi_egg { int body; demi_part part; double Q[6]; } demi_egg;
+/* True if a body is an ellipsoid or a sphere. */
 static int demi_egg_is(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
 }
+/* Computes the part and the matrix of such a body. */
 static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
     const demi_shape *shape = demi_shape_of(w, body);
     egg->body = body;
@@ -21200,12 +21217,13 @@ static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
     else egg->part = demi_part_now(w, body, 0);
     demi_part_matrix(&egg->part, egg->Q);
 }
-/* Returns 1 if two ellipsoids with matrices A and B, or one and a sphere, touch or are within the
-   range of the law. gap: as above. If they are apart, their gap is taken as d (1 - 1/W0), the
-   distance of the two surface points that coincide when both are scaled by W0. It is never less
-   than the true distance, which the candidate lists use. Without a start value of lambda, the plane
-   across the line of centres is tried first: if it separates the two, they are apart, since
-   W0 >= d/(h_A + h_B) with the support heights along that line. */
+/* Returns 1 if two ellipsoids with matrices A and B touch or are within the range of the law; one
+   of them may be a sphere. Then *m has the contact point of Perram and Wertheim. gap and lambda: as
+   for demi_meet_fn. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the
+   two surface points that coincide when both are scaled by W0. It is never less than the true
+   distance, which the candidate lists use. Without a start value of lambda, the plane normal to the
+   line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights along that line, so
+   if the plane separates the two, they are apart. */
 static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *A,
                           const demi_part *q, const double *B, dem_vec3 gap, double lambda,
                           demi_meet *m) {
@@ -21224,9 +21242,9 @@ static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *
     demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, m);
     return m->f < 1 || (range > 0 && sqrt(d2)*(1 - 1/sqrt(m->f)) < range);
 }
-/* Sets the contact of two ellipsoids, or of one and a sphere, from Perram and Wertheim's contact
-   point m. There both scaled distances are W0, so the support heights are h_A = W0/((1 - l) |s|)
-   and h_B = W0/(l |s|). */
+/* Writes the contact of two ellipsoids to c, from Perram and Wertheim's contact point m; one of
+   them may be a sphere. At that point both scaled distances are W0, so the support heights are
+   h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|). A: the matrix of p. */
 static void demi_eggs_set(const dem_world *w, const demi_part *p, const double *A,
                           const demi_part *q, dem_vec3 gap, const demi_meet *m, demi_kept *c) {
     const double l = m->l, w0 = sqrt(m->f), per = 1/sqrt(demi_dot3(m->s, m->s));
@@ -21477,8 +21495,8 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
-/* Prefetches the part that all contacts use, of the one that is `by` after k. It may lie beyond the
-   end of the list. */
+/* Prefetches the fields that every contact uses, of the contact `by` entries after k. That entry
+   may lie beyond the end of the list. */
 DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by) {
     const uintptr_t at = (uintptr_t)k + by*sizeof *k;
     size_t e;
@@ -21937,8 +21955,8 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
-/* Returns the index within its work group of the old contact with body b, where both bodies are one
-   part each; -1 if there is none. As demi_kept_same. */
+/* As demi_kept_same for two bodies of one part each: returns the index within its work group of the
+   old contact with body b, -1 if there is none. */
 DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, int olds, int b) {
     const int first = (int)(old - demi_kept_of(w, d));
     int *next = &w->domains[d].kept_same, n, i = *next - first;
@@ -21949,8 +21967,8 @@ DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, i
     }
     return -1;
 }
-/* Appends the contact of two ellipsoids, or of one and a sphere, if they touch. one: body a. Such a
-   contact is the only one of its pair, so that all its weights are 1. */
+/* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch. one: body
+   a. It is the only contact of its pair, so all its weights are 1. */
 DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, int send,
                                dem_vec3 r, const demi_kept *old, int olds) {
     const int from = demi_kept_with(w, d, old, olds, b);
@@ -21969,11 +21987,12 @@ DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, 
     c->send = send;
     c->from = from;
     c->weight = c->lift = c->grip = 1;
-    c->held = -1;                               /* do not load the old one yet */
+    c->held = -1;                               /* as demi_kept_hold for one contact */
     demi_eggs_set(w, &one->part, one->Q, &other.part, r, &m, c);
 }
-/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a, or
-   another one, if it is an ellipsoid or a sphere. */
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a with
+   its matrix, shared by all its pairs with later bodies; until it is needed, it may hold an earlier
+   body. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, demi_egg *one,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
@@ -22915,7 +22934,7 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Empties a tile and sets the rows that no contact fills. */
+/* Empties a tile and sets what adding a contact does not set, in the first `rows` rows. */
 static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
     int q;
     t->count = t->lifted = t->shaped = 0;
@@ -23004,13 +23023,14 @@ static void demi_cross_gather(dem_world *w, int d) {
 /* ---------------------------------------------------------------------------------------------
    >>members
    Contact forces between spheres that may be members of clusters (springs, effects.clustered). The
-   pruned neighbour list then holds pairs of member spheres, and a lone sphere is the only member of
-   its body. Pairs of lone spheres come first in the list, and >>pairs computes them. A step tests
-   the others. Those that touch fill a tile with the relative motion of the two spheres, which are
-   points of their bodies, and the stages of >>respond evaluate the laws as for lone spheres, whose
-   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends
-   on the orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a
-   force acts at the centre of a member sphere. Owns near.on, near.hit and the slots of its pairs.
+   pruned neighbour list then holds pairs of member spheres. A lone sphere is the only member of its
+   body; pairs of two lone spheres come first in the list, and >>pairs computes them. Of the other
+   pairs, a step finds those that touch. These fill a tile with the relative motion of the two
+   spheres, which are points of their bodies, and the stages of >>respond evaluate the laws as for
+   lone spheres. Clusters differ in three ways: the effective mass at a contact depends on the
+   orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a force
+   acts at the centre of a member sphere. Writes the forces and contact histories of its pairs,
+   their slots, near.on and near.hit (which >>near also uses while it builds a list).
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */
@@ -23029,7 +23049,7 @@ typedef struct demi_member_tile {
     int count, weighted;           /* contacts; are any merged? */
 } demi_member_tile;
 
-/* Empties a tile. All weights are 1. */
+/* Empties a tile and sets all its weights to 1. */
 static void demi_member_clear(demi_member_tile *m) {
     int q;
     m->count = m->weighted = 0;
@@ -23110,7 +23130,7 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
     if (at_grip == DEMI_MEMORY) return;
     for (q = 0; q < full; q++) {
         const dem_real held = m->t.rows.memory[at_grip][q], now = m->t.grip[q];
-        if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* else it stays 0 */
+        if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* 0 until merged */
         if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
         for (e = 0; e < keep; e++)
             if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
@@ -23415,8 +23435,8 @@ static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit)
     }
     return n;
 }
-/* Computes all pairs of a work group: those of lone spheres, then those within it, then those with
-   later ones. */
+/* Computes all pairs of a work group: those of lone spheres (by >>pairs), then the others, first
+   those inside the group, then those with later groups. */
 static void demi_pairs_members(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;

@@ -68,7 +68,7 @@
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
-       >>meets             contacts of two bodies, by their shapes
+       >>meets             contact geometry of two bodies, and of a body on a wall, by shape
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
        >>members           contacts of spheres that may be members of clusters
@@ -86,7 +86,7 @@
      run/ - the step and what is measured in it
        >>team              the worlds that step together: a single world, or slabs
        >>advice            the time step: what is chosen and what is too large
-       >>steering          new motions of walls during a run
+       >>steering          new motions and belt speeds of walls, and the forces that follow
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size

@@ -2,16 +2,18 @@
    >>balls
    The spheres of which bodies consist: members of clusters, and lone spheres, each the only member
    of its body. They have two forms: as seen from the body's centre (bodies.centre), rotated with
-   the body in each step; and, where forces need it (effects.clustered), as points in space with a
-   velocity and an effective mass (bodies.ball). This part owns both.
+   the body in each step; and, where forces need it (effects.clustered), as points in space
+   (bodies.ball), with the inverse inertia of their bodies (bodies.yield). This part owns all three.
    --------------------------------------------------------------------------------------------- */
+
 /* A tile of bodies in their orientations, as a structure of arrays. */
 typedef struct demi_frames {
     dem_real q[4][DEMI_ROOM], R[9][DEMI_ROOM];  /* quaternions; their matrices, by rows */
     dem_real I[3][DEMI_ROOM];                   /* kg m2, principal moments, 0 < I */
-    dem_real free[DEMI_ROOM];                   /* 1, or 0 if W is 0 */
+    dem_real free[DEMI_ROOM];                   /* 1; 0: fixed, or a sphere, whose W is 0 */
     dem_real W[6][DEMI_ROOM];                   /* inverse inertia in space, as bodies.yield */
 } demi_frames;
+/* Computes the rotation matrices of a tile from its quaternions. */
 DEMI_CLONES static void demi_frames_turn(demi_frames *DEMI_RESTRICT f, int full) {
     DEMI_ROWS(full)
         const dem_real w = f->q[0][q], x = f->q[1][q], y = f->q[2][q], z = f->q[3][q];
@@ -26,10 +28,12 @@ DEMI_CLONES static void demi_frames_turn(demi_frames *DEMI_RESTRICT f, int full)
         f->R[8][q] = 1 - 2*(x*x + y*y);
     DEMI_ROWS_END
 }
+/* Returns an element of R I^-1 R^T of body q. i, j: 3 times its row and its column. */
 DEM_INLINE dem_real demi_frame_yield(const demi_frames *f, int i, int j, dem_vec3 inv, int q) {
     return f->R[i][q]*f->R[j][q]*inv.x + f->R[i + 1][q]*f->R[j + 1][q]*inv.y +
         f->R[i + 2][q]*f->R[j + 2][q]*inv.z;
 }
+/* Computes the inverse inertia in space of a tile, after demi_frames_turn. */
 DEMI_CLONES static void demi_frames_yield(demi_frames *DEMI_RESTRICT f, int full) {
     DEMI_ROWS(full)
         const dem_vec3 inv = demi_v(f->free[q]/f->I[0][q], f->free[q]/f->I[1][q],
@@ -42,8 +46,9 @@ DEMI_CLONES static void demi_frames_yield(demi_frames *DEMI_RESTRICT f, int full
         f->W[5][q] = demi_frame_yield(f, 3, 6, inv, q);
     DEMI_ROWS_END
 }
-/* Rotates the member spheres of those of the listed bodies that have several to their present
-   orientations, once a step for all contacts. who: bodies, at most a tile. */
+/* Rotates member spheres to the present orientations of the listed bodies, once a step for all
+   contacts. who: bodies, at most a tile; lone spheres and bodies without member spheres are
+   skipped. */
 static void demi_centres_rotate(const dem_world *w, const int *who, int listed) {
     int32_t body[DEMI_TILE];
     demi_frames f;

@@ -5,7 +5,8 @@
    v(t_n - dt/2). Each scheme is one function over a range of bodies. `synced` = 0 means that the
    last half kick of the step before is still due; it is merged with the first one of this step, in
    the same arithmetic. Spins are integrated by the same scheme (with position Verlet: leapfrog).
-   Moves w->bodies and nothing else.
+   Bodies with three equal moments of inertia rotate with a constant spin between kicks. Moves
+   w->bodies, and writes the speeds of rotation of work groups (turn, turn_rate, turn_speed).
    >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
    --------------------------------------------------------------------------------------------- */
 typedef struct demi_lane {           /* translation or rotation of one body */
@@ -341,11 +342,12 @@ typedef struct demi_turning {
     dem_real half[3][DEMI_ROOM], spin[3][DEMI_ROOM];
     dem_real speed2[DEMI_ROOM], change2[DEMI_ROOM];        /* (m/s)^2, at the end of moment_arm */
     dem_real rate2[DEMI_ROOM];                            /* (rad/s)^2 */
-    int round;                     /* 1: the moments of each body are equal */
+    int round;                     /* 1: the three moments of each body are equal */
 } demi_turning;
-enum { DEMI_ROTATION_ROUND = -1 };
+enum { DEMI_ROTATION_ROUND = -1 };             /* beside dem_rotation: a constant spin */
 /* Body l of a tile: kicks L by T kick, rotates freely for dt, and predicts spin with L + T after.
-   Also stores the squares of its speed and change of speed. */
+   Also stores the squares of its speed and change of speed. rotation: a dem_rotation, or
+   DEMI_ROTATION_ROUND. */
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
                                  dem_real after) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
@@ -399,14 +401,15 @@ static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem
 /* How bodies rotate: over a whole step, with springs; over two halves with a kick in between, with
    impulses; over half a step without a kick, for contact detection with impulses (demi_ahead). */
 enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
-/* True if the moments of inertia of a body are equal, as those of a ball or a cube, and the default
-   scheme rotates it. */
+/* True if the default scheme rotates a body whose three moments of inertia are equal, as those of a
+   ball or a cube: its free rotation has a constant spin. */
 DEM_INLINE int demi_turns_round(const dem_world *w, int i) {
     const dem_real *I = w->bodies.moment + 4*(size_t)i;
     return I[0] == I[1] && I[1] == I[2] && w->desc.rotation == DEM_ROTATION_SPIRAL;
 }
-/* Rotates the listed bodies other than spheres, at most a tile, all round ones or none. Unless
-   `domain` is null, it receives the largest speeds of rotation and their changes. */
+/* Rotates the listed bodies other than spheres, at most a tile. demi_turns_round must be the same
+   for all of them. Unless `domain` is null, it receives the largest speeds of rotation and their
+   changes. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
                              int how) {
     const dem_real dt = w->clock.dt;
@@ -492,6 +495,8 @@ static void demi_orient_balls(dem_world *w, const int *who, int count, int how) 
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
+/* Rotates the listed bodies, at most a tile: spheres if `shaped` is 0, otherwise as
+   demi_orient_some. */
 static void demi_orient_list(dem_world *w, demi_domain *domain, const int *who, int count, int how,
                              int shaped) {
     if (count && shaped) demi_orient_some(w, domain, who, count, how);

@@ -514,8 +514,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-/* True if a body is a sphere to its neighbours: a sphere, or a cluster of one, which differs from
-   it by its moments of inertia and an orientation. */
+/* True if contacts see a body as a lone sphere: it is a sphere, or a cluster of one sphere, which
+   differs from it only by its moments of inertia and an orientation. */
 DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || shape->lone;
@@ -743,7 +743,8 @@ static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
 }
-/* The only part of a body with a shape that is neither a cluster nor a union. */
+/* Writes the part of a body with a shape to p. demi_part_of corrects it for clusters and unions;
+   all other shapes have one part. */
 DEM_INLINE void demi_part_single(const dem_world *w, int body, const demi_shape *shape,
                                  demi_part *p) {
     p->kind = shape->kind;

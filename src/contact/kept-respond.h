@@ -577,7 +577,7 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Empties a tile and sets the rows that no contact fills. */
+/* Empties a tile and sets what adding a contact does not set, in the first `rows` rows. */
 static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
     int q;
     t->count = t->lifted = t->shaped = 0;

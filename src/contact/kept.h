@@ -18,8 +18,8 @@
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
-/* Prefetches the part that all contacts use, of the one that is `by` after k. It may lie beyond the
-   end of the list. */
+/* Prefetches the fields that every contact uses, of the contact `by` entries after k. That entry
+   may lie beyond the end of the list. */
 DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by) {
     const uintptr_t at = (uintptr_t)k + by*sizeof *k;
     size_t e;
@@ -478,8 +478,8 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
-/* Returns the index within its work group of the old contact with body b, where both bodies are one
-   part each; -1 if there is none. As demi_kept_same. */
+/* As demi_kept_same for two bodies of one part each: returns the index within its work group of the
+   old contact with body b, -1 if there is none. */
 DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, int olds, int b) {
     const int first = (int)(old - demi_kept_of(w, d));
     int *next = &w->domains[d].kept_same, n, i = *next - first;
@@ -490,8 +490,8 @@ DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, i
     }
     return -1;
 }
-/* Appends the contact of two ellipsoids, or of one and a sphere, if they touch. one: body a. Such a
-   contact is the only one of its pair, so that all its weights are 1. */
+/* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch. one: body
+   a. It is the only contact of its pair, so all its weights are 1. */
 DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, int send,
                                dem_vec3 r, const demi_kept *old, int olds) {
     const int from = demi_kept_with(w, d, old, olds, b);
@@ -510,11 +510,12 @@ DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, 
     c->send = send;
     c->from = from;
     c->weight = c->lift = c->grip = 1;
-    c->held = -1;                               /* do not load the old one yet */
+    c->held = -1;                               /* as demi_kept_hold for one contact */
     demi_eggs_set(w, &one->part, one->Q, &other.part, r, &m, c);
 }
-/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a, or
-   another one, if it is an ellipsoid or a sphere. */
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a with
+   its matrix, shared by all its pairs with later bodies; until it is needed, it may hold an earlier
+   body. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, demi_egg *one,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;

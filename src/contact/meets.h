@@ -3,8 +3,9 @@
    Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
    polyhedra their common volume (>>polyhedra) or their gaps (>>gaps), and unlike parts the nearest
-   point. Then the table of functions by kinds of parts, and overlap, arm and radius of contacts
-   with walls.
+   point. A table selects the function by the kinds of the parts. At the end of this part, functions
+   write the overlap, arm and radius of contacts with walls, whose points >>touch has found. Owns
+   nothing, and writes only the contacts that it is given.
    --------------------------------------------------------------------------------------------- */
 
 /* --- Each function returns 1 if two parts touch, and writes the geometry to c. gap: m, from p's
@@ -33,12 +34,14 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* A body that is an ellipsoid or a sphere, with its matrix. */
+/* A body that is an ellipsoid or a sphere, with its matrix ("egg" in names). */
 typedef struct demi_egg { int body; demi_part part; double Q[6]; } demi_egg;
+/* True if a body is an ellipsoid or a sphere. */
 static int demi_egg_is(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
 }
+/* Computes the part and the matrix of such a body. */
 static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
     const demi_shape *shape = demi_shape_of(w, body);
     egg->body = body;
@@ -46,12 +49,13 @@ static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
     else egg->part = demi_part_now(w, body, 0);
     demi_part_matrix(&egg->part, egg->Q);
 }
-/* Returns 1 if two ellipsoids with matrices A and B, or one and a sphere, touch or are within the
-   range of the law. gap: as above. If they are apart, their gap is taken as d (1 - 1/W0), the
-   distance of the two surface points that coincide when both are scaled by W0. It is never less
-   than the true distance, which the candidate lists use. Without a start value of lambda, the plane
-   across the line of centres is tried first: if it separates the two, they are apart, since
-   W0 >= d/(h_A + h_B) with the support heights along that line. */
+/* Returns 1 if two ellipsoids with matrices A and B touch or are within the range of the law; one
+   of them may be a sphere. Then *m has the contact point of Perram and Wertheim. gap and lambda: as
+   for demi_meet_fn. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the
+   two surface points that coincide when both are scaled by W0. It is never less than the true
+   distance, which the candidate lists use. Without a start value of lambda, the plane normal to the
+   line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights along that line, so
+   if the plane separates the two, they are apart. */
 static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *A,
                           const demi_part *q, const double *B, dem_vec3 gap, double lambda,
                           demi_meet *m) {
@@ -70,9 +74,9 @@ static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *
     demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, m);
     return m->f < 1 || (range > 0 && sqrt(d2)*(1 - 1/sqrt(m->f)) < range);
 }
-/* Sets the contact of two ellipsoids, or of one and a sphere, from Perram and Wertheim's contact
-   point m. There both scaled distances are W0, so the support heights are h_A = W0/((1 - l) |s|)
-   and h_B = W0/(l |s|). */
+/* Writes the contact of two ellipsoids to c, from Perram and Wertheim's contact point m; one of
+   them may be a sphere. At that point both scaled distances are W0, so the support heights are
+   h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|). A: the matrix of p. */
 static void demi_eggs_set(const dem_world *w, const demi_part *p, const double *A,
                           const demi_part *q, dem_vec3 gap, const demi_meet *m, demi_kept *c) {
     const double l = m->l, w0 = sqrt(m->f), per = 1/sqrt(demi_dot3(m->s, m->s));

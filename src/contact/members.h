@@ -1,13 +1,14 @@
 /* ---------------------------------------------------------------------------------------------
    >>members
    Contact forces between spheres that may be members of clusters (springs, effects.clustered). The
-   pruned neighbour list then holds pairs of member spheres, and a lone sphere is the only member of
-   its body. Pairs of lone spheres come first in the list, and >>pairs computes them. A step tests
-   the others. Those that touch fill a tile with the relative motion of the two spheres, which are
-   points of their bodies, and the stages of >>respond evaluate the laws as for lone spheres, whose
-   forces have the same bits. Clusters differ in three ways: the effective mass at a contact depends
-   on the orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a
-   force acts at the centre of a member sphere. Owns near.on, near.hit and the slots of its pairs.
+   pruned neighbour list then holds pairs of member spheres. A lone sphere is the only member of its
+   body; pairs of two lone spheres come first in the list, and >>pairs computes them. Of the other
+   pairs, a step finds those that touch. These fill a tile with the relative motion of the two
+   spheres, which are points of their bodies, and the stages of >>respond evaluate the laws as for
+   lone spheres. Clusters differ in three ways: the effective mass at a contact depends on the
+   orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a force
+   acts at the centre of a member sphere. Writes the forces and contact histories of its pairs,
+   their slots, near.on and near.hit (which >>near also uses while it builds a list).
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */
@@ -26,7 +27,7 @@ typedef struct demi_member_tile {
     int count, weighted;           /* contacts; are any merged? */
 } demi_member_tile;
 
-/* Empties a tile. All weights are 1. */
+/* Empties a tile and sets all its weights to 1. */
 static void demi_member_clear(demi_member_tile *m) {
     int q;
     m->count = m->weighted = 0;
@@ -107,7 +108,7 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
     if (at_grip == DEMI_MEMORY) return;
     for (q = 0; q < full; q++) {
         const dem_real held = m->t.rows.memory[at_grip][q], now = m->t.grip[q];
-        if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* else it stays 0 */
+        if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* 0 until merged */
         if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
         for (e = 0; e < keep; e++)
             if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
@@ -412,8 +413,8 @@ static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit)
     }
     return n;
 }
-/* Computes all pairs of a work group: those of lone spheres, then those within it, then those with
-   later ones. */
+/* Computes all pairs of a work group: those of lone spheres (by >>pairs), then the others, first
+   those inside the group, then those with later groups. */
 static void demi_pairs_members(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;

@@ -338,7 +338,7 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     demi_tile_fetch(r, full, t);
     if (w->cell.on) demi_tile_flow(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
-    for (q = 0; q < r->keep; q++) {             /* not of the pairs behind, which may be others */
+    for (q = 0; q < r->keep; q++) {             /* `count` only: pairs of >>members may follow */
         dem_real *memory = span->memory + (size_t)q*span->stride;
         demi_row_copy(memory, t->memory[q], span->count/DEMI_LANES*DEMI_LANES);
         for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
@@ -446,9 +446,9 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
                       t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
                       (double)t->overlap[q], (double)share);
 }
-/* Computes all pairs of a work group: those within it, then those with later ones. With clusters in
-   the world it leaves out those that demi_pairs_members computes. note: called for every tile when
-   its forces are known, or null. */
+/* Computes all pairs of a work group: those inside it, then those with later groups. In a world
+   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the others.
+   note: called for every tile when its forces are known, or null. */
 DEM_INLINE void demi_pairs_with(dem_world *w, int d,
                                 void (*note)(dem_world *w, int d, demi_tile *t,
                                              const demi_span *span, const demi_run *r)) {

@@ -27,7 +27,7 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 2, DEMI_SOME = 16, DE
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
 /* A loop over the rows q of a tile, which compilers vectorise. `full` is the number of rows,
-   rounded up to a multiple of DEMI_LANES; those that pad the last group hold copies. */
+   rounded up to a multiple of DEMI_LANES; results of the rows that pad it are ignored. */
 #define DEMI_ROWS(full) { int g, l; \
     for (g = 0; g < (full); g += DEMI_LANES) { \
         DEMI_VECTOR \
@@ -230,9 +230,9 @@ typedef struct demi_domain {
                                       pairs with later groups; */
     int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
                                       a body that is not a sphere */
-    int near_lone[2];              /* of the pairs inside, and of those with later groups: the
-                                      first ones that are pairs of lone spheres (demi_lone); 0
-                                      unless effects.clustered */
+    int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
+                                      first among the pairs inside, and among those with later
+                                      groups; 0 unless effects.clustered */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
@@ -259,7 +259,7 @@ typedef struct demi_domain {
    contacts with it; its functions, above demi_touches. A row has these fields:
      constant;
      NAME, which names the functions demi_NAME_support, _thin, _equal, _curve, _drawn (described in
-       >>shapes) and _on_wall (>>kept);
+       >>shapes) and _on_wall (>>meets);
      name in messages;
      function that returns the gap of two parts, the other one of this kind or of a kind above (it
        may return less than the gap);
@@ -426,7 +426,8 @@ typedef struct demi_wall {
     dem_pose mid;                  /* in the middle of the last step */
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
-    dem_vec3 glide;                /* m/s, velocity of its surface, in its frame: >>belts */
+    dem_vec3 glide;                /* m/s, velocity of its surface, in its frame; >>steering sets
+                                      it, >>belts uses it */
     int glides;                    /* 1: that is not 0 */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes

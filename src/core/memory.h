@@ -192,8 +192,8 @@ static void demi_refused_note(dem_world *w, size_t n) {
         w->refused_calls[w->refused++][n] = 0;
     }
 }
-/* Stores the error message of a failed call. `call`, unless null, is its name and begins the
-   message. */
+/* Stores the error message of a failed call. The message begins with `call`, the name of the call;
+   if that is null, `format` contains the name. */
 static void demi_tell(dem_world *w, const char *call, const char *format,
                       va_list args) DEMI_FORMAT(3, 0);
 static void demi_tell(dem_world *w, const char *call, const char *format, va_list args) {
@@ -414,7 +414,8 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
     demi_free(w, old);
     return 1;
 }
-/* Grows an array likewise and copies the first `count` items of another one to it. */
+/* Grows an array for `count` items, as DEMI_GROW, and copies those of another one to it. Returns 0
+   if memory ran out. */
 #define DEMI_COPY(w, array, from, count) demi_copy(w, &(array), from, sizeof *(array), count)
 static int demi_copy(dem_world *w, void *array, const void *from, size_t item, int count) {
     void *to;

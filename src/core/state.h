@@ -321,9 +321,9 @@ typedef struct demi_events {
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
     uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
-    int32_t *order;                /* entries of `open`, in the order of notes: of odd turns at odd
-                                      places, of even turns at even ones */
-    int ordered;                   /* their number in the last turn */
+    int32_t *order;                /* x 2: entries of `open` in the order of notes; odd turns are at
+                                      odd indices, even turns at even ones */
+    int ordered;                   /* number of notes in the last turn */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */
@@ -393,7 +393,7 @@ struct dem_world {
     /* >>bodies; motion: >>integrators; forces: >>respond, >>kept */
     demi_bodies bodies;
     demi_filed filed;
-    /* >>walls; weights of facets: >>facets; poses and loads: >>step */
+    /* >>walls; weights of facets: >>facets; poses and loads: >>step; new motions: >>steering */
     int wall_count;
     demi_wall *walls;
     double wall_fastest;           /* m/s, fastest wall point of the step */
@@ -473,7 +473,7 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     /* >>near */
-    demi_near near, near_last;     /* the pruned list; the previous one, swapped for a new one */
+    demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
                                       species a and b when lists were built */
     int species_vary;              /* bits of the columns that differ between pairs */

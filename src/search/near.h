@@ -4,16 +4,17 @@
    candidates that touch or could touch within the time margin.span if they approached head-on at
    their present relative speed, plus margin.slack for changes of speed. Forces are computed for all
    its pairs; those that do not touch give zero. So a step neither tests candidates nor collects
-   pairs. The list is rebuilt from the candidates after the time margin.span, or earlier if
-   accelerations may have used up the slack. It takes contact histories from the previous pruned
-   list or, after a search, from demi_filed. Results do not depend on how long a list lasts, because
-   one zero more or less does not change a sum.
-   Proof that no contact is missed: let v be the relative speed of two bodies when the list is
-   built. A step changes a velocity by at most last_change, that is dt times the largest
-   acceleration of all bodies. After n steps the relative velocity has changed by at most 2 change,
-   where change is the sum of last_change. So the two have approached by at most v t + creep, where
-   creep is the sum over steps of 2 dt change. A pair that is not in the list had a gap larger than
-   v span + slack. As long as age < span and creep < slack, the pair does not touch.
+   pairs. With clusters (effects.clustered) the pairs are of member spheres: those of two lone
+   spheres come first, and >>members tests the others. The list is rebuilt from the candidates after
+   the time margin.span, or earlier if accelerations may have used up the slack. It takes contact
+   histories from the previous pruned list or, after a search, from demi_filed. Results do not
+   depend on how long a list lasts, because one zero more or less does not change a sum. Proof that
+   no contact is missed: let v be the relative speed of two bodies when the list is built. A step
+   changes a velocity by at most last_change, that is dt times the largest acceleration of all
+   bodies. After n steps the relative velocity has changed by at most 2 change, where change is the
+   sum of last_change. So the two have approached by at most v t + creep, where creep is the sum
+   over steps of 2 dt change. A pair that is not in the list had a gap larger than v span + slack.
+   As long as age < span and creep < slack, the pair does not touch.
    --------------------------------------------------------------------------------------------- */
 
 /* --- species: classes of equal spheres, and the coefficients of every two species. A scene has few
@@ -352,8 +353,8 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     }
 }
 
-/* Returns the number of pairs of two lone spheres that entries begin .. end - 1 of a work group's
-   list begin with. */
+/* Returns how many pairs of two lone spheres come first among entries begin .. end - 1 of a work
+   group's list; 0 without clusters. */
 static int demi_near_lone(const dem_world *w, int d, int begin, int end) {
     const int32_t *a = w->near.a + d*w->near.stride, *b = w->near.b + d*w->near.stride;
     int p = begin;
@@ -499,14 +500,14 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     return left;
 }
 
-/* Moves the pairs of two lone spheres to the front of entries first .. end - 1, so that they form
-   tiles of their own. Both kinds keep their order. */
+/* Moves the pairs of two lone spheres to the front of entries first .. end - 1, so that >>pairs can
+   compute them in full tiles. Both kinds keep their order. near.hit is used as temporary memory. */
 static void demi_near_lone_first(dem_world *w, const demi_list *list, int d, int first, int end) {
     const int at = d*w->near.stride;
     int32_t *column[3], *aside = w->near.hit + at;
     int e, p, lone, left;
     column[0] = w->near.ball_a + at; column[1] = w->near.ball_b + at; column[2] = w->near.k + at;
-    for (e = 0; e < 3; e++) {                   /* k last: it tells which are lone */
+    for (e = 0; e < 3; e++) {                   /* k last, because the test reads it */
         for (p = left = first, lone = 0; p < end; p++) {
             const int k = w->near.k[at + p], value = column[e][p];
             if (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])) column[e][left++] = value;

@@ -5,7 +5,7 @@
    contact normal n: g - n (n.g). This part is continuous where a contact goes round a rim or a
    corner, and 0 where n is along g. A velocity along n would do work against the elastic force
    although the place of the surface, and with it the elastic energy, does not change: that creates
-   energy. Owns `glide` and `glides` of walls.
+   energy. `glide` and `glides` of walls hold the velocity; >>steering sets them.
    --------------------------------------------------------------------------------------------- */
 
 /* Returns the velocity of the surface of a wall in this pose at a contact with normal n, m/s,
