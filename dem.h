@@ -5960,7 +5960,7 @@ typedef struct demi_law_row {
     dem_law_fn law;                /* null for "none" and "auto" */
     int memory, vectors, traits;   /* reals of history; vectors that they begin with; bits */
     const char *name;
-    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; k is 0 before */
+    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; sets what is not 0 */
 } demi_law_row;
 #define DEMI_NORMAL_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
     {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, demi_coefs_##LAW},
@@ -28540,17 +28540,22 @@ static dem_result demi_dt_check(dem_world *h) {
 
 /* ---------------------------------------------------------------------------------------------
    >>steering
-   New motions of walls, and new velocities of belts, during a run. After a change of the scene all
-   forces are computed again, from the velocities of the full step. A program that leads a wall
-   changes its motion at every step: that costs only the contacts of this wall, whose forces are
-   subtracted, and added again with the new velocity. This part writes motions of walls, and forces
-   and half-step velocities of grains at such a wall.
+   New motions of walls, and new velocities of belts, during a run. After most changes of the scene
+   the next step computes all forces again, from the velocities of the full step. A program that
+   leads a wall sets its motion at every step, or every few steps. To make this cheap, only forces
+   of contacts with this wall are computed again: those with the old velocity are subtracted from
+   the forces on grains, those with the new velocity are added. Sums thus differ by rounding. This
+   part writes the motions and surface velocities (`glide`, `glides`) of walls, and the forces and
+   half-step velocities of grains that touch such a wall.
    --------------------------------------------------------------------------------------------- */
 
-#define DEMI_LED 8.5               /* steps between two motions of a wall that a program leads */
+/* A program leads a wall if at most this number of steps lie between two motions: eight, and half a
+   step for rounding errors of times. */
+#define DEMI_LED 8.5
 
-/* Evaluates a tile of contacts with a wall and adds `sign` times their forces to the grains, whose
-   half-step velocities follow. Contact histories stay as they are. */
+/* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
+   and updates the half-step velocities of these grains. Contact histories do not change. Empties
+   the tile. */
 static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
     int q;
     demi_kept_tile_answer(w, r, t);
@@ -28567,7 +28572,7 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
     }
     t->count = t->lifted = t->shaped = 0;
 }
-/* Adds `sign` times the forces of all contacts of a wall to its grains. */
+/* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, 0);
@@ -28584,9 +28589,11 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
         if (tile.count) demi_steer_tile(w, &run, &tile, sign);
     }
 }
-/* Called before the velocity of a wall's surface changes, and after it. If all forces are valid,
-   those of the wall's contacts follow. Otherwise, with impulses, with rails, whose reactions depend
-   on these forces, and with numbers of bodies that a law exchanges, the next step computes all. */
+/* Call this before the velocity of a wall's surface changes, and demi_wall_changed after it. If the
+   forces are valid, the first call subtracts those of the wall's contacts and the second adds them
+   with the new velocity. Otherwise the next step computes all forces again. So it does with
+   impulses, with rails (their reactions depend on these forces) and with laws that exchange
+   user-defined numbers. */
 static void demi_wall_change(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
     if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
@@ -28594,6 +28601,7 @@ static void demi_wall_change(dem_world *w, int wall) {
         w->stage.forces_valid = w->stage.primed = 0;
     else demi_steer(w, wall, -1);
 }
+/* Call this after the velocity of a wall's surface has changed: see demi_wall_change. */
 static void demi_wall_changed(dem_world *w, int wall) {
     if (w->stage.forces_valid) demi_steer(w, wall, 1);
 }
@@ -28621,16 +28629,17 @@ DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_
     return DEM_OK;
 }
 
-/* True if a new motion of a wall does not ask for another time step: a wall that is slower than the
-   impacts that the step was chosen for, and that moves less than a tenth of the smallest radius in
-   a step. */
+/* True if the time step stays right for a wall with a new motion: the wall is not faster than the
+   impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
+   step. */
 static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
     const double v = demi_pose_speed(wall);
     return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
         (!(v > 0) || w->asked.dt > 0 || v <= w->clock.assumed_speed);
 }
-/* True if a program leads a wall: its motion was last set a few steps ago, and the new one starts
-   at the present pose, a rotation up to rounding errors. */
+/* True if a program leads a wall: its old motion `from` began at most DEMI_LED steps ago, or has
+   yet to begin, and the new motion starts exactly at the present pose. A new rotation may start
+   there with rounding errors. */
 static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_wall *to) {
     if (w->clock.time - from->motion.start > DEMI_LED*(double)w->clock.dt) return 0;
     return to->motion.kind == DEM_MOTION_ROTATING ||
@@ -29896,9 +29905,10 @@ static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
         at = (at + 1) & mask;
     return e->table + at;
 }
-/* Returns the open contact of a key, -1 if there is none. Contacts are noted in nearly the order of
-   the last step. So the contacts of that step are tried first, from *next on: a few may have
-   ended. */
+/* Returns the index of the open contact with this key, -1 if there is none. Contacts are noted in
+   nearly the same order in every step. Therefore four contacts of the last step are tried first,
+   from number *next on, because some may have ended; the hash table finds the others. If one of the
+   four fits, *next becomes the number after it. */
 static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     const int32_t *last = e->order + !(e->turn & 1);
     int k;
@@ -29909,7 +29919,7 @@ static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
         }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
-/* Prefetches an open contact that a coming note is likely to belong to. */
+/* Prefetches the open contact that is needed some six notes later. */
 DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
     const int i = next + 6 < e->ordered ? e->order[2*(next + 6) + !(e->turn & 1)] : e->n.open;
     const char *at = (const char *)(e->open + i), *end = (const char *)(e->open + i + 1);
@@ -30077,8 +30087,8 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
 static void demi_event_regrow(const dem_world *w, demi_ongoing *o, double stored) {
     if (demi_member(w, 0)->stage.grown) o->work += stored;
 }
-/* Adds a noted contact to its open contact, which begins if there is none. *next: see
-   demi_event_find. Returns that contact, -1 if memory ran out. */
+/* Adds a noted contact to its open contact, which begins if there is none. *next: as for
+   demi_event_find. Returns the index of the open contact, -1 if memory ran out. */
 static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n, int *next) {
     demi_events *e = &w->events;
     const int later = !demi_response_is(w, DEMI_LASTING);
@@ -34911,7 +34921,8 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
 /* ---------------------------------------------------------------------------------------------
    >>write
    Output files: VTP, legacy VTK, extended XYZ and CSV. This part owns demi_out, the file being
-   written. It reads the world and does not change its state.
+   written, and demi_columns, the arrays that are written to it. It reads the world and does not
+   change its state, except that a function which writes contacts may compute forces first.
 
    Files are replaced as a whole. demi_out_open creates a file of an unused name,
    path.XXXXXXXX.tmp. demi_out_close renames it to `path` if everything was written, and removes it
@@ -35086,21 +35097,21 @@ static void demi_out_number(demi_out *o, const void *number, size_t size, int tu
     fwrite(bytes, 1, size, o->file);
 }
 
-/* An array of a file: `count` rows of `components` numbers. Without data, the rows are the integers
-   first, first + step, and so on. */
+/* An array of a file: `count` rows of `components` numbers. If data is null, the numbers are the
+   integers first, first + step, and so on. */
 typedef struct demi_column {
-    const char *section;        /* the XML element of a VTP file that holds the array             */
+    const char *section;        /* the XML element of a VTP file that contains the array          */
     char name[24], type;        /* type: r dem_real, i int32, u uint32                            */
     int components, count;      /* numbers in a row; rows                                         */
     int first, step;
     void *data;                 /* or null                                                        */
 } demi_column;
-/* The columns of a file. They exist until the file is written. */
+/* The arrays of a file, from demi_columns_begin until demi_columns_free. */
 enum { DEMI_FILE_COLUMNS = 16 + DEMI_MEMORY + DEM_BODY_REALS };
 typedef struct demi_columns {
     dem_world *world;
     const char *call;
-    int count, failed;          /* columns; 1: memory ran out, or there are too many rows         */
+    int count, failed;          /* arrays; 1: memory ran out, or an array has too many rows       */
     demi_column column[DEMI_FILE_COLUMNS];
 } demi_columns;
 static void demi_columns_begin(demi_columns *s, dem_world *w, const char *call) {
@@ -35111,7 +35122,7 @@ static void demi_columns_begin(demi_columns *s, dem_world *w, const char *call) 
 static size_t demi_column_size(const demi_column *c) { /* bytes of one number */
     return c->type == 'r' ? sizeof(dem_real) : 4;
 }
-/* Adds integers without data. */
+/* Adds an array of integers first, first + step, ..., which needs no memory. Returns it. */
 static demi_column *demi_columns_range(demi_columns *s, const char *section, const char *name,
                                        int64_t count, int first, int step) {
     demi_column *c = &s->column[s->count++];
@@ -35136,6 +35147,7 @@ static void *demi_columns_add(demi_columns *s, const char *section, const char *
     s->failed |= !c->data;
     return c->data;
 }
+/* As demi_columns_add, for reals and for integers of one component. */
 static dem_real *demi_columns_reals(demi_columns *s, const char *section, const char *name,
                                     int components, int64_t count) {
     return (dem_real *)demi_columns_add(s, section, name, 'r', components, count);
@@ -35157,7 +35169,8 @@ static void demi_columns_own(demi_columns *s, int64_t count, dem_real *own[DEM_B
 static void demi_columns_free(demi_columns *s) {
     while (s->count > 0) demi_free(s->world, s->column[--s->count].data);
 }
-/* Opens the file. After a failure there is nothing to close or to free. */
+/* Opens the file. If that fails or an array is missing, fails and frees the arrays: the caller has
+   nothing to close or to free. */
 static dem_result demi_columns_open(demi_columns *s, demi_out *o, const char *path) {
     const dem_result result = !s->failed ? demi_out_open(o, s->world, s->call, path)
         : demi_fail(s->world, DEM_ERROR_MEMORY, "%s: not enough memory for what is written; free "
@@ -35181,9 +35194,10 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
 }
 
 enum { DEMI_GRAIN_SPIN = 3, DEMI_GRAIN_ID, DEMI_GRAIN_MATERIAL };      /* columns for grains */
-/* Makes the arrays that are written for grains, with a row for each part of a body, such as a
-   member sphere of a cluster. Positions are wrapped into a periodic domain. The last two arrays
-   make each point a cell, without which viewers do not draw it. */
+/* Makes and fills the arrays that are written for grains, with a row for each part of a body, such
+   as a member sphere of a cluster. Positions are wrapped into a periodic domain. The order of the
+   arrays is that of DEMI_GRAIN_SPIN and the following constants. The last two arrays make each
+   point a cell, without which viewers do not draw it. */
 static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) {
     const dem_real *places = demi_wrapped(w);
     const demi_bodies *b = &w->bodies;
@@ -35227,9 +35241,9 @@ static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) 
         }
 }
 
-/* Writes columns in the XML format of VTK and frees it. The XML tree describes the arrays. Their
+/* Writes arrays in the XML format of VTK and frees them. The XML tree describes the arrays. Their
    numbers follow in binary form, in the byte order of the machine, each array after its size in
-   bytes. The first column holds the points; verts, lines and polys are the numbers of such
+   bytes. The first array contains the points; verts, lines and polys are the numbers of such
    cells. */
 static dem_result demi_vtp(demi_columns *s, const char *path, int verts, int lines, int polys) {
     demi_out o;
@@ -35276,7 +35290,7 @@ DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     return demi_vtp(&s, path, s.column[0].count, 0, 0);
 }
 
-/* Contacts as line segments. Without arrays, only their number is counted. */
+/* Contacts as line segments. While `ends` is null, demi_line_put only counts them. */
 typedef struct demi_lines {
     const dem_world *w;
     int64_t count;
@@ -35439,8 +35453,8 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
 /* A sphere or ellipsoid is drawn with two poles and rings of points between them. */
 enum { DEMI_ROUND_RINGS = 7, DEMI_ROUND_SIDES = 16,
        DEMI_ROUND_POINTS = 2 + DEMI_ROUND_RINGS*DEMI_ROUND_SIDES };
-/* The polygons of all bodies. A first pass without arrays counts; a second fills the arrays. Data
-   of a body are repeated at each of its points. */
+/* The polygons of all bodies. A first pass, with null pointers, counts points, polygons and links;
+   a second pass fills the arrays. Data of a body are repeated at each of its points. */
 typedef struct demi_surfaces {
     int64_t points, polygons, links;               /* links: corners of all polygons */
     dem_real *place, *velocity, *own[DEM_BODY_REALS]; /* points x 3: m, m/s; user-defined */
@@ -35608,8 +35622,8 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     }
 }
 
-/* Writes the work of sliding on the facet of each of `count` triangles of wall i, J; 0 where none
-   is recorded. */
+/* Writes to `slide` the work of sliding on the facet of each of `count` triangles of wall i, J; 0
+   if none is recorded. A segment of a profile is drawn as two triangles. */
 static void demi_wall_slide(const dem_world *w, int i, int64_t count, dem_real *slide) {
     const demi_wall *wall = w->walls + i;
     const int sides = demi_wall_is(wall, DEMI_DRAWN) ? 2 : 1;
@@ -36924,10 +36938,10 @@ static int demi_balls_own(const dem_world *t, int at) {
          t->near.ball_b[at] >= start[b] && t->near.ball_b[at] < start[b + 1]);
 }
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
-   be among the `count` candidates of this list, ascending, with clusters twice: first the pairs of
-   lone spheres, then the others. With shaped = 0 all pairs must be of two
-   spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
-   index of the candidate in the list of all domains. */
+   be among the `count` candidates of this list, and ascend. With clusters, pairs of two lone
+   spheres come first; candidates ascend among them and, from the beginning again, among the others.
+   With shaped = 0 all pairs must be of two spheres of known species; with shaped = 1 no pair may be
+   of two spheres. Then it makes k the index of the candidate in the list of all domains. */
 static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
                            int end, int shaped) {
     dem_world *t = r->t;
@@ -37367,9 +37381,10 @@ static const char demi_changes_never[] = " domain boundary planar thickness resp
 /* What a restart may change, and what it has changed. */
 typedef struct demi_changes {
     const char *allowed;           /* words */
-    const dem_world *own;          /* the world before: its descs and materials */
+    const dem_world *own;          /* copy of the world struct before the restart: its descs and
+                                      materials */
     int materials;                 /* 1: materials may differ */
-    demi_pair *pairs;              /* of the world before; null unless they may differ */
+    demi_pair *pairs;              /* copy of its pairs; null unless they may differ */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
 } demi_changes;
@@ -37621,7 +37636,7 @@ static dem_result demi_mixing_values(const dem_world *w, const dem_mixing_desc *
 static const char demi_outlet_heading[] =
     "time,grains,mass,sorted,sorted_mass,gangue,gangue_mass,back,back_mass,held,held_mass";
 enum { DEMI_OUTLET = 10 };
-/* Writes the DEMI_OUTLET values of that heading that follow the time. */
+/* Writes the DEMI_OUTLET values of this heading, all columns except the time. */
 static dem_result demi_outlet_values(const dem_world *w, dem_outlet outlet, double *value) {
     dem_outlet_state s;
     const dem_result result = dem_outlet_get(w, outlet, &s);
@@ -37987,8 +38002,8 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     va_end(arguments);
 }
 
-/* Computes the sets of materials of grains, those of feeds included, and of walls: bit i is
-   material of index i. */
+/* Writes the sets of materials of grains (also of those that feeds will insert) and of walls. Bit i
+   is the material of index i. */
 static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
     int i, k;
     *grains = *walls = 0;
@@ -38000,7 +38015,7 @@ static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) 
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
 }
-/* Checks materials: values that suggest other units, materials without use; and the number of
+/* Checks materials (values that suggest other units, materials without use) and the number of
    threads. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
     uint64_t grains, walls;
@@ -38975,7 +38990,7 @@ static const demi_field_row demi_trials_rows[] = {
     DEMI_TRIED(observable_count, 'i', DEMI_FROM, DEM_OBSERVABLES, ""),
     DEMI_ROW_FREE(dem_trials_desc, observables), DEMI_ROW_FREE(dem_trials_desc, progress),
     DEMI_ROW_FREE(dem_trials_desc, user), DEMI_ROW_END};
-/* Returns DEM_OK if the desc is valid and the scene can be compared; otherwise fails. */
+/* Fails if the desc is not valid or the scene cannot be compared. */
 static dem_result demi_trials_check(dem_world *w, const dem_trials_desc *d) {
     const char *call = "dem_trials_run";
     const int lost = demi_body_lost(w);
@@ -39153,7 +39168,8 @@ enum { DEMI_EFFECT_TURNS = 41, DEMI_EFFECT_STEPS = 24 };
    touched). */
 typedef dem_effect_state (*demi_look_fn)(const dem_world *w, dem_effect *e);
 
-/* Writes e->text, and returns the state of an effect that the scene contains. */
+/* Writes e->text. Returns the state of an effect that the scene contains: active if it has
+   happened, else idle. */
 DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, const char *format,
                                                    ...) {
     va_list arguments;
@@ -39162,6 +39178,7 @@ DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, 
     va_end(arguments);
     return happened ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+/* Writes e->text for an effect that the scene does not contain, and returns that state. */
 static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
     demi_say(e, 0, "%s", why);
     return DEM_EFFECT_OFF;
@@ -40437,7 +40454,7 @@ static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
 }
-/* Runs a phase, and returns a failure of any slab. */
+/* Runs a phase on all slabs. Returns DEM_OK, or the error of a slab that failed. */
 static dem_result demi_slabs_try(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
     demi_slabs_phase(s, phase);
     return demi_slabs_agree(&s->head, 0, 0);
@@ -41212,8 +41229,8 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     return 1;
 }
 /* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
-   first slab of this process, null for that slab itself. If memory ran out, sets *ok to 0 and
-   returns null or an incomplete world. */
+   first slab of this process, null for that slab itself. *ok becomes 1; if memory ran out, it
+   becomes 0, and the function returns null or an incomplete world. */
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
                                   const dem_world *first, dem_allocator *allocator, int *ok) {
     dem_world_desc desc = from->asked;
@@ -42375,10 +42392,10 @@ static const char *const demi_viewer[] = {
                           bits each, and in the top two bits the index of the one left out
            number         if 2 of the second byte: float32, the number that grains are coloured by
        values         count; for each: index, float32
-       contacts       only if the head has "contacts":1; 0: those of an earlier frame remain; or
-                      1 + count; for each: slot of a, slot of b + 1; if that is 0, a wall: the
-                      contact point less the centre of a in units of the resolution, 3 int16; then
-                      32768 + 64 log2 of the force in N, uint16
+       contacts       only if the head has "contacts":1. 0: those of an earlier frame remain.
+                      Otherwise 1 + count, and for each: slot of a; slot of b + 1, or 0 for a wall;
+                      for a wall the contact point minus the centre of a in units of the
+                      resolution, 3 int16; 32768 + 64 log2 of the force in N, uint16
 
    Tests: tests/replay/test_replay.c reads replays back, tests/browser.sh plays them in a browser.
    --------------------------------------------------------------------------------------------- */
@@ -42719,10 +42736,10 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     one->turn = turn;
     one->own = own;
 }
-/* Largest number of contacts of a frame: the strongest. They take at most 18 bytes each. */
+/* Largest number of contacts in a frame. Each takes at most 18 bytes. */
 enum { DEMI_FILM_CONTACTS = 50000 };
-/* Appends the contacts, without those weaker than a hundredth of the strongest, which would be thin
-   lines. */
+/* Appends the contacts of a frame that records them. Leaves out forces below 1 % of the largest,
+   whose lines would be thin, and raises this limit until at most DEMI_FILM_CONTACTS are left. */
 static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     dem_world *w = r->world;
     const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;

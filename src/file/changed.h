@@ -14,9 +14,10 @@ static const char demi_changes_never[] = " domain boundary planar thickness resp
 /* What a restart may change, and what it has changed. */
 typedef struct demi_changes {
     const char *allowed;           /* words */
-    const dem_world *own;          /* the world before: its descs and materials */
+    const dem_world *own;          /* copy of the world struct before the restart: its descs and
+                                      materials */
     int materials;                 /* 1: materials may differ */
-    demi_pair *pairs;              /* of the world before; null unless they may differ */
+    demi_pair *pairs;              /* copy of its pairs; null unless they may differ */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
 } demi_changes;

@@ -49,7 +49,7 @@ static dem_result demi_mixing_values(const dem_world *w, const dem_mixing_desc *
 static const char demi_outlet_heading[] =
     "time,grains,mass,sorted,sorted_mass,gangue,gangue_mass,back,back_mass,held,held_mass";
 enum { DEMI_OUTLET = 10 };
-/* Writes the DEMI_OUTLET values of that heading that follow the time. */
+/* Writes the DEMI_OUTLET values of this heading, all columns except the time. */
 static dem_result demi_outlet_values(const dem_world *w, dem_outlet outlet, double *value) {
     dem_outlet_state s;
     const dem_result result = dem_outlet_get(w, outlet, &s);

@@ -299,10 +299,10 @@ static int demi_balls_own(const dem_world *t, int at) {
          t->near.ball_b[at] >= start[b] && t->near.ball_b[at] < start[b + 1]);
 }
 /* Checks the pairs begin .. end - 1 in the pruned neighbour list of domain d. Their candidates must
-   be among the `count` candidates of this list, ascending, with clusters twice: first the pairs of
-   lone spheres, then the others. With shaped = 0 all pairs must be of two
-   spheres of known species; with shaped = 1 no pair may be of two spheres. Then it makes k the
-   index of the candidate in the list of all domains. */
+   be among the `count` candidates of this list, and ascend. With clusters, pairs of two lone
+   spheres come first; candidates ascend among them and, from the beginning again, among the others.
+   With shaped = 0 all pairs must be of two spheres of known species; with shaped = 1 no pair may be
+   of two spheres. Then it makes k the index of the candidate in the list of all domains. */
 static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
                            int end, int shaped) {
     dem_world *t = r->t;

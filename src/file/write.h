@@ -1,7 +1,8 @@
 /* ---------------------------------------------------------------------------------------------
    >>write
    Output files: VTP, legacy VTK, extended XYZ and CSV. This part owns demi_out, the file being
-   written. It reads the world and does not change its state.
+   written, and demi_columns, the arrays that are written to it. It reads the world and does not
+   change its state, except that a function which writes contacts may compute forces first.
 
    Files are replaced as a whole. demi_out_open creates a file of an unused name,
    path.XXXXXXXX.tmp. demi_out_close renames it to `path` if everything was written, and removes it
@@ -176,21 +177,21 @@ static void demi_out_number(demi_out *o, const void *number, size_t size, int tu
     fwrite(bytes, 1, size, o->file);
 }
 
-/* An array of a file: `count` rows of `components` numbers. Without data, the rows are the integers
-   first, first + step, and so on. */
+/* An array of a file: `count` rows of `components` numbers. If data is null, the numbers are the
+   integers first, first + step, and so on. */
 typedef struct demi_column {
-    const char *section;        /* the XML element of a VTP file that holds the array             */
+    const char *section;        /* the XML element of a VTP file that contains the array          */
     char name[24], type;        /* type: r dem_real, i int32, u uint32                            */
     int components, count;      /* numbers in a row; rows                                         */
     int first, step;
     void *data;                 /* or null                                                        */
 } demi_column;
-/* The columns of a file. They exist until the file is written. */
+/* The arrays of a file, from demi_columns_begin until demi_columns_free. */
 enum { DEMI_FILE_COLUMNS = 16 + DEMI_MEMORY + DEM_BODY_REALS };
 typedef struct demi_columns {
     dem_world *world;
     const char *call;
-    int count, failed;          /* columns; 1: memory ran out, or there are too many rows         */
+    int count, failed;          /* arrays; 1: memory ran out, or an array has too many rows       */
     demi_column column[DEMI_FILE_COLUMNS];
 } demi_columns;
 static void demi_columns_begin(demi_columns *s, dem_world *w, const char *call) {
@@ -201,7 +202,7 @@ static void demi_columns_begin(demi_columns *s, dem_world *w, const char *call) 
 static size_t demi_column_size(const demi_column *c) { /* bytes of one number */
     return c->type == 'r' ? sizeof(dem_real) : 4;
 }
-/* Adds integers without data. */
+/* Adds an array of integers first, first + step, ..., which needs no memory. Returns it. */
 static demi_column *demi_columns_range(demi_columns *s, const char *section, const char *name,
                                        int64_t count, int first, int step) {
     demi_column *c = &s->column[s->count++];
@@ -226,6 +227,7 @@ static void *demi_columns_add(demi_columns *s, const char *section, const char *
     s->failed |= !c->data;
     return c->data;
 }
+/* As demi_columns_add, for reals and for integers of one component. */
 static dem_real *demi_columns_reals(demi_columns *s, const char *section, const char *name,
                                     int components, int64_t count) {
     return (dem_real *)demi_columns_add(s, section, name, 'r', components, count);
@@ -247,7 +249,8 @@ static void demi_columns_own(demi_columns *s, int64_t count, dem_real *own[DEM_B
 static void demi_columns_free(demi_columns *s) {
     while (s->count > 0) demi_free(s->world, s->column[--s->count].data);
 }
-/* Opens the file. After a failure there is nothing to close or to free. */
+/* Opens the file. If that fails or an array is missing, fails and frees the arrays: the caller has
+   nothing to close or to free. */
 static dem_result demi_columns_open(demi_columns *s, demi_out *o, const char *path) {
     const dem_result result = !s->failed ? demi_out_open(o, s->world, s->call, path)
         : demi_fail(s->world, DEM_ERROR_MEMORY, "%s: not enough memory for what is written; free "
@@ -271,9 +274,10 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
 }
 
 enum { DEMI_GRAIN_SPIN = 3, DEMI_GRAIN_ID, DEMI_GRAIN_MATERIAL };      /* columns for grains */
-/* Makes the arrays that are written for grains, with a row for each part of a body, such as a
-   member sphere of a cluster. Positions are wrapped into a periodic domain. The last two arrays
-   make each point a cell, without which viewers do not draw it. */
+/* Makes and fills the arrays that are written for grains, with a row for each part of a body, such
+   as a member sphere of a cluster. Positions are wrapped into a periodic domain. The order of the
+   arrays is that of DEMI_GRAIN_SPIN and the following constants. The last two arrays make each
+   point a cell, without which viewers do not draw it. */
 static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) {
     const dem_real *places = demi_wrapped(w);
     const demi_bodies *b = &w->bodies;
@@ -317,9 +321,9 @@ static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) 
         }
 }
 
-/* Writes columns in the XML format of VTK and frees it. The XML tree describes the arrays. Their
+/* Writes arrays in the XML format of VTK and frees them. The XML tree describes the arrays. Their
    numbers follow in binary form, in the byte order of the machine, each array after its size in
-   bytes. The first column holds the points; verts, lines and polys are the numbers of such
+   bytes. The first array contains the points; verts, lines and polys are the numbers of such
    cells. */
 static dem_result demi_vtp(demi_columns *s, const char *path, int verts, int lines, int polys) {
     demi_out o;
@@ -366,7 +370,7 @@ DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     return demi_vtp(&s, path, s.column[0].count, 0, 0);
 }
 
-/* Contacts as line segments. Without arrays, only their number is counted. */
+/* Contacts as line segments. While `ends` is null, demi_line_put only counts them. */
 typedef struct demi_lines {
     const dem_world *w;
     int64_t count;
@@ -529,8 +533,8 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
 /* A sphere or ellipsoid is drawn with two poles and rings of points between them. */
 enum { DEMI_ROUND_RINGS = 7, DEMI_ROUND_SIDES = 16,
        DEMI_ROUND_POINTS = 2 + DEMI_ROUND_RINGS*DEMI_ROUND_SIDES };
-/* The polygons of all bodies. A first pass without arrays counts; a second fills the arrays. Data
-   of a body are repeated at each of its points. */
+/* The polygons of all bodies. A first pass, with null pointers, counts points, polygons and links;
+   a second pass fills the arrays. Data of a body are repeated at each of its points. */
 typedef struct demi_surfaces {
     int64_t points, polygons, links;               /* links: corners of all polygons */
     dem_real *place, *velocity, *own[DEM_BODY_REALS]; /* points x 3: m, m/s; user-defined */
@@ -698,8 +702,8 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     }
 }
 
-/* Writes the work of sliding on the facet of each of `count` triangles of wall i, J; 0 where none
-   is recorded. */
+/* Writes to `slide` the work of sliding on the facet of each of `count` triangles of wall i, J; 0
+   if none is recorded. A segment of a profile is drawn as two triangles. */
 static void demi_wall_slide(const dem_world *w, int i, int64_t count, dem_real *slide) {
     const demi_wall *wall = w->walls + i;
     const int sides = demi_wall_is(wall, DEMI_DRAWN) ? 2 : 1;

@@ -90,7 +90,7 @@ typedef struct demi_law_row {
     dem_law_fn law;                /* null for "none" and "auto" */
     int memory, vectors, traits;   /* reals of history; vectors that they begin with; bits */
     const char *name;
-    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; k is 0 before */
+    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; sets what is not 0 */
 } demi_law_row;
 #define DEMI_NORMAL_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
     {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, demi_coefs_##LAW},

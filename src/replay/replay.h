@@ -25,10 +25,10 @@
                           bits each, and in the top two bits the index of the one left out
            number         if 2 of the second byte: float32, the number that grains are coloured by
        values         count; for each: index, float32
-       contacts       only if the head has "contacts":1; 0: those of an earlier frame remain; or
-                      1 + count; for each: slot of a, slot of b + 1; if that is 0, a wall: the
-                      contact point less the centre of a in units of the resolution, 3 int16; then
-                      32768 + 64 log2 of the force in N, uint16
+       contacts       only if the head has "contacts":1. 0: those of an earlier frame remain.
+                      Otherwise 1 + count, and for each: slot of a; slot of b + 1, or 0 for a wall;
+                      for a wall the contact point minus the centre of a in units of the
+                      resolution, 3 int16; 32768 + 64 log2 of the force in N, uint16
 
    Tests: tests/replay/test_replay.c reads replays back, tests/browser.sh plays them in a browser.
    --------------------------------------------------------------------------------------------- */
@@ -369,10 +369,10 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     one->turn = turn;
     one->own = own;
 }
-/* Largest number of contacts of a frame: the strongest. They take at most 18 bytes each. */
+/* Largest number of contacts in a frame. Each takes at most 18 bytes. */
 enum { DEMI_FILM_CONTACTS = 50000 };
-/* Appends the contacts, without those weaker than a hundredth of the strongest, which would be thin
-   lines. */
+/* Appends the contacts of a frame that records them. Leaves out forces below 1 % of the largest,
+   whose lines would be thin, and raises this limit until at most DEMI_FILM_CONTACTS are left. */
 static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     dem_world *w = r->world;
     const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;

@@ -28,8 +28,8 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     va_end(arguments);
 }
 
-/* Computes the sets of materials of grains, those of feeds included, and of walls: bit i is
-   material of index i. */
+/* Writes the sets of materials of grains (also of those that feeds will insert) and of walls. Bit i
+   is the material of index i. */
 static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
     int i, k;
     *grains = *walls = 0;
@@ -41,7 +41,7 @@ static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) 
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
 }
-/* Checks materials: values that suggest other units, materials without use; and the number of
+/* Checks materials (values that suggest other units, materials without use) and the number of
    threads. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
     uint64_t grains, walls;

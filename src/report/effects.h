@@ -13,7 +13,8 @@ enum { DEMI_EFFECT_TURNS = 41, DEMI_EFFECT_STEPS = 24 };
    touched). */
 typedef dem_effect_state (*demi_look_fn)(const dem_world *w, dem_effect *e);
 
-/* Writes e->text, and returns the state of an effect that the scene contains. */
+/* Writes e->text. Returns the state of an effect that the scene contains: active if it has
+   happened, else idle. */
 DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, const char *format,
                                                    ...) {
     va_list arguments;
@@ -22,6 +23,7 @@ DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, 
     va_end(arguments);
     return happened ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+/* Writes e->text for an effect that the scene does not contain, and returns that state. */
 static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
     demi_say(e, 0, "%s", why);
     return DEM_EFFECT_OFF;

@@ -260,7 +260,7 @@ static const demi_field_row demi_trials_rows[] = {
     DEMI_TRIED(observable_count, 'i', DEMI_FROM, DEM_OBSERVABLES, ""),
     DEMI_ROW_FREE(dem_trials_desc, observables), DEMI_ROW_FREE(dem_trials_desc, progress),
     DEMI_ROW_FREE(dem_trials_desc, user), DEMI_ROW_END};
-/* Returns DEM_OK if the desc is valid and the scene can be compared; otherwise fails. */
+/* Fails if the desc is not valid or the scene cannot be compared. */
 static dem_result demi_trials_check(dem_world *w, const dem_trials_desc *d) {
     const char *call = "dem_trials_run";
     const int lost = demi_body_lost(w);

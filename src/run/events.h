@@ -31,9 +31,10 @@ static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
         at = (at + 1) & mask;
     return e->table + at;
 }
-/* Returns the open contact of a key, -1 if there is none. Contacts are noted in nearly the order of
-   the last step. So the contacts of that step are tried first, from *next on: a few may have
-   ended. */
+/* Returns the index of the open contact with this key, -1 if there is none. Contacts are noted in
+   nearly the same order in every step. Therefore four contacts of the last step are tried first,
+   from number *next on, because some may have ended; the hash table finds the others. If one of the
+   four fits, *next becomes the number after it. */
 static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     const int32_t *last = e->order + !(e->turn & 1);
     int k;
@@ -44,7 +45,7 @@ static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
         }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
-/* Prefetches an open contact that a coming note is likely to belong to. */
+/* Prefetches the open contact that is needed some six notes later. */
 DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
     const int i = next + 6 < e->ordered ? e->order[2*(next + 6) + !(e->turn & 1)] : e->n.open;
     const char *at = (const char *)(e->open + i), *end = (const char *)(e->open + i + 1);
@@ -212,8 +213,8 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
 static void demi_event_regrow(const dem_world *w, demi_ongoing *o, double stored) {
     if (demi_member(w, 0)->stage.grown) o->work += stored;
 }
-/* Adds a noted contact to its open contact, which begins if there is none. *next: see
-   demi_event_find. Returns that contact, -1 if memory ran out. */
+/* Adds a noted contact to its open contact, which begins if there is none. *next: as for
+   demi_event_find. Returns the index of the open contact, -1 if memory ran out. */
 static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n, int *next) {
     demi_events *e = &w->events;
     const int later = !demi_response_is(w, DEMI_LASTING);

@@ -1,16 +1,21 @@
 /* ---------------------------------------------------------------------------------------------
    >>steering
-   New motions of walls, and new velocities of belts, during a run. After a change of the scene all
-   forces are computed again, from the velocities of the full step. A program that leads a wall
-   changes its motion at every step: that costs only the contacts of this wall, whose forces are
-   subtracted, and added again with the new velocity. This part writes motions of walls, and forces
-   and half-step velocities of grains at such a wall.
+   New motions of walls, and new velocities of belts, during a run. After most changes of the scene
+   the next step computes all forces again, from the velocities of the full step. A program that
+   leads a wall sets its motion at every step, or every few steps. To make this cheap, only forces
+   of contacts with this wall are computed again: those with the old velocity are subtracted from
+   the forces on grains, those with the new velocity are added. Sums thus differ by rounding. This
+   part writes the motions and surface velocities (`glide`, `glides`) of walls, and the forces and
+   half-step velocities of grains that touch such a wall.
    --------------------------------------------------------------------------------------------- */
 
-#define DEMI_LED 8.5               /* steps between two motions of a wall that a program leads */
+/* A program leads a wall if at most this number of steps lie between two motions: eight, and half a
+   step for rounding errors of times. */
+#define DEMI_LED 8.5
 
-/* Evaluates a tile of contacts with a wall and adds `sign` times their forces to the grains, whose
-   half-step velocities follow. Contact histories stay as they are. */
+/* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
+   and updates the half-step velocities of these grains. Contact histories do not change. Empties
+   the tile. */
 static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
     int q;
     demi_kept_tile_answer(w, r, t);
@@ -27,7 +32,7 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
     }
     t->count = t->lifted = t->shaped = 0;
 }
-/* Adds `sign` times the forces of all contacts of a wall to its grains. */
+/* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, 0);
@@ -44,9 +49,11 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
         if (tile.count) demi_steer_tile(w, &run, &tile, sign);
     }
 }
-/* Called before the velocity of a wall's surface changes, and after it. If all forces are valid,
-   those of the wall's contacts follow. Otherwise, with impulses, with rails, whose reactions depend
-   on these forces, and with numbers of bodies that a law exchanges, the next step computes all. */
+/* Call this before the velocity of a wall's surface changes, and demi_wall_changed after it. If the
+   forces are valid, the first call subtracts those of the wall's contacts and the second adds them
+   with the new velocity. Otherwise the next step computes all forces again. So it does with
+   impulses, with rails (their reactions depend on these forces) and with laws that exchange
+   user-defined numbers. */
 static void demi_wall_change(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
     if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
@@ -54,6 +61,7 @@ static void demi_wall_change(dem_world *w, int wall) {
         w->stage.forces_valid = w->stage.primed = 0;
     else demi_steer(w, wall, -1);
 }
+/* Call this after the velocity of a wall's surface has changed: see demi_wall_change. */
 static void demi_wall_changed(dem_world *w, int wall) {
     if (w->stage.forces_valid) demi_steer(w, wall, 1);
 }
@@ -81,16 +89,17 @@ DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_
     return DEM_OK;
 }
 
-/* True if a new motion of a wall does not ask for another time step: a wall that is slower than the
-   impacts that the step was chosen for, and that moves less than a tenth of the smallest radius in
-   a step. */
+/* True if the time step stays right for a wall with a new motion: the wall is not faster than the
+   impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
+   step. */
 static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
     const double v = demi_pose_speed(wall);
     return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
         (!(v > 0) || w->asked.dt > 0 || v <= w->clock.assumed_speed);
 }
-/* True if a program leads a wall: its motion was last set a few steps ago, and the new one starts
-   at the present pose, a rotation up to rounding errors. */
+/* True if a program leads a wall: its old motion `from` began at most DEMI_LED steps ago, or has
+   yet to begin, and the new motion starts exactly at the present pose. A new rotation may start
+   there with rounding errors. */
 static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_wall *to) {
     if (w->clock.time - from->motion.start > DEMI_LED*(double)w->clock.dt) return 0;
     return to->motion.kind == DEM_MOTION_ROTATING ||

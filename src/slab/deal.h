@@ -98,8 +98,8 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     return 1;
 }
 /* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
-   first slab of this process, null for that slab itself. If memory ran out, sets *ok to 0 and
-   returns null or an incomplete world. */
+   first slab of this process, null for that slab itself. *ok becomes 1; if memory ran out, it
+   becomes 0, and the function returns null or an incomplete world. */
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
                                   const dem_world *first, dem_allocator *allocator, int *ok) {
     dem_world_desc desc = from->asked;

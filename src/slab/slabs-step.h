@@ -75,7 +75,7 @@ static dem_result demi_slabs_agree(dem_world *h, double *flags, int count) {
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
                      "holds it has the message", index, dem_result_name_get(result));
 }
-/* Runs a phase, and returns a failure of any slab. */
+/* Runs a phase on all slabs. Returns DEM_OK, or the error of a slab that failed. */
 static dem_result demi_slabs_try(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
     demi_slabs_phase(s, phase);
     return demi_slabs_agree(&s->head, 0, 0);
