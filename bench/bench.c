@@ -314,9 +314,9 @@ static void effects(double load) {
 
 /* ---- what a contact with a wall costs ---- */
 
-/* Beads that slide slowly, none touching another: each on a bead of its own that is fixed (a pair), on a
-   floor as a plane, in a wide cylinder, and on the floor cut into more and more triangles. The time of the
-   same beads in the air is taken off. All worlds hold the fixed beads, out of reach where they carry none. */
+/* Beads slide slowly and do not touch each other. Each has one contact: with a fixed bead below it (a pair),
+   with a plane, with a wide cylinder, or with a floor of more and more triangles. The time of the same beads
+   without contacts is subtracted. All worlds have the fixed beads, out of reach unless they are the partners. */
 enum { WALLS_SIDE = 64, WALLS_BEADS = WALLS_SIDE*WALLS_SIDE };
 typedef enum walls_kind { WALLS_NONE, WALLS_PAIR, WALLS_PLANE, WALLS_CYLINDER, WALLS_MESH } walls_kind;
 static int walls_mesh(dem_world *world, dem_material glass, int n, double side) {

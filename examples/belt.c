@@ -22,7 +22,7 @@ int main(void) {
     const dem_wall belt = dem_wall_mesh_add(world, stone, &mesh);
     dem_wall_surface_velocity_set(world, belt, dem_vec3_make(V, 0, 0));
     dem_feed_add(world, &feed);
-    for (int k = 0; k < 2; k++) {                                   /* 1 s until as many leave as arrive; 1 s measured */
+    for (int k = 0; k < 2; k++) {                                   /* 1 s until as many leave as arrive; 1 s is measured */
         dem_wall_loads_reset(world, belt);
         if (dem_world_run(world, 1, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
     }

@@ -3,10 +3,12 @@
 
    Build:  cc -O2 -o hopper hopper.c ../dem.c -lm           (in the folder examples)
    Run:    cd data && ../hopper                             (the folder of hopper.stl)
-           ../hopper --resume continues from the last checkpoint. hopper.csv then has each line exactly once
-   Output: the mean discharge, its end included, beside Beverloo's formula 0.58 rho sqrt(g) (D - 1.4 d)^2.5 for the bulk
-           density rho at a solid fraction of 0.6. It holds for a flat bottom. For a cone Rose and Tanaka (The Engineer 208,
-           465, 1959; quoted from memory) multiply it by (tan a)^-0.35, with its half angle a, if grains stagnate at 45 degrees */
+           ../hopper --resume continues from the last checkpoint. hopper.csv then has each line exactly once.
+   Output: the mean discharge until the hopper is empty, beside Beverloo's formula 0.58 rho sqrt(g) (D - 1.4 d)^2.5. D is the
+           diameter of the mouth, d that of the grains, and rho the bulk density at a solid fraction of 0.6. The formula
+           holds for a flat bottom. For a cone of half angle a, Rose and Tanaka (The Engineer 208, 465, 1959; quoted from
+           memory) multiply it by (tan a tan b)^-0.35, where b is the angle of the stagnant zone, 45 degrees here. The
+           program fails if the two differ by more than 20 % */
 #include "../dem.h"
 #include <math.h>
 #include <string.h>
@@ -35,7 +37,7 @@ int main(int argc, char **argv) {
     if (result == DEM_OK) result = dem_world_run_to(world, 1, dem_progress_print, stderr);
     if (result != DEM_OK) puts(dem_world_error_get(world));
     dem_replay_close(replay);
-    dem_outlet_get(world, outlet, &out);                            /* D - 1.4 d: a mouth of 17.6 mm, a mean diameter of 2.8 mm */
+    dem_outlet_get(world, outlet, &out);                            /* D = 17.6 mm, d = 2.8 mm on average, tan a = 16/30 */
     const double flow = out.total_mass/(out.last - out.since), formula = 0.58*0.6*2600*sqrt(9.81)*pow(0.01368, 2.5)*pow(16/30.0, -0.35);
     printf("mean discharge %.4f kg/s, by the formula %.4f kg/s\n", flow, formula);
     dem_world_report(world, stdout);

@@ -3,7 +3,7 @@
    Build:  cc -O2 -o mixer mixer.c ../dem.c -lm             (in the folder examples)
    Run:    cd data && ../mixer                              (the folder of impeller.stl)
    Output: mixer.csv, the Lacey index over time: 0 for two layers, 1 for a random mixture; mixer.html, a replay.
-           The power of the impeller is torque times speed. Within 3 % it is what the contacts dissipate */
+           The power of the impeller is torque times speed. It agrees within 3 % with the power lost in contacts */
 #include "../dem.h"
 #include <math.h>
 
@@ -30,7 +30,7 @@ int main(void) {
     dem_output_add(world, &lines);
     dem_replay *replay = dem_replay_open(world, "mixer.html", &replay_desc);
     dem_mixing mixing[2]; dem_ledger ledger[2]; dem_wall_loads loads;
-    for (int k = 0; k < 2; k++) {                                   /* to full speed; four turns */
+    for (int k = 0; k < 2; k++) {                                   /* until full speed; four turns */
         dem_wall_loads_reset(world, impeller);
         if (result == DEM_OK) result = dem_world_run(world, k ? 4*turn : start, dem_progress_print, stderr);
         dem_mixing_get(world, &lines.mixing, mixing + k), ledger[k] = dem_ledger_get(world), dem_wall_loads_get(world, impeller, &loads);

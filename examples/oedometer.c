@@ -1,10 +1,10 @@
-/* oedometer.c - uniaxial compression of a bed by a servo wall: stress over strain, and the stiffness in small unloadings
+/* oedometer.c - uniaxial compression of a sample by a servo wall: stress over strain, and the stiffness in small unloadings
    beside the effective medium of spheres with Hertz-Mindlin contacts.
    Build: cc -O2 -I. -o oedometer examples/oedometer.c dem.c -lm       Run: ./oedometer [--out build/out/oedometer]
 
-   The sides are periodic: an oedometer without wall friction. The lid follows a table of stresses. It loads to a level,
-   waits, unloads by 5 %, waits, loads again and goes on to the next level; at last it unloads to the first one. The
-   stiffness at a level is the change of stress over the change of strain in its small unloading.
+   The sides are periodic: an oedometer without wall friction, and without gravity. The lid follows a table of stresses. It
+   loads to a level, waits, unloads by 5 %, waits, loads again and goes on to the next level; at last it unloads to the first
+   one. The stiffness at a level is the change of stress over the change of strain in its small unloading.
    Walton, J. Mech. Phys. Solids 35:213 (1987), derives the moduli of a random packing of solid fraction s with Z contacts
    per grain at the pressure P, for grains that move with the mean strain; all grow as P^(1/3). Grains that move freely make
    the packing softer, above all in shear: Makse et al., Phys. Rev. Lett. 83:5070 (1999). */
@@ -32,7 +32,7 @@ int main(int argc, char **argv) {
     dem_world *world = sample_make(600, YOUNG, 0.3, 1, &glass);
     const dem_vec3 box = dem_world_desc_get(world).domain.hi;
     const dem_wall lid = {2};                                       /* the upper one */
-    rows[0].load = (dem_real)level[0];                              /* until the lid bears it: 0.2 s */
+    rows[0].load = (dem_real)level[0];                              /* in the first 0.2 s the lid moves until the grains bear it */
     for (int r = 1; r < ROWS; r++) {
         rows[r].time = rows[r - 1].time + (r == 1 ? 0.2 : r == ROWS - 1 ? 0.1 : seconds[(r - 1)%5]);
         rows[r].load = (dem_real)(r == ROWS - 1 ? level[0] : share[(r - 1)%5]*level[(r - 1)/5]);
@@ -78,6 +78,6 @@ int main(int argc, char **argv) {
     study_result("strain_left", strain[SAMPLES - 1], "%");
     study_result("modulus", measured[LEVELS - 1], "MPa at the largest load");
     study_result("medium", theory[LEVELS - 1], "MPa, effective medium");
-    study_result("exponent", log(measured[LEVELS - 1]/measured[3])/log(mean[LEVELS - 1]/mean[3]), "of modulus over mean stress, 10 to 100 kPa");
+    study_result("exponent", log(measured[LEVELS - 1]/measured[3])/log(mean[LEVELS - 1]/mean[3]), "of modulus over mean stress, at lid stresses of 10 to 100 kPa");
     return study_end();
 }

@@ -1,9 +1,9 @@
 /* screen.c - a vibrating screen that slopes down: which fraction of each size passes, and how many grains blind it.
    Build: cc -O2 -I. -o screen examples/screen.c dem.c -lm       Run: ./screen
 
-   A plate with square holes of 6 mm oscillates across itself by 1 mm at 25 Hz. The axes slope with it by 0.25 rad, so that
-   gravity has a part along x. Each grain of the feed passes, leaves at the lower end or is still there: the counts agree.
-   No grain larger than a hole passes; of the others the smaller a grain is, the sooner. */
+   A plate with square holes of 6 mm oscillates along its normal with an amplitude of 1 mm at 25 Hz. It slopes by 0.25 rad.
+   The axes slope with it, so gravity has a component along x. Each grain of the feed passes, leaves at the lower end or is
+   still there, and the counts add up. No grain larger than a hole passes. Smaller grains pass in larger fractions. */
 #include "dem.h"
 #include <math.h>
 
@@ -11,7 +11,7 @@ enum { SIZES = 4, EACH = 200 };
 int main(void) {
     const double L = 0.45, W = 0.04, slope = 0.25;                                          /* m, m, rad */
     const dem_world_desc desc = {.gravity = {9.81*sin(slope), 0, -9.81*cos(slope)}, .domain = {{-1, 0, -1}, {1, W, 1}},
-        .boundary = {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_PERIODIC}};                            /* a part of a wide screen */
+        .boundary = {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_PERIODIC}};                            /* a strip of a wide screen */
     const dem_material_desc gravel = {.density = 2500, .young = 5e6, .restitution = 0.4, .friction = 0.5, .rolling_friction = 0.05};
     const dem_motion shaking = {.kind = DEM_MOTION_OSCILLATING, .velocity = {0, 0, 1}, .amplitude = 1e-3, .frequency = 25};
     const dem_sieve_desc plate = {.kind = DEM_SIEVE_SQUARE, .aperture = 6e-3, .bar = 2e-3};
