@@ -153,7 +153,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
-    TEST("a cluster of one sphere whose mass is off its centre is hit as a body, not as a lone sphere") {
+    TEST("a hit spins a cluster of one sphere whose centre of mass is off its centre by J c/I") {
         const double r = 1e-3, c = 3e-4, e = 0.6, speed = 0.1, V = 4.18879*r*r*r, moment = 0.5*V*r*r;
         const dem_real centre[3] = {0};
         dem_world_desc desc = DEM_WORLD_DESC;

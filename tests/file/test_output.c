@@ -307,7 +307,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
         remove(d.path);
     }
-    TEST("a scheduled CSV has the counts of an outlet: grains and masses that it removed") {
+    TEST("a scheduled CSV file of an outlet has the grains and masses that it has removed") {
         dem_world *world = heap();
         dem_outlet_desc mouth = DEM_OUTLET_DESC;
         dem_outlet_state state;

@@ -749,7 +749,7 @@ def _():
     same(os.path.getsize(os.path.join(WORK.name, "drum.html")) > 10000, True, "replay")
 
 
-@test("the drag of a belt driven from Python is the mass flow times its speed within 2 %, and the power drag times speed")
+@test("a belt in Python: drag is mass flow times speed within 2 %, power is drag times speed")
 def _():
     result = subprocess.run([sys.executable, "-B", os.path.join(PYTHON, "belt.py")], capture_output=True, text=True, cwd=WORK.name)
     rows = re.findall(r"^([\d.]+) m/s: drag ([\d.]+) N, mass flow times speed ([\d.]+) N, power ([\d.]+) W$", result.stdout, re.M)

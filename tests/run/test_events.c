@@ -5,8 +5,8 @@
 #include "../test.h"
 #include "../scene.h"
 
-/* Writes the walls for ParaView. Returns in how many of the n triangles of the wall `sliding` is not `facet`; -1: the file has
-   no such column. */
+/* Writes the walls for ParaView. Returns the number of triangles, of the n of the wall, in which `sliding` is not `facet`; -1
+   if the file has no such column, -2 if there is no file. */
 static int wall_column(dem_world *world, dem_wall wall, const double *facet, int n) {
     const char *mark = "<AppendedData encoding=\"raw\">\n_", *points, *data = 0;
     static char text[100000];

@@ -5,7 +5,7 @@
 #include "../scene.h"
 
 static const int fine = sizeof(dem_real) == 8;       /* double precision */
-enum { PLANE, MESH, DISCS, LAW, WALLS };             /* the last two: a planar world, a law by pointer */
+enum { PLANE, MESH, DISCS, LAW, WALLS };             /* DISCS: a planar world; LAW: a law by pointer */
 enum { SLIDES, TURNS, BELT, MOTIONS };
 static long called;                                  /* calls of the law */
 static void counted(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
@@ -14,7 +14,7 @@ static void counted(const dem_contact *c, dem_real *memory, dem_contact_force *f
     f->normal = DEM_R(1e3)*c->overlap + DEM_R(0.02)*c->closing_speed;
     f->tangent = demi_scale(c->slip, DEM_R(-0.01));
 }
-/* A heap of grains of four shapes, or of discs, that falls on a floor. */
+/* A heap of discs (DISCS) or of grains of four shapes that falls on a floor. */
 static dem_world *heap(int wall, int threads, dem_wall *floor) {
     const dem_real pair[6] = {DEM_R(-5e-4), 0, 0, DEM_R(5e-4), 0, 0};
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -53,6 +53,7 @@ static dem_world *heap(int wall, int threads, dem_wall *floor) {
         : dem_wall_plane_add(world, m, at(0, 0, 0), wall == DISCS ? at(0, 1, 0) : at(0, 0, 1));
     return world;
 }
+/* Sets the motion of the floor, or its surface velocity (BELT). speed: m/s. */
 static dem_result lead(dem_world *world, dem_wall floor, int motion, int planar, double speed) {
     dem_motion m = DEM_MOTION;
     if (motion == BELT) return dem_wall_surface_velocity_set(world, floor, at(speed, 0, 0));
@@ -63,7 +64,7 @@ static dem_result lead(dem_world *world, dem_wall floor, int motion, int planar,
     m.speed = (dem_real)(50*speed);
     return dem_wall_motion_set(world, floor, &m);
 }
-/* Largest difference of two arrays of n vectors over the largest number of the first. */
+/* Returns the largest difference of two arrays of n vectors over the largest number of the first. */
 static double apart(const dem_real *a, const dem_real *b, int n) {
     double most = 0, off = 0;
     int i;
@@ -74,6 +75,7 @@ static double apart(const dem_real *a, const dem_real *b, int n) {
     }
     return off/most;
 }
+/* Computes all forces and half-step velocities again. */
 static void all_again(dem_world *world) {
     world->stage.forces_valid = 0;
     CHECK_EQ(demi_refresh(world), DEM_OK);
@@ -83,7 +85,7 @@ static void all_again(dem_world *world) {
 int main(int argc, char **argv) {
     int wall, motion;
     test_begin(argc, argv);
-    TEST("a new speed of a wall changes the forces on all shapes as if all contacts were evaluated again") {
+    TEST("a new wall speed changes forces on all shapes as if all contacts were evaluated again") {
         for (wall = 0; wall < WALLS; wall++)
             for (motion = 0; motion < MOTIONS; motion++) {
                 dem_wall floor;
@@ -110,7 +112,7 @@ int main(int argc, char **argv) {
                 memcpy(half + 4*count, world->bodies.half_spin, n);
                 CHECK(apart(before, after, 2*count) > 1e-3);
                 all_again(world);
-                /* round-off: a force is taken off and added */
+                /* round-off, because forces are subtracted and added */
                 CHECK_NEAR(apart(world->bodies.force, after, count), 0, fine ? 1e-12 : 1e-4);
                 CHECK_NEAR(apart(world->bodies.torque, after + 4*count, count), 0, fine ? 1e-12 : 1e-4);
                 CHECK_NEAR(apart(world->bodies.half_vel, half, count), 0, fine ? 1e-12 : 1e-4);
@@ -119,7 +121,7 @@ int main(int argc, char **argv) {
                 dem_world_destroy(world);
             }
     }
-    TEST("a wall led at every step calls a law three times per contact with the wall and once per other contact") {
+    TEST("a wall led at every step calls a law 3 times per wall contact, once per other contact") {
         for (motion = 0; motion < MOTIONS; motion++) {
             dem_wall floor;
             dem_world *world = heap(LAW, 1, &floor);
@@ -140,7 +142,7 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("a led wall has the same bits on any number of threads and after a restart") {
+    TEST("a led wall gives the same bits for any number of threads and after a restart") {
         for (motion = 0; motion < MOTIONS; motion++) {
             uint64_t hash[3];
             int way, k;
