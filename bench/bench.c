@@ -3,16 +3,16 @@
    make bench                    all of it in under three minutes, in double, in single and built with -O2
    build/bench --scene bed       one scene: rate, threads, memory, ledger
    build/bench --scene effects   what effects, laws, searches and integrators cost, present and absent; --effect NAME
-   build/bench --scene walls     what a contact with a wall costs, beside one of two beads and against facets per grain
-   build/bench --scene sizes     what a grain costs among much larger ones, by levels and on one grid
-   build/bench --settle bed      makes a start state anew (minutes), as build/out/bench/bed_20k.txt
+   build/bench --scene walls     cost of a contact with a wall, relative to one of two beads and over facets per grain
+   build/bench --scene sizes     cost of a grain among much larger ones, by levels and on one grid
+   build/bench --settle bed      computes a start state again (minutes): build/out/bench/bed_20k.txt
 
-   Wall time of loops of steps after 100 untimed ones; what is compared runs in turns, A B A B, and
-   medians are told, with half the range beside them. Ratios need a quiet machine: `spread` says how
-   quiet it was. --cpu counts processor time instead, for looking at one thread while others work. */
+   The program measures the wall time of loops of steps after 100 untimed ones. Variants run in turns, A B A B. It prints
+   medians and half the range. Ratios need a quiet machine: `spread` shows how quiet it was. With --cpu it measures
+   processor time, for one thread on a busy machine. */
 #include "dem.h"
 #include <math.h>
-/* Hertz with a spring of Cundall and Strack as one would write it down, for what a law of one's own costs: called by
+/* Hertz with a spring of Cundall and Strack, written as a user would, to measure the cost of a user-defined law: called by
    pointer, and named by DEM_LAW. */
 DEM_INLINE void bench_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real d = c->overlap > 0 ? c->overlap : 0;

@@ -77,7 +77,7 @@ typedef struct bench_choice {
     int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere; 3: the same,
                                    its centre of mass 1e-6 radii off; 4: spheres, except the last, a cluster */
     int cuts;                   /* parts of each side of DRUM's triangles: cuts^2 triangles each; 0 or 1: one */
-    dem_law_fn law;             /* a law of one's own: 3 reals, 1 vector                        */
+    dem_law_fn law;             /* a user-defined law: 3 reals, 1 vector                        */
     dem_law_rows_fn rows;       /* the same for rows of contacts                                */
     double range;               /* its range, in radii                                          */
     int who;                    /* 1: it asks who touches                                       */

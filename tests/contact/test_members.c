@@ -219,7 +219,7 @@ int main(int argc, char **argv) {
                 desc.skin = DEM_R(2e-4);        /* chosen, it depends on how long lists last */
                 w = heap(desc, kinds, 60);
                 for (k = 0; k < 6000; k++) {
-                    if (how == 2) w->margin.span = 0;           /* the pruned list is made anew */
+                    if (how == 2) w->margin.span = 0;           /* the pruned list is rebuilt */
                     if (how == 3 && k == 3000) {
                         dem_world *again = heap(desc, kinds, 60);
                         CHECK_EQ(dem_checkpoint_write(w, "build/tmp/members.dem"), DEM_OK);

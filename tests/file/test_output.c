@@ -436,7 +436,7 @@ int main(int argc, char **argv) {
         for (k = 0; k <= 10; k++) CHECK_EQ(parts[k], k >= 4 && k <= 6 ? 2 : 1);
         dem_world_destroy(a);
         dem_world_destroy(b);
-        /* the program run again from its beginning writes its files anew */
+        /* the program, run again from its beginning, writes its files again */
         a = scheduled("whole", whole);
         CHECK_EQ(dem_world_run_to(a, 0.05, 0, 0), DEM_OK);
         CHECK_EQ(file_lines("whole", ".csv"), 1 + 8);

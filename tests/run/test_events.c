@@ -32,7 +32,7 @@ static int wall_column(dem_world *world, dem_wall wall, const double *facet, int
     }
     return other;
 }
-/* What a run has told. */
+/* Events that a run has reported. */
 typedef struct stream {
     dem_event last, fast;          /* the last one that ended; the one that began fastest */
     int begun, ended, open, cut, unordered;
@@ -171,7 +171,7 @@ static dem_world *soup(int kind, int threads, scene_memory *memory) {
         }
     return world;
 }
-/* Runs a soup and returns what was told. */
+/* Runs a soup and returns the events that it reported. */
 static stream run(int kind, int threads, int steps) {
     dem_world *world = soup(kind, threads, 0);
     stream s;
@@ -372,7 +372,7 @@ int main(int argc, char **argv) {
             b = impacts_of(again, 1, 2);
             CHECK(a.ended > 0 && !memcmp(&a, &b, sizeof a));
             check_sum(again, exact);
-            /* a recording that the file does not have begins anew */
+            /* a recording that the file does not have begins again */
             dem_events_stop(world);
             CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
             CHECK_EQ(dem_checkpoint_read(again, path), DEM_OK);
