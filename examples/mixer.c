@@ -41,5 +41,5 @@ int main(void) {
     printf("Lacey index: %.2f, after four turns %.2f\n", mixing[0].lacey, mixing[1].lacey);
     printf("torque: %.4f N m; power: %.4f W, dissipated in contacts %.4f W\n", power/speed, power, dissipated);
     dem_world_destroy(world);
-    return fabs(power/dissipated - 1) > 0.03 || mixing[1].lacey < 0.7;
+    return !(fabs(power/dissipated - 1) < 0.03 && mixing[1].lacey > 0.7);
 }

@@ -49,20 +49,20 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
         if (tile.count) demi_steer_tile(w, &run, &tile, sign);
     }
 }
-/* Call this before the velocity of a wall's surface changes, and demi_wall_changed after it. If the
+/* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the
    forces are valid, the first call subtracts those of the wall's contacts and the second adds them
    with the new velocity. Otherwise the next step computes all forces again. So it does with
    impulses, with rails (their reactions depend on these forces) and with laws that exchange
    user-defined numbers. */
-static void demi_wall_change(dem_world *w, int wall) {
+static void demi_wall_before(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
     if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
         !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
         w->stage.forces_valid = w->stage.primed = 0;
     else demi_steer(w, wall, -1);
 }
-/* Call this after the velocity of a wall's surface has changed: see demi_wall_change. */
-static void demi_wall_changed(dem_world *w, int wall) {
+/* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
+static void demi_wall_after(dem_world *w, int wall) {
     if (w->stage.forces_valid) demi_steer(w, wall, 1);
 }
 
@@ -80,10 +80,10 @@ DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
                          "%d has the z component %g m/s, must be 0 in a planar world, where no "
                          "grain moves along z", (int)id.id, (double)velocity.z);
-    demi_wall_change(w, i);
+    demi_wall_before(w, i);
     wall->glide = demi_unrotate(wall->pose.rotation, velocity);
     wall->glides = demi_dot(velocity, velocity) > 0;
-    demi_wall_changed(w, i);
+    demi_wall_after(w, i);
     demi_built(w, "dem_wall_surface_velocity_set");
     if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
     return DEM_OK;
@@ -130,9 +130,9 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (!alone) demi_surfaces_outdated(w);
     if (!alone || !demi_wall_led(w, &w->walls[i], &next))
         w->stage.forces_valid = w->stage.primed = 0;
-    demi_wall_change(w, i);
+    demi_wall_before(w, i);
     w->walls[i] = next;
-    demi_wall_changed(w, i);
+    demi_wall_after(w, i);
     demi_built(w, "dem_wall_motion_set");
     if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
     return DEM_OK;

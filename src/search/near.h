@@ -505,15 +505,15 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
 static void demi_near_lone_first(dem_world *w, const demi_list *list, int d, int first, int end) {
     const int at = d*w->near.stride;
     int32_t *column[3], *aside = w->near.hit + at;
-    int e, p, lone, left;
+    int e, p, others, left;
     column[0] = w->near.ball_a + at; column[1] = w->near.ball_b + at; column[2] = w->near.k + at;
     for (e = 0; e < 3; e++) {                   /* k last, because the test reads it */
-        for (p = left = first, lone = 0; p < end; p++) {
+        for (p = left = first, others = 0; p < end; p++) {
             const int k = w->near.k[at + p], value = column[e][p];
             if (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])) column[e][left++] = value;
-            else aside[lone++] = value;
+            else aside[others++] = value;
         }
-        for (p = 0; p < lone; p++) column[e][left + p] = aside[p];
+        for (p = 0; p < others; p++) column[e][left + p] = aside[p];
     }
 }
 /* Returns the entry in the previous list of the pair of spheres at index `at` of the present one,
