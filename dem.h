@@ -6798,11 +6798,11 @@ static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
         other = i < 0 ? DEMI_BALL : i < w->shape_count ? w->shapes[i].kind : kind;
         if (demi_listed(demi_shape_rows[DEMI_MAX(kind, other)].touch, DEMI_MIN(kind, other)))
             continue;
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts between shape %d, a%s %s, and shape %d, "
-                  "a%s %s, are not available, so a world can hold only one of the two; nothing "
-                  "was added", call, w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
-                  demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
-                  demi_shape_rows[other].name);
+        demi_refuse(w, call, "contacts between shape %d, a%s %s, and shape %d, a%s %s, are not "
+                    "available, so a world can hold only one of the two; nothing was added",
+                    w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
+                    demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
+                    demi_shape_rows[other].name);
         return 1;
     }
     return 0;
@@ -6826,21 +6826,21 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
 /* Returns 1 with an error message in a planar world, which has no shapes of three dimensions. */
 static int demi_shape_planar(dem_world *w, const char *call) {
     if (!w->desc.planar) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar and holds only discs and polygons; "
-              "set planar to 0, or use discs and dem_shape_polygon_add", call);
+    demi_refuse(w, call, "the world is planar and holds only discs and polygons; set planar to 0, "
+                "or use discs and dem_shape_polygon_add");
     return 1;
 }
 
 DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
-    if (demi_null(w, "dem_shape_ellipsoid_add", w, "world")) return demi_no_shape;
+    if (demi_null(w, __func__, w, "world")) return demi_no_shape;
     demi_shape shape;
     const double lo = (double)DEMI_MIN(a.x, DEMI_MIN(a.y, a.z));
     const double hi = (double)DEMI_MAX(a.x, DEMI_MAX(a.y, a.z));
-    if (demi_shape_planar(w, "dem_shape_ellipsoid_add")) return demi_no_shape;
+    if (demi_shape_planar(w, __func__)) return demi_no_shape;
     if (!demi_finite3(a) || !(lo > 0) || !(hi <= 1000.001*lo)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_ellipsoid_add: semi-axes are %g, %g and %g m, "
-                  "must be > 0 and the longest at most 1000 times the shortest; give half "
-                  "lengths, in metres", (double)a.x, (double)a.y, (double)a.z);
+        demi_refuse(w, __func__, "semi-axes are %g, %g and %g m, must be > 0 and "
+                    "the longest at most 1000 times the shortest; give half lengths, in metres",
+                    (double)a.x, (double)a.y, (double)a.z);
         return demi_no_shape;
     }
     memset(&shape, 0, sizeof shape);
@@ -6850,7 +6850,7 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     shape.inertia = demi_v((a.y*a.y + a.z*a.z)/5, (a.x*a.x + a.z*a.z)/5, (a.x*a.x + a.y*a.y)/5);
     shape.frame = dem_quat_make(1, 0, 0, 0);
     demi_ellipsoid_bounds(&shape);
-    return demi_shape_adopt(w, "dem_shape_ellipsoid_add", &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 /* True if no two spheres of a cluster overlap, so that no volume counts twice. */
@@ -6903,23 +6903,22 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
     int i;
     if (desc->count < 1 || desc->count > 1000 || !desc->positions || desc->rays < 0 ||
         desc->rays > 4096 || (desc->rays > 0 && desc->rays < 16)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and rays is %d; count must be 1 to 1000 "
-                  "with positions (count x 3), rays 0 or 16 to 4096", call, desc->count,
-                  desc->rays);
+        demi_refuse(w, call, "count is %d and rays is %d; count must be 1 to 1000 with positions "
+                    "(count x 3), rays 0 or 16 to 4096", desc->count, desc->rays);
         return 0;
     }
     for (i = 0; i < desc->count; i++) {
         const dem_real r = desc->radii ? desc->radii[i] : desc->radius;
         if (demi_finite(r) && r > 0 && demi_place(demi_at(desc->positions + 3*i))) continue;
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g) m; the "
-                  "radius must be > 0 and finite, coordinates at most 1e15 m; fill in radii or "
-                  "radius", call, i, (double)r, (double)desc->positions[3*i],
-                  (double)desc->positions[3*i + 1], (double)desc->positions[3*i + 2]);
+        demi_refuse(w, call, "sphere %d has radius %g m at (%g, %g, %g) m; the radius must be > 0 "
+                    "and finite, coordinates at most 1e15 m; fill in radii or radius", i, (double)r,
+                    (double)desc->positions[3*i], (double)desc->positions[3*i + 1],
+                    (double)desc->positions[3*i + 2]);
         return 0;
     }
     if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: mass is %d, must be a DEM_CLUSTER_ value; start from "
-                  "DEM_CLUSTER_DESC", call, (int)desc->mass);
+        demi_refuse(w, call, "mass is %d, must be a DEM_CLUSTER_ value; start from "
+                    "DEM_CLUSTER_DESC", (int)desc->mass);
         return 0;
     }
     if (desc->mass != DEM_CLUSTER_GIVEN) return 1;
@@ -6927,10 +6926,9 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per "
-              "density); all must be > 0, no moment above the sum of the other two, and the "
-              "centre within 1e15 m", call, (double)desc->volume, (double)I[0], (double)I[1],
-              (double)I[2]);
+    demi_refuse(w, call, "volume is %g m3, moments are %g, %g, %g m5 (per density); all must be > "
+                "0, no moment above the sum of the other two, and the centre within 1e15 m",
+                (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
     return 0;
 }
 /* Returns 1 with an error message if the rays are so far apart that they may miss a sphere. */
@@ -6947,14 +6945,13 @@ static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const
                 side = DEMI_MAX(side, to - (double)(shape->parts[4*j + e] - shape->parts[4*j + 3]));
             }
     if (side/rays <= (double)least/4) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so rays are %.3g m "
-              "apart, more than a quarter of the smallest radius, %g m; set rays to %.0f or more, "
-              "at most 4096, or give the moments", rays, side/rays, (double)least,
-              ceil(4*side/(double)least));
+    demi_refuse(w, "dem_shape_cluster_add", "rays is %d, so rays are %.3g m apart, more than a "
+                "quarter of the smallest radius, %g m; set rays to %.0f or more, at most 4096, or "
+                "give the moments", rays, side/rays, (double)least, ceil(4*side/(double)least));
     return 1;
 }
 DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *desc) {
-    if (demi_null(w, "dem_shape_cluster_add", desc, "desc")) return demi_no_shape;
+    if (demi_null(w, __func__, desc, "desc")) return demi_no_shape;
     demi_shape shape;
     demi_moments m;
     dem_shape none;
@@ -6962,12 +6959,12 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
     int i;
     none.id = 0;
-    if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
+    if (demi_shape_planar(w, __func__) || !demi_cluster_check(w, desc)) return none;
     memset(&shape, 0, sizeof shape);
     shape.kind = DEMI_BALL;
     shape.count = desc->count;
     shape.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)shape.count, sizeof(dem_real));
-    if (!shape.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
+    if (!shape.parts) { demi_no_memory(w, __func__); return none; }
     /* relative to the first sphere, for precision */
     if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
     for (i = 0; i < shape.count; i++) {
@@ -6978,15 +6975,15 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     if (demi_cluster_coarse(w, desc, &shape, least)) { demi_shape_free(w, &shape); return none; }
     if (!demi_cluster_moments(w, desc, &shape, &m)) {
         demi_shape_free(w, &shape);
-        demi_no_memory(w, "dem_shape_cluster_add");
+        demi_no_memory(w, __func__);
         return none;
     }
     demi_shape_principal(&shape, &m);
     if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0)) {
         demi_shape_free(w, &shape);
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of inertia is "
-                  "not > 0; %s", desc->mass == DEM_CLUSTER_GIVEN
-                  ? "the given off-diagonal moments are too large" : "use more rays");
+        demi_refuse(w, __func__, "a principal moment of inertia is not > 0; %s",
+                    desc->mass == DEM_CLUSTER_GIVEN ? "the given off-diagonal moments are too large"
+                    : "use more rays");
         return none;
     }
     for (i = 0; i < shape.count; i++)
@@ -6996,15 +6993,15 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     shape.lone = shape.count == 1 && !(demi_length(demi_at(shape.parts)) > 0);
     shape.centre = demi_add(shape.centre, about);
     demi_cluster_bounds(&shape);
-    return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 /* Returns the index of a shape, or -1 with an error message. */
 static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
     if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
-              "dem_shape_ellipsoid_add and the like and check the id that this returns", call,
-              (int)shape.id, w->shape_count);
+    demi_refuse(w, call, "shape %d does not exist, there are %d; add it with "
+                "dem_shape_ellipsoid_add and the like and check the id that this returns",
+                (int)shape.id, w->shape_count);
     return -1;
 }
 /* Returns the semi-axes, m, of the ellipsoid with the same moments of inertia. */
@@ -7016,8 +7013,8 @@ static dem_vec3 demi_shape_alike(const demi_shape *s) {
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
 }
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
-    if (demi_null_look(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_shape_index((dem_world *)world, "dem_shape_get", shape);
+    if (demi_null_look(world, __func__, info, "info")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_shape_index((dem_world *)world, __func__, shape);
     const demi_shape *s;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     s = &world->shapes[i];
@@ -7883,10 +7880,10 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
             const int in = a == b ? 0 : demi_shells_inside(c, s, a, b);
             if (in < 0) {
                 x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
-                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
-                          "begins at (%g, %g, %g) m), must be apart or one inside the other; "
-                          "unite them in the program that exported them, or pass them as separate "
-                          "meshes", call, x.x, x.y, x.z);
+                demi_refuse(w, call, "two closed shells of the mesh cross (one begins at (%g, %g, "
+                            "%g) m), must be apart or one inside the other; unite them in the "
+                            "program that exported them, or pass them as separate meshes", x.x, x.y,
+                            x.z);
                 return 0;
             }
             s->depth[a] += in;
@@ -7897,10 +7894,9 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
                 s->around[a] = b;
         if (s->around[a] < 0 || s->volume[a]*s->volume[s->around[a]] < 0) continue;
         x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
-                  "lies inside another and faces the same way, must face the other way to be a "
-                  "cavity; reverse its triangles, or leave it out if it is a second body", call,
-                  x.x, x.y, x.z);
+        demi_refuse(w, call, "the shell of the mesh that begins at (%g, %g, %g) m lies inside "
+                    "another and faces the same way, must face the other way to be a cavity; "
+                    "reverse its triangles, or leave it out if it is a second body", x.x, x.y, x.z);
         return 0;
     }
     return 1;
@@ -7917,18 +7913,18 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     x = demi_mesh_corner(c->mesh, side/3, side%3);
     if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
         if (c->twisted)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is one-sided, as a Moebius strip is "
-                      "(no winding fits at %d edges), so it has no inside; repair it in the "
-                      "program that exported it", call, c->twisted);
+            demi_refuse(w, call, "the mesh is one-sided, as a Moebius strip is (no winding fits at "
+                        "%d edges), so it has no inside; repair it in the program that exported it",
+                        c->twisted);
         else if (loose)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or has more than "
-                      "two triangles there (first near (%.4g, %.4g, %.4g) m), so it has no "
-                      "inside; close it in the program that exported it (dem_mesh_health counts "
-                      "such edges)", call, loose, x.x, x.y, x.z);
+            demi_refuse(w, call, "the mesh is open at %d edges, or has more than two triangles "
+                        "there (first near (%.4g, %.4g, %.4g) m), so it has no inside; close it in "
+                        "the program that exported it (dem_mesh_health counts such edges)", loose,
+                        x.x, x.y, x.z);
         else
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
-                      "%d; if it holds several bodies, pass them as separate meshes", call,
-                      c->shells, (int)DEMI_CLOSED_SHELLS);
+            demi_refuse(w, call, "the mesh has %d closed shells, must have 1 to %d; if it holds "
+                        "several bodies, pass them as separate meshes", c->shells,
+                        (int)DEMI_CLOSED_SHELLS);
         return 0;
     }
     memset(&s, 0, sizeof s);
@@ -8283,22 +8279,22 @@ static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, do
         if (faces && faces <= DEM_POLYHEDRON_FACES) break;
     }
     if (faces < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d points lie in one plane within %.1g m; a "
-                  "polyhedron needs four points that do not", call, h->count, h->near);
+        demi_refuse(w, call, "the %d points lie in one plane within %.1g m; a polyhedron needs "
+                    "four points that do not", h->count, h->near);
     else if (faces > DEM_POLYHEDRON_FACES)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points has more than %d faces; "
-                  "give fewer points, or use an ellipsoid or a cluster of spheres for a round body",
-                  call, h->count, DEM_POLYHEDRON_FACES);
+        demi_refuse(w, call, "the hull of the %d points has more than %d faces; give fewer points, "
+                    "or use an ellipsoid or a cluster of spheres for a round body", h->count,
+                    DEM_POLYHEDRON_FACES);
     else if (!faces)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points does not close, likely "
-                  "because many points lie nearly, but not exactly, in one plane or on one line; "
-                  "give only the corners", call, h->count);
+        demi_refuse(w, call, "the hull of the %d points does not close, likely because many points "
+                    "lie nearly, but not exactly, in one plane or on one line; give only the "
+                    "corners", h->count);
     if (faces < 1 || faces > DEM_POLYHEDRON_FACES) return 0;
     demi_polyhedron_moments(h->x, rim, faces, &m);
     demi_shape_principal(shape, &m);
     if (!(shape->inertia.x > 0 && shape->inertia.y > 0 && shape->inertia.z > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points is so flat that its volume "
-                  "is %.2g m3; give it some thickness", call, h->count, shape->volume);
+        demi_refuse(w, call, "the hull of the %d points is so flat that its volume is %.2g m3; "
+                    "give it some thickness", h->count, shape->volume);
         return 0;
     }
     shape->faces = faces;
@@ -8321,16 +8317,15 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     demi_d3 *x;
     int i, made = 0;
     if (count < 4 || count > 10000 || !points) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
-                  "3)", call, count);
+        demi_refuse(w, call, "count is %d, must be 4 to 10000 with points (count x 3)", count);
         return 0;
     }
     lo = hi = demi_at(points);
     for (i = 0; i < count; i++) {
         const dem_vec3 p = demi_at(points + 3*i);
         if (!demi_finite3(p)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g, %g) m, must be finite", call,
-                      i, (double)p.x, (double)p.y, (double)p.z);
+            demi_refuse(w, call, "point %d is (%g, %g, %g) m, must be finite", i, (double)p.x,
+                        (double)p.y, (double)p.z);
             return 0;
         }
         lo = demi_v(DEMI_MIN(lo.x, p.x), DEMI_MIN(lo.y, p.y), DEMI_MIN(lo.z, p.z));
@@ -8360,11 +8355,10 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     return 1;
 }
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
-    const char *call = "dem_shape_polyhedron_add";
     demi_shape shape;
-    if (demi_null(w, call, w, "world") || demi_shape_planar(w, call)) return demi_no_shape;
-    if (!demi_polyhedron_of(w, call, count, points, &shape)) return demi_no_shape;
-    return demi_shape_adopt(w, call, &shape);
+    if (demi_null(w, __func__, w, "world") || demi_shape_planar(w, __func__)) return demi_no_shape;
+    if (!demi_polyhedron_of(w, __func__, count, points, &shape)) return demi_no_shape;
+    return demi_shape_adopt(w, __func__, &shape);
 }
 /* Returns the depth of a point, in the frame the shape was given in, below its faces, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
@@ -8384,24 +8378,23 @@ static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const d
     int i;
     if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
         (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: there are %d vertices and %d elements; there must "
-                  "be at least one and at most %d of each, with pointers to them; was the file "
-                  "read?", call, vertices, elements, INT_MAX/8);
+        demi_refuse(w, call, "there are %d vertices and %d elements; there must be at least one "
+                    "and at most %d of each, with pointers to them; was the file read?", vertices,
+                    elements, INT_MAX/8);
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
         if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
-                      "finite and between -%g and %g; check that the file was read completely and "
-                      "is in metres", call, i/per_vertex, (double)xyz[i], DEMI_FARTHEST,
-                      DEMI_FARTHEST);
+            demi_refuse(w, call, "a coordinate of vertex %d is %g m, must be finite and between "
+                        "-%g and %g; check that the file was read completely and is in metres",
+                        i/per_vertex, (double)xyz[i], DEMI_FARTHEST, DEMI_FARTHEST);
             return 0;
         }
     for (i = 0; i < elements*per_element; i++)
         if (corners[i] < 0 || corners[i] >= vertices) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; "
-                      "are vertices numbered from 1 in the file?", call, i/per_element,
-                      (int)corners[i], vertices - 1);
+            demi_refuse(w, call, "element %d names vertex %d, must be 0 to %d; are vertices "
+                        "numbered from 1 in the file?", i/per_element, (int)corners[i],
+                        vertices - 1);
             return 0;
         }
     return 1;
@@ -8429,20 +8422,19 @@ static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, 
     return made;
 }
 DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
-    const char *call = "dem_shape_mesh_add";
     demi_shape shape;
     dem_vec3 place = demi_v(0, 0, 0);
     dem_real most = 0;
     int i, k;
-    if (demi_null(w, call, mesh, "mesh") || demi_shape_planar(w, call)) return demi_no_shape;
+    if (demi_null(w, __func__, mesh, "mesh") || demi_shape_planar(w, __func__))
+        return demi_no_shape;
     if (!(dent >= 0) || !demi_finite(dent)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: dent is %g m, must be >= 0 and finite", call,
-                  (double)dent);
+        demi_refuse(w, __func__, "dent is %g m, must be >= 0 and finite", (double)dent);
         return demi_no_shape;
     }
-    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+    if (!demi_mesh_sound(w, __func__, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
                          mesh->triangles, 3)) return demi_no_shape;
-    if (!demi_mesh_hull(w, call, mesh, &shape)) return demi_no_shape;
+    if (!demi_mesh_hull(w, __func__, mesh, &shape)) return demi_no_shape;
     for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, midpoints of sides, centroids */
         const int32_t *t = mesh->triangles + i/3*3;
         dem_vec3 x[3], at[3];
@@ -8456,14 +8448,14 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
         }
     }
     if (most > dent + shape.radius*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-8))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is not convex: at (%g, %g, %g) m it lies "
-                  "%.3g m inside its hull, more than the allowed dent of %g m; cut it into convex "
-                  "pieces, use a cluster of spheres, or increase dent to use the hull", call,
-                  (double)place.x, (double)place.y, (double)place.z, (double)most, (double)dent);
+        demi_refuse(w, __func__, "the mesh is not convex: at (%g, %g, %g) m it lies %.3g m inside "
+                    "its hull, more than the allowed dent of %g m; cut it into convex pieces, use "
+                    "a cluster of spheres, or increase dent to use the hull", (double)place.x,
+                    (double)place.y, (double)place.z, (double)most, (double)dent);
         demi_shape_free(w, &shape);
         return demi_no_shape;
     }
-    return demi_shape_adopt(w, call, &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 static size_t demi_shape_hull_reals(const demi_shape *s) {
@@ -8664,39 +8656,37 @@ static int demi_union_make(dem_world *w, const char *call, int count, const int3
 }
 DEM_API dem_shape dem_shape_union_add(dem_world *w, int count, const dem_shape *shapes,
                                       const dem_real *positions, const dem_real *orientations) {
-    const char *call = "dem_shape_union_add";
     int32_t which[1000];
     demi_shape shape;
     int i;
-    if (demi_null(w, call, w, "world") || demi_null(w, call, shapes, "shapes") ||
-        demi_null(w, call, positions, "positions")) return demi_no_shape;
+    if (demi_null(w, __func__, w, "world") || demi_null(w, __func__, shapes, "shapes") ||
+        demi_null(w, __func__, positions, "positions")) return demi_no_shape;
     if (count < 1 || count > 1000) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to 1000", call, count);
+        demi_refuse(w, __func__, "count is %d, must be 1 to 1000", count);
         return demi_no_shape;
     }
     for (i = 0; i < count; i++) {
         const dem_quat q = orientations ? demi_quat_at(orientations + 4*i)
             : dem_quat_make(1, 0, 0, 0);
-        which[i] = demi_shape_index(w, call, shapes[i]);
+        which[i] = demi_shape_index(w, __func__, shapes[i]);
         if (which[i] < 0) return demi_no_shape;
         if (w->shapes[which[i]].count || w->shapes[which[i]].pieces) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d is a cluster or a union, must be an "
-                      "ellipsoid, a polyhedron or a polygon; pass its pieces instead", call,
-                      which[i] + 1);
+            demi_refuse(w, __func__, "shape %d is a cluster or a union, must be an ellipsoid, a "
+                        "polyhedron or a polygon; pass its pieces instead", which[i] + 1);
             return demi_no_shape;
         }
         if (!demi_place(demi_at(positions + 3*i)) || !demi_quat_finite(q) ||
             !(demi_quat_most(q) > 0) || (w->desc.planar && (positions[3*i + 2] < 0 ||
             positions[3*i + 2] > 0 || q.x < 0 || q.x > 0 || q.y < 0 || q.y > 0))) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position or orientation of piece %d is not "
-                      "finite, is a zero quaternion, or leaves the plane of a planar world; "
-                      "(1, 0, 0, 0) is no rotation", call, i);
+            demi_refuse(w, __func__, "position or orientation of piece %d is not finite, is a zero "
+                        "quaternion, or leaves the plane of a planar world; (1, 0, 0, 0) is no "
+                        "rotation", i);
             return demi_no_shape;
         }
     }
-    if (!demi_union_make(w, call, count, which, positions, orientations, &shape))
+    if (!demi_union_make(w, __func__, count, which, positions, orientations, &shape))
         return demi_no_shape;
-    return demi_shape_adopt(w, call, &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 /* --- polygons, in planar worlds --- */
@@ -8790,16 +8780,16 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     double area = 0;
     int i, k;
     if (count < 3 || count > DEMI_POLYGON || !points) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 3 to %d with points (count x "
-                  "2)", call, count, DEMI_POLYGON);
+        demi_refuse(w, call, "count is %d, must be 3 to %d with points (count x 2)", count,
+                    DEMI_POLYGON);
         return 0;
     }
     for (i = 0; i < 2*count; i++) {
         x[i] = (double)points[i];
         if (!demi_finite(points[i]) || fabs(x[i]) > DEMI_FARTHEST) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g) m, must be finite and "
-                      "between -%g and %g", call, i/2, (double)points[i/2*2],
-                      (double)points[i/2*2 + 1], DEMI_FARTHEST, DEMI_FARTHEST);
+            demi_refuse(w, call, "point %d is (%g, %g) m, must be finite and between -%g and %g",
+                        i/2, (double)points[i/2*2], (double)points[i/2*2 + 1], DEMI_FARTHEST,
+                        DEMI_FARTHEST);
             return 0;
         }
     }
@@ -8807,13 +8797,13 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     for (i = 0; i < count; i++)
         for (k = 0; k < count; k++)
             if (demi_sides_cross(x, count, i, k)) {
-                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the sides from point %d and from point %d "
-                          "cross or touch; give the corners in order, each once", call, i, k);
+                demi_refuse(w, call, "the sides from point %d and from point %d cross or touch; "
+                            "give the corners in order, each once", i, k);
                 return 0;
             }
     if (!(area < 0 || area > 0))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the area is %g m2, must not be 0; give corners that "
-                  "are not on one line", call, area);
+        demi_refuse(w, call, "the area is %g m2, must not be 0; give corners that are not on one "
+                    "line", area);
     for (i = 0; i < count && area < 0; i++) {
         x[2*i] = (double)points[2*(count - 1 - i)];
         x[2*i + 1] = (double)points[2*(count - 1 - i) + 1];
@@ -8821,25 +8811,24 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     return fabs(area);
 }
 DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real *points) {
-    const char *call = "dem_shape_polygon_add";
     demi_cut_out piece[DEMI_POLYGON];
     double x[2*DEMI_POLYGON], area, high;
     int32_t which[DEMI_POLYGON];
     demi_shape shape;
     dem_shape id = demi_no_shape;
     int i, k, pieces, first;
-    if (demi_null(w, call, w, "world")) return id;
+    if (demi_null(w, __func__, w, "world")) return id;
     if (!w->desc.planar) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is not planar; set planar to 1, or use "
-                  "dem_shape_polyhedron_add", call);
+        demi_refuse(w, __func__, "the world is not planar; set planar to 1, or use "
+                    "dem_shape_polyhedron_add");
         return id;
     }
-    area = demi_polygon_read(w, call, count, points, x);
+    area = demi_polygon_read(w, __func__, count, points, x);
     if (!(area > 0)) return id;
     pieces = demi_polygon_cut(x, count, piece);
     if (!pieces)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d corners cannot be cut into convex pieces: "
-                  "some are too close to others or to sides; leave those out", call, count);
+        demi_refuse(w, __func__, "the %d corners cannot be cut into convex pieces: some are too "
+                    "close to others or to sides; leave those out", count);
     first = w->shape_count;
     high = 2*sqrt(area/DEMI_PI)/3;              /* m, half the thickness of the prisms */
     for (i = 0; i < pieces; i++) {
@@ -8851,17 +8840,17 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
             corner[3*k + 1] = (dem_real)x[2*c + 1];
             corner[3*k + 2] = (dem_real)(k & 1 ? high : -high);
         }
-        if (!demi_polyhedron_of(w, call, 2*piece[i].count, corner, &shape)) break;
+        if (!demi_polyhedron_of(w, __func__, 2*piece[i].count, corner, &shape)) break;
         own = shape.volume/(2*high);
         shape.equal = (dem_real)sqrt(own/DEMI_PI);
         shape.volume = own*(double)w->desc.thickness;
-        id = demi_shape_adopt(w, call, &shape);
+        id = demi_shape_adopt(w, __func__, &shape);
         if (!id.id) break;
         which[i] = id.id - 1;
     }
     if (pieces > 1 && i == pieces)
-        id = demi_union_make(w, call, pieces, which, 0, 0, &shape)
-            ? demi_shape_adopt(w, call, &shape) : demi_no_shape;
+        id = demi_union_make(w, __func__, pieces, which, 0, 0, &shape)
+            ? demi_shape_adopt(w, __func__, &shape) : demi_no_shape;
     if (pieces && i == pieces && id.id) return id;
     while (w->shape_count > first) demi_shape_free(w, &w->shapes[--w->shape_count]);
     return demi_no_shape;
@@ -9349,10 +9338,9 @@ static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall
                                  int body, int part) {
     char who[32] = "the body";
     if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: %s; nothing was "
-                     "added", call, number, demi_wall_kinds[wall->kind].name, who,
-                     demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
-                     demi_wall_why(w, wall, part));
+    return demi_refuse(w, call, "wall %d is a %s and %s a%s %s: %s; nothing was added", number,
+                       demi_wall_kinds[wall->kind].name, who, demi_an(demi_shape_rows[part].name),
+                       demi_shape_rows[part].name, demi_wall_why(w, wall, part));
 }
 /* Returns 1 with an error message if contacts between a shape and some wall are not available. */
 static int demi_walls_strange(dem_world *w, const char *call, int shape) {
@@ -9398,28 +9386,26 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
                                    const dem_real *positions,
                                    const dem_real *velocities, const dem_real *radii,
                                    dem_real radius) {
-    if (demi_null(w, "dem_spheres_add", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     int i, m = 0;
-    if (demi_material_index(w, "dem_spheres_add", material,
-                            &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_material_index(w, __func__, material, &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (count < 0 || (count > 0 && !positions))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: count is %d, must be >= 0 with "
-                         "positions (count x 3)"
-                         "; check the caller's array", count);
+        return demi_refuse(w, __func__, "count is %d, must be >= 0 with positions (count "
+                           "x 3); check the caller's array", count);
     for (i = 0; i < count; i++) {
         const dem_real r = radii ? radii[i] : radius;
         if (!(r > 0) || !demi_finite(r))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g "
-                             "m, must be > 0 and finite; no sphere was added", i, (double)r);
-        if (demi_mass_refuse(w, "dem_spheres_add", m, r, i)) return DEM_ERROR_ARGUMENT;
+            return demi_refuse(w, __func__, "radius of sphere %d is %g m, must be > 0 and "
+                               "finite; no sphere was added", i, (double)r);
+        if (demi_mass_refuse(w, __func__, m, r, i)) return DEM_ERROR_ARGUMENT;
         if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
                                                       !demi_place(demi_at(velocities + 3*i))))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
-                             "sphere %d is not a finite number, or beyond %g m or m/s; check the "
-                             "data it came from; no sphere was added", i, DEMI_FARTHEST);
+            return demi_refuse(w, __func__, "position or velocity of sphere %d is not a "
+                               "finite number, or beyond %g m or m/s; check the data it came from; "
+                               "no sphere was added", i, DEMI_FARTHEST);
     }
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
-        return demi_no_memory(w, "dem_spheres_add");
+        return demi_no_memory(w, __func__);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
                                                demi_at(positions + 3*i));
@@ -9430,13 +9416,13 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
-    demi_built(w, "dem_spheres_add");
+    demi_built(w, __func__);
     return DEM_OK;
 }
 
 DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius,
                                 dem_vec3 position) {
-    if (demi_null(w, "dem_sphere_add", w, "world")) return demi_no_body;
+    if (demi_null(w, __func__, w, "world")) return demi_no_body;
     dem_body id;
     dem_real x[3];
     id.slot = id.generation = 0;
@@ -9451,28 +9437,28 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
                              const dem_real *scale) {
     int i;
     if (count < 0 || (count > 0 && !x)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0 with positions "
-                  "(count x 3); check the caller's array", call, count);
+        demi_refuse(w, call, "count is %d, must be >= 0 with positions (count x 3); check the "
+                    "caller's array", count);
         return 0;
     }
     for (i = 0; i < count; i++) {
         const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
         if (!demi_place(demi_at(x + 3*i)) || (v && !demi_place(demi_at(v + 3*i))) ||
             (spin && !demi_place(demi_at(spin + 3*i)))) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position, velocity or spin of body %d is not a "
-                      "finite number, or beyond %g m, m/s or rad/s; check the data it came from; "
-                      "no body was added", call, i, DEMI_FARTHEST);
+            demi_refuse(w, call, "position, velocity or spin of body %d is not a finite number, or "
+                        "beyond %g m, m/s or rad/s; check the data it came from; no body was added",
+                        i, DEMI_FARTHEST);
             return 0;
         }
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: orientation of body %d is (%g, %g, %g, %g), "
-                      "must be finite and not zero; (1, 0, 0, 0) is no rotation; no body was added",
-                      call, i, (double)o.w, (double)o.x, (double)o.y, (double)o.z);
+            demi_refuse(w, call, "orientation of body %d is (%g, %g, %g, %g), must be finite and "
+                        "not zero; (1, 0, 0, 0) is no rotation; no body was added", i, (double)o.w,
+                        (double)o.x, (double)o.y, (double)o.z);
             return 0;
         }
         if (scale && !(demi_finite(scale[i]) && scale[i] > 0)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: scale of body %d is %g, must be > 0; no body "
-                      "was added", call, i, (double)scale[i]);
+            demi_refuse(w, call, "scale of body %d is %g, must be > 0; no body was added", i,
+                        (double)scale[i]);
             return 0;
         }
     }
@@ -9491,11 +9477,10 @@ static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, 
     int k, bad = !demi_finite_double(m) || !(m > 0);
     for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
     if (bad)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %d has scale %g and a mass of %g kg, and the "
-                  "mass or its inertia is too small or too large to calculate with in %s "
-                  "precision; lengths are in metres: check the unit; nothing was added",
-                  call, i, s, m,
-                  DEMI_SINGLE ? "single" : "double");
+        demi_refuse(w, call, "body %d has scale %g and a mass of %g kg, and the mass or its "
+                    "inertia is too small or too large to calculate with in %s precision; lengths "
+                    "are in metres: check the unit; nothing was added", i, s, m,
+                    DEMI_SINGLE ? "single" : "double");
     return bad;
 }
 /* Adds bodies of a shape. All checks come first, then the allocations, then what cannot fail, so a
@@ -9538,19 +9523,19 @@ DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape
                                   const dem_real *positions, const dem_real *orientations,
                                   const dem_real *velocities, const dem_real *spins,
                                   const dem_real *scales) {
-    if (demi_null(w, "dem_bodies_add", w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_bodies_add(w, "dem_bodies_add", material, shape, count, positions, orientations,
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_bodies_add(w, __func__, material, shape, count, positions, orientations,
                            velocities, spins, scales);
 }
 DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation) {
-    if (demi_null(w, "dem_body_add", w, "world")) return demi_no_body;
+    if (demi_null(w, __func__, w, "world")) return demi_no_body;
     dem_body id;
     dem_real x[3], q[4];
     id.slot = id.generation = 0;
     demi_put(x, position);
     demi_quat_put(q, orientation);
-    if (demi_bodies_add(w, "dem_body_add", material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
+    if (demi_bodies_add(w, __func__, material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
     return dem_body_id_get(w, w->bodies.count - 1);
 }
 
@@ -9559,9 +9544,8 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
     if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
         w->bodies.slot_generation[b.slot - 1] != b.generation ||
         w->bodies.slot_index[b.slot - 1] < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was "
-                  "removed, has left the domain, or was never added", call, (unsigned)b.slot,
-                  (unsigned)b.generation);
+        demi_refuse(w, call, "body %u (generation %u) does not exist; it was removed, has left the "
+                    "domain, or was never added", (unsigned)b.slot, (unsigned)b.generation);
         return -1;
     }
     return w->bodies.slot_index[b.slot - 1];
@@ -9587,10 +9571,10 @@ static void demi_body_take_out(dem_world *w, int i) {
 }
 
 DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
-    if (demi_null(w, "dem_body_remove", w, "world")) return DEM_ERROR_ARGUMENT;
-    int i = demi_body_index(w, "dem_body_remove", body);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    int i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_remove");
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_body_take_out(w, i);
     w->bodies.balance.removed++;
     demi_scene_changed(w);
@@ -9598,10 +9582,10 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
 }
 
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
-    if (demi_null_look(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, s, "state")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     demi_periods p;
-    int i = demi_body_index(w, "dem_body_get", body);
+    int i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     p = demi_periods_of(w);
     s->position = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
@@ -9626,23 +9610,22 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
 }
 
 DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_state *s) {
-    if (demi_null(w, "dem_body_set", s, "state")) return DEM_ERROR_ARGUMENT;
-    int i = demi_body_index(w, "dem_body_set", body);
+    if (demi_null(w, __func__, s, "state")) return DEM_ERROR_ARGUMENT;
+    int i = demi_body_index(w, __func__, body);
     const demi_shape *shape;
     const dem_quat q = s->orientation;
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     shape = demi_shape_of(w, i);
     if (w->bodies.orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: orientation of body %u is (%g, %g, "
-                         "%g, %g), must be finite and not zero; fill the state with dem_body_get "
-                         "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
-                         (double)q.z);
+        return demi_refuse(w, __func__, "orientation of body %u is (%g, %g, %g, %g), must be "
+                           "finite and not zero; fill the state with dem_body_get first",
+                           (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y, (double)q.z);
     if (!demi_place(s->position) || !demi_place(s->velocity) || !demi_place(s->spin))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
-                         "%u is not a finite number, or beyond %g m, m/s or rad/s; check what it "
-                         "was computed from", (unsigned)body.slot, DEMI_FARTHEST);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
+        return demi_refuse(w, __func__, "position, velocity or spin of body %u is not a "
+                           "finite number, or beyond %g m, m/s or rad/s; check what it was "
+                           "computed from", (unsigned)body.slot, DEMI_FARTHEST);
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     before = demi_body_energy(w, i);
     m = (double)w->bodies.mass[i];
     demi_put(w->bodies.pos + 4*i, s->position);
@@ -9704,23 +9687,22 @@ static double demi_temperature(const dem_world *w, double *mass, int *count, dou
 DEM_API double dem_temperature_get(const dem_world *w) {
     double mass, mean[3];
     int count;
-    if (demi_null_look(w, "dem_temperature_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     return demi_temperature(w, &mass, &count, mean);
 }
 DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_t seed) {
     const int axes = w && w->desc.planar ? 2 : 3;
     double mass, mean[3], drawn[3], was;
     int count, i, k, pass;
-    if (demi_null(w, "dem_temperature_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     was = demi_temperature(w, &mass, &count, mean);
     if (!(temperature >= 0) || !demi_finite_double(temperature) || count < 2 ||
         (!seed && temperature > 0 && !(was > 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_temperature_set: temperature is %g m2/s2, "
-                         "for %d bodies that can move and have %g m2/s2 now; it must be finite "
-                         "and >= 0, for two bodies at least, and bodies at rest have no "
-                         "velocities to scale: give a seed to draw velocities", temperature, count,
-                         was);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_temperature_set");
+        return demi_refuse(w, __func__, "temperature is %g m2/s2, for %d bodies that "
+                           "can move and have %g m2/s2 now; it must be finite and >= 0, for two "
+                           "bodies at least, and bodies at rest have no velocities to scale: give "
+                           "a seed to draw velocities", temperature, count, was);
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     /* pass 0, with a seed: draws velocities; pass 1: scales them */
     for (pass = seed ? 0 : 1; pass < 2; pass++) {
         double now = demi_temperature(w, &mass, &count, drawn), scale;
@@ -9771,36 +9753,36 @@ static dem_result demi_reals_ask(const dem_world *world, const char *call, const
     if (setting ? demi_null(w, call, reals, "reals") : demi_null_look(w, call, reals, "reals"))
         return DEM_ERROR_ARGUMENT;
     if (!w->bodies.real_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: bodies carry no user-defined numbers; name "
-                         "the numbers in desc.body_reals when the world is created", call);
+        return demi_refuse(w, call, "bodies carry no user-defined numbers; name the numbers in "
+                           "desc.body_reals when the world is created");
     for (k = 0; setting && k < count*w->bodies.real_count; k++)
         if (!demi_finite(reals[k]))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: number %d is %g, must be finite; check "
-                             "what it was computed from", call, k, (double)reals[k]);
+            return demi_refuse(w, call, "number %d is %g, must be finite; check what it was "
+                               "computed from", k, (double)reals[k]);
     return DEM_OK;
 }
 DEM_API dem_result dem_body_reals_get(const dem_world *w, dem_body body, dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_body_reals_get", reals, 1, 0);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 0);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_body_index((dem_world *)w, "dem_body_reals_get", body);
+    i = demi_body_index((dem_world *)w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(reals, w->bodies.reals + w->bodies.real_count*i,
            (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_body_reals_set(dem_world *w, dem_body body, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_body_reals_set", reals, 1, 1);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 1);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_body_index(w, "dem_body_reals_set", body);
+    i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(w->bodies.reals + w->bodies.real_count*i, reals,
            (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_bodies_reals_set", reals,
+    const dem_result result = demi_reals_ask(w, __func__, reals,
                                              w ? w->bodies.count : 0, 1);
     if (result != DEM_OK) return result;
     if (w->bodies.count)
@@ -9809,7 +9791,7 @@ DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
     return DEM_OK;
 }
 DEM_API dem_body dem_body_id_get(const dem_world *w, int index) {
-    if (demi_null_look(w, "dem_body_id_get", w, "world")) return demi_no_body;
+    if (demi_null_look(w, __func__, w, "world")) return demi_no_body;
     dem_body id;
     id.slot = id.generation = 0;
     if (index < 0 || index >= w->bodies.count) return id;
@@ -11121,9 +11103,9 @@ static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **o
 static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) {
     int k, bad = -1;
     if (!m->table || m->table_count < 2)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the table of wall %d has %d "
-                         "rows, must have at least 2; set table and table_count", wall,
-                         m->table ? m->table_count : 0);
+        return demi_refuse(w, "dem_wall_motion_set", "the table of wall %d has %d rows, must have "
+                           "at least 2; set table and table_count", wall,
+                           m->table ? m->table_count : 0);
     for (k = 0; k < m->table_count && bad < 0; k++) {
         const dem_motion_row *r = m->table + k;
         if (!demi_finite_double(r->time) || !demi_place(r->position) ||
@@ -11131,9 +11113,9 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
             (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
     }
     if (bad < 0) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: row %d of the table of wall %d, "
-                     "at %g s, is not finite or not later than the row before; the first row must "
-                     "be at 0 s", bad, wall, m->table[bad].time);
+    return demi_refuse(w, "dem_wall_motion_set", "row %d of the table of wall %d, at %g s, is not "
+                       "finite or not later than the row before; the first row must be at 0 s", bad,
+                       wall, m->table[bad].time);
 }
 /* Sets the pose of a wall at a time. Rotations start from the first pose each time, so no error
    builds up. Velocities are exact derivatives. */
@@ -11486,8 +11468,8 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
     if (i == DEMI_WALLS_MOST || !DEMI_GROW(w, w->walls, (size_t)i + 1) || !demi_list_drop(w)) {
         demi_wall_free(w, wall);
         if (i == DEMI_WALLS_MOST)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a world holds at most %d walls; put several "
-                      "surfaces into one mesh", call, (int)DEMI_WALLS_MOST);
+            demi_refuse(w, call, "a world holds at most %d walls; put several surfaces into one "
+                        "mesh", (int)DEMI_WALLS_MOST);
         else demi_no_memory(w, call);
         return id;
     }
@@ -11528,17 +11510,16 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
 
 DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec3 point,
                                dem_vec3 normal) {
-    if (demi_null(w, "dem_wall_plane_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_PLANE, &wall)) return none;
     if (!demi_place(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_plane_add: normal is (%g, %g, %g), must be "
-                  "finite "
-                  "and not zero; point is (%g, %g, %g) m, must be within %g m of the origin",
-                  (double)normal.x, (double)normal.y, (double)normal.z, (double)point.x,
-                  (double)point.y, (double)point.z, DEMI_FARTHEST);
+        demi_refuse(w, __func__, "normal is (%g, %g, %g), must be finite and not zero; "
+                    "point is (%g, %g, %g) m, must be within %g m of the origin", (double)normal.x,
+                    (double)normal.y, (double)normal.z, (double)point.x, (double)point.y,
+                    (double)point.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -11547,24 +11528,23 @@ DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec
     wall.motion.axis = demi_unit(normal);
     demi_frame_of(wall.home.rotation, demi_unit(normal));
     wall.extent = -1;
-    return demi_wall_adopt(w, "dem_wall_plane_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside) {
-    if (demi_null(w, "dem_wall_cylinder_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_cylinder_add", material, DEMI_WALL_CYLINDER,
-                         &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_CYLINDER, &wall)) return none;
     if (!demi_place(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
         !(radius > 0) || !demi_bounded((double)radius)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_cylinder_add: radius is %g m and axis is (%g, "
-                  "%g, %g); the radius must be > 0, the axis not zero, the radius and the "
-                  "coordinates of the point at most %g m", (double)radius, (double)axis.x,
-                  (double)axis.y, (double)axis.z, DEMI_FARTHEST);
+        demi_refuse(w, __func__, "radius is %g m and axis is (%g, %g, %g); the "
+                    "radius must be > 0, the axis not zero, the radius and the coordinates of the "
+                    "point at most %g m", (double)radius, (double)axis.x, (double)axis.y,
+                    (double)axis.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -11575,7 +11555,7 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_
     wall.motion.axis = demi_unit(axis);
     demi_frame_of(wall.home.rotation, demi_unit(axis));
     wall.extent = -1;
-    return demi_wall_adopt(w, "dem_wall_cylinder_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 /* dem_wall_revolved_add on behalf of `call`. */
@@ -11587,9 +11567,9 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
     if (!demi_wall_begin(w, call, material, DEMI_WALL_REVOLVED, &wall)) return demi_no_wall;
     if (count < 2 || count > DEM_RINGS || !demi_place(point) || !demi_finite3(axis) ||
         !(demi_dot(axis, axis) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and axis is (%g, %g, %g); there must be "
-                  "2 to %d rings, the axis must not be zero, the point must be finite", call, count,
-                  (double)axis.x, (double)axis.y, (double)axis.z, (int)DEM_RINGS);
+        demi_refuse(w, call, "count is %d and axis is (%g, %g, %g); there must be 2 to %d rings, "
+                    "the axis must not be zero, the point must be finite", count, (double)axis.x,
+                    (double)axis.y, (double)axis.z, (int)DEM_RINGS);
         return demi_no_wall;
     }
     for (k = 0; k < count && bad < 0; k++) {
@@ -11605,9 +11585,9 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
         wall.extent = DEMI_MAX(wall.extent, DEMI_SQRT(r*r + h*h));
     }
     if (bad >= 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: ring %d has radius %g m at height %g m; both must "
-                  "be finite, the radius >= 0, not 0 for two rings in a row, and no ring equal to "
-                  "the one before", call, bad, (double)radii[bad], (double)heights[bad]);
+        demi_refuse(w, call, "ring %d has radius %g m at height %g m; both must be finite, the "
+                    "radius >= 0, not 0 for two rings in a row, and no ring equal to the one "
+                    "before", bad, (double)radii[bad], (double)heights[bad]);
         return demi_no_wall;
     }
     wall.ring_count = count;
@@ -11620,21 +11600,20 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
 DEM_API dem_wall dem_wall_revolved_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
                                   const dem_real *heights) {
-    if (demi_null(w, "dem_wall_revolved_add", radii, "radii") ||
-        demi_null(w, "dem_wall_revolved_add", heights, "heights")) return demi_no_wall;
-    return demi_revolved_make(w, "dem_wall_revolved_add", material, point, axis, count, radii,
-                              heights);
+    if (demi_null(w, __func__, radii, "radii") ||
+        demi_null(w, __func__, heights, "heights")) return demi_no_wall;
+    return demi_revolved_make(w, __func__, material, point, axis, count, radii, heights);
 }
 DEM_API dem_wall dem_wall_cone_add(dem_world *w, dem_material material, dem_vec3 from, dem_vec3 to,
                               dem_real radius_from, dem_real radius_to) {
     const dem_vec3 way = demi_sub(to, from);
     dem_real radii[2], heights[2];
-    if (demi_null(w, "dem_wall_cone_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     radii[0] = radius_from;
     radii[1] = radius_to;
     heights[0] = 0;
     heights[1] = demi_length(way);
-    return demi_revolved_make(w, "dem_wall_cone_add", material, from, way, 2, radii, heights);
+    return demi_revolved_make(w, __func__, material, from, way, 2, radii, heights);
 }
 /* Number of flat sides that a surface of revolution has in pictures. */
 enum { DEMI_RING_SIDES = 48 };
@@ -11683,9 +11662,9 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     demi_wall_bounds(wall);
     if (per_element && (!demi_facets_any(wall) ||
                         !(demi_size(demi_sub(wall->box.hi, wall->box.lo)) > DEMI_LEAST))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: none of the %d elements has a size: corners "
-                  "coincide, triangles have no height, or all lie within %g m; check that "
-                  "coordinates were read and are in metres", call, elements, DEMI_LEAST);
+        demi_refuse(w, call, "none of the %d elements has a size: corners coincide, triangles have "
+                    "no height, or all lie within %g m; check that coordinates were read and are "
+                    "in metres", elements, DEMI_LEAST);
         demi_wall_free(w, wall);
         return 0;
     }
@@ -11700,31 +11679,29 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
 DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
                                       const dem_profile *profile,
                                  dem_edge_rule rule) {
-    if (demi_null(w, "dem_wall_profile_add", profile, "profile")) return demi_no_wall;
+    if (demi_null(w, __func__, profile, "profile")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_profile_add", material, rule == DEM_EDGE_FRACTION
+    if (!demi_wall_begin(w, __func__, material, rule == DEM_EDGE_FRACTION
                          ? DEMI_WALL_SEGMENTS : DEMI_WALL_PROFILE, &wall)) return none;
     if (rule < DEM_EDGE_RESOLVED || rule > DEM_EDGE_FRACTION) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is %d, must be "
-                  "DEM_EDGE_RESOLVED "
-                  "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
+        demi_refuse(w, __func__, "rule is %d, must be DEM_EDGE_RESOLVED (0) to "
+                    "DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
         return none;
     }
     if (rule == DEM_EDGE_FRACTION && (w->desc.law_range > 0 || w->desc.law_range_radii > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is DEM_EDGE_FRACTION, but "
-                  "the law of this world has a range; that rule weighs the chord of a segment "
-                  "inside a grain, which does not exist before the two touch: use "
-                  "DEM_EDGE_RESOLVED");
+        demi_refuse(w, __func__, "rule is DEM_EDGE_FRACTION, but the law of this "
+                    "world has a range; that rule weighs the chord of a segment inside a grain, "
+                    "which does not exist before the two touch: use DEM_EDGE_RESOLVED");
         return none;
     }
     wall.rule = rule;
-    if (!demi_wall_load(w, "dem_wall_profile_add", &wall, profile->vertex_count, profile->vertices,
+    if (!demi_wall_load(w, __func__, &wall, profile->vertex_count, profile->vertices,
                         2,
                         profile->segment_count, profile->segments, 2)) return none;
     wall.motion.axis = demi_v(0, 0, 1);
-    return demi_wall_adopt(w, "dem_wall_profile_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 /* Makes a wall of triangles that is not added yet. Returns 0 with an error message if it is
@@ -11738,32 +11715,31 @@ static int demi_mesh_make(dem_world *w, dem_material material, const dem_mesh *m
     return 1;
 }
 DEM_API dem_wall dem_wall_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
-    if (demi_null(w, "dem_wall_mesh_add", mesh, "mesh")) return demi_no_wall;
+    if (demi_null(w, __func__, mesh, "mesh")) return demi_no_wall;
     demi_wall wall;
-    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, "dem_wall_mesh_add", &wall)
+    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, __func__, &wall)
                                                     : demi_no_wall;
 }
 
 DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share) {
-    if (demi_null(w, "dem_wall_grains_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_grains_add", material, DEMI_WALL_GRAINS, &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_GRAINS, &wall)) return none;
     if (!(radius > 0) || !demi_bounded((double)radius) || !(share > 0) || !(share <= 1)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_grains_add: radius is %g m and share is %g; "
-                  "the radius must be > 0 and at most %g m, the share > 0 and at most 1",
-                  (double)radius, (double)share, DEMI_FARTHEST);
+        demi_refuse(w, __func__, "radius is %g m and share is %g; the radius must be "
+                    "> 0 and at most %g m, the share > 0 and at most 1", (double)radius,
+                    (double)share, DEMI_FARTHEST);
         return none;
     }
     wall.radius = radius;
     wall.share = share;
     wall.motion.axis = demi_v(0, 0, 1);
-    if (!demi_wall_load(w, "dem_wall_grains_add", &wall, count, positions, 3, count, 0,
-                        0)) return none;
-    return demi_wall_adopt(w, "dem_wall_grains_add", &wall);
+    if (!demi_wall_load(w, __func__, &wall, count, positions, 3, count, 0, 0)) return none;
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 static uint64_t demi_digest_vertices(const void *item) {
@@ -11814,20 +11790,19 @@ static const demi_field_row demi_wall_rows[] = {
     DEMI_ROW_DIGEST("vertices", demi_digest_vertices), DEMI_ROW_DIGEST("elements",
     demi_digest_elements), DEMI_ROW_DIGEST("motion.table", demi_digest_table), DEMI_ROW_END};
 DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
-    if (demi_null(w, "dem_wall_sieve_add", d, "desc")) return demi_no_wall;
+    if (demi_null(w, __func__, d, "desc")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     dem_vec3 n = d->normal, t = d->along;
     dem_real *R = wall.home.rotation;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_SIEVE, &wall)) return none;
     wall.sieve = *d;
-    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "",
+    if (demi_rows_check(w, __func__, demi_wall_rows, &wall, "",
                         "start from DEM_SIEVE_DESC and set only what differs")) return none;
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
-                  "finite, or point is farther than %g m from the origin; check how it was "
-                  "computed", DEMI_FARTHEST);
+        demi_refuse(w, __func__, "point, normal or along is not finite, or point is "
+                    "farther than %g m from the origin; check how it was computed", DEMI_FARTHEST);
         return none;
     }
     n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
@@ -11848,22 +11823,21 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     wall.home.position = wall.motion.point = d->point;
     wall.motion.axis = n;
     wall.extent = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
-    return demi_wall_adopt(w, "dem_wall_sieve_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 /* Returns the index of a wall, or -1 with an error message. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     const int place = demi_wall_place(wall);
     if (wall.id < 1 || place >= w->wall_count) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids in this world are 1 to "
-                  "%d; adding it failed (dem_world_error_get says why) or it belongs to another "
-                  "world: check the id that adding it returned", call, (int)wall.id, w->wall_count);
+        demi_refuse(w, call, "wall %d does not exist, ids in this world are 1 to %d; adding it "
+                    "failed (dem_world_error_get says why) or it belongs to another world: check "
+                    "the id that adding it returned", (int)wall.id, w->wall_count);
         return -1;
     }
     if (!demi_wall_there(w, wall)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more, because "
-                  "dem_wall_remove removed it; add it again and use the id that this returns", call,
-                  (int)wall.id);
+        demi_refuse(w, call, "wall %d does not exist any more, because dem_wall_remove removed it; "
+                    "add it again and use the id that this returns", (int)wall.id);
         return -1;
     }
     return place;
@@ -11886,18 +11860,18 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 /* Checks what only a servo wall needs. */
 static dem_result demi_servo_check(dem_world *w, dem_wall id, const dem_motion *m) {
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
-                         "DEM_MOTION_SERVO, which needs contacts with a stiffness, but contacts of "
-                         "this world are impulses; use DEM_RESPONSE_SPRINGS, or a heavy body "
-                         "instead of the wall", (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_SERVO, which "
+                           "needs contacts with a stiffness, but contacts of this world are "
+                           "impulses; use DEM_RESPONSE_SPRINGS, or a heavy body instead of the "
+                           "wall", (int)id.id);
     if (!(demi_dot(m->velocity, m->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
-                         "is zero, but gives the direction in which it presses and its largest "
-                         "speed; set it", (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "velocity of servo wall %d is zero, but gives "
+                           "the direction in which it presses and its largest speed; set it",
+                           (int)id.id);
     if (w->desc.planar && fabs((double)m->velocity.z) > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
-                         "has the z component %g m/s, must be 0 in a planar world, where no grain "
-                         "can bear its load", (int)id.id, (double)m->velocity.z);
+        return demi_refuse(w, "dem_wall_motion_set", "velocity of servo wall %d has the z "
+                           "component %g m/s, must be 0 in a planar world, where no grain can bear "
+                           "its load", (int)id.id, (double)m->velocity.z);
     return DEM_OK;
 }
 /* Checks a motion for the wall with this id, which need not exist yet. */
@@ -11907,19 +11881,15 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
     if (demi_rows_check(w, "dem_wall_motion_set", demi_motion_rows, motion, of,
                         "start from DEM_MOTION")) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
-                         "zero; give a direction",
-                         (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "axis of rotating wall %d is zero; give a "
+                           "direction", (int)id.id);
     if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity,
                                                              motion->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of oscillating "
-                         "wall %d is zero, but gives the direction of its motion; set it",
-                         (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "velocity of oscillating wall %d is zero, but "
+                           "gives the direction of its motion; set it", (int)id.id);
     if (motion->kind == DEM_MOTION_USER && !motion->function)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
-                         "DEM_MOTION_USER "
-                         "and no function; "
-                         "set motion.function", (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_USER and no "
+                           "function; set motion.function", (int)id.id);
     if (motion->kind == DEM_MOTION_SERVO && demi_servo_check(w, id, motion) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
     return demi_tabled(motion) ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
@@ -11948,17 +11918,17 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the motion of wall %d gives "
-                         "a pose that is not finite, whose matrix is not a rotation, or that is "
-                         "beyond %g m, m/s or rad/s now, at %g s; check the motion", (int)id.id,
-                         DEMI_FARTHEST, w->clock.time);
+        return demi_refuse(w, "dem_wall_motion_set", "the motion of wall %d gives a pose that is "
+                           "not finite, whose matrix is not a rotation, or that is beyond %g m, "
+                           "m/s or rad/s now, at %g s; check the motion", (int)id.id, DEMI_FARTHEST,
+                           w->clock.time);
     }
     *next = laid;
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null_look(world, "dem_wall_pose_get", pose, "pose")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, "dem_wall_pose_get", id);
+    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *pose = world->walls[i].pose;
     return DEM_OK;
@@ -11976,16 +11946,15 @@ static void demi_wall_forget(dem_world *w, int wall) {
     }
 }
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
-    if (demi_null(w, "dem_wall_remove", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_remove", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     int k;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     for (k = 0; k < w->outlet_count; k++)
         if (w->outlets[k].desc.frame.id == id.id)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_remove: outlet %d moves with wall "
-                             "%d and would stop working without it; keep the wall", k + 1,
-                             (int)id.id);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
+            return demi_refuse(w, __func__, "outlet %d moves with wall %d and would stop "
+                               "working without it; keep the wall", k + 1, (int)id.id);
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_wall_forget(w, i);
     demi_wall_free(w, &w->walls[i]);            /* other walls keep their indices */
     w->walls[i].id = id.id;
@@ -11995,26 +11964,26 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
 }
 
 DEM_API dem_result dem_wall_reals_get(const dem_world *w, dem_wall id, dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_wall_reals_get", reals, 1, 0);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 0);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_wall_find((dem_world *)w, "dem_wall_reals_get", id);
+    i = demi_wall_find((dem_world *)w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(reals, w->walls[i].reals, (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_reals_set(dem_world *w, dem_wall id, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_wall_reals_set", reals, 1, 1);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 1);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_wall_find(w, "dem_wall_reals_set", id);
+    i = demi_wall_find(w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(w->walls[i].reals, reals, (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_wall_loads *loads) {
-    if (demi_null_look(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, "dem_wall_loads_get", id);
+    if (demi_null_look(world, __func__, loads, "loads")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *loads = world->walls[i].loads;
     return DEM_OK;
@@ -12025,8 +11994,8 @@ static void demi_loads_reset(dem_wall_loads *loads) {
     loads->torque_impulse = loads->work = loads->time = 0;
 }
 DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
-    if (demi_null(w, "dem_wall_loads_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     demi_loads_reset(&w->walls[i].loads);
     return DEM_OK;
@@ -12050,10 +12019,9 @@ DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, d
 }
 DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
                                                  dem_vec3 *velocity) {
-    const char *call = "dem_wall_surface_velocity_get";
     int i;
-    if (demi_null_look(world, call, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, call, id);
+    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
     return DEM_OK;
@@ -13616,23 +13584,22 @@ static int demi_surfaces_make(dem_world *w) {
 /* Here, because it changes which walls form a surface if the materials ignored each other before
    and do not now, or the other way round. Contacts of an ignored pair end with the next list. */
 DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
-    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, p, "pair")) return DEM_ERROR_ARGUMENT;
     int i = 0, j = 0;
     char of[48];
-    if (demi_material_index(w, "dem_pair_set", a, &i) ||
-        demi_material_index(w, "dem_pair_set", b, &j))
+    if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
     snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
-    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
+    if (demi_rows_check(w, __func__, demi_pair_rows, p, of,
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;
     if (p->ignored != demi_ignores(w, i, j)) {
-        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_pair_set");
+        if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
         demi_surfaces_outdated(w);
     }
     demi_pair_put(w, i, j, p);
     demi_pairs_changed(w);
-    demi_built(w, "dem_pair_set");
+    demi_built(w, __func__);
     return DEM_OK;
 }
 
@@ -16051,11 +16018,11 @@ static int demi_crowd_refuse(dem_world *w) {
         crowd = DEMI_MAX(crowd, here);
     }
     if (!demi_searches[w->desc.search].crowds || work <= 1e9 + 2e4*w->bodies.count) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
-              "bodies are in one cell of %.3g by %.3g by %.3g m; either they lie on each other, "
-              "or a few bodies far away stretch the grid: remove those (an outflow boundary "
-              "does), or spread the others", work, crowd, w->bodies.count, w->cell_size[0],
-              w->cell_size[1], w->cell_size[2]);
+    demi_refuse(w, "dem_world_step", "a search would compare %.2g pairs: %d of %d bodies are in "
+                "one cell of %.3g by %.3g by %.3g m; either they lie on each other, or a few "
+                "bodies far away stretch the grid: remove those (an outflow boundary does), or "
+                "spread the others", work, crowd, w->bodies.count, w->cell_size[0], w->cell_size[1],
+                w->cell_size[2]);
     return 1;
 }
 /* A wall longer than the period does not repeat, so it must extend beyond the box far enough for
@@ -16072,13 +16039,13 @@ static int demi_walls_end(dem_world *w, const char *call) {
             if (wall->kind == DEMI_WALL_NONE || wall->extent < 0 || wall->repeats[k] ||
                 !(p.period[k] > 0) || !(w->bodies.count > 0) ||
                 (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic "
-                      "axis %d, which is longer than the period of %g m, so that it does not "
-                      "repeat; extend it by %g m (the largest radius%s) beyond the faces at %g "
-                      "and %g m, or make it no longer than the period", call, (int)wall->id,
-                      (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
-                      (double)w->effects.radius_max + reach, reach > 0 ? " and the law's range"
-                      : "", (double)lo, (double)hi);
+            demi_refuse(w, call, "wall %d goes from %g to %g m along periodic axis %d, which is "
+                        "longer than the period of %g m, so that it does not repeat; extend it by "
+                        "%g m (the largest radius%s) beyond the faces at %g and %g m, or make it "
+                        "no longer than the period", (int)wall->id, (double)wall->span_lo[k],
+                        (double)wall->span_hi[k], k, (double)p.period[k],
+                        (double)w->effects.radius_max + reach,
+                        reach > 0 ? " and the law's range" : "", (double)lo, (double)hi);
             return 1;
         }
     return 0;
@@ -16225,10 +16192,10 @@ static int demi_periods_refuse(dem_world *w) {
     int k;
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (twice the sum of the largest diameter "
-                      "and the skin%s); make it longer or the grains smaller", (double)p.period[k],
-                      k, need, w->margin.reach > 0 ? " and the law's range" : "");
+            demi_refuse(w, "dem_world_step", "the domain is %g m long on periodic axis %d, must be "
+                        "at least %g m (twice the sum of the largest diameter and the skin%s); "
+                        "make it longer or the grains smaller", (double)p.period[k], k, need,
+                        w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }
     return 0;
@@ -16357,15 +16324,14 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
 
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
-    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls were added or changed "
-              "after the last step, so there is no list of contacts; call dem_candidates_rebuild "
-              "or dem_world_step first", call);
+    demi_refuse(world, call, "bodies or walls were added or changed after the last step, so there "
+                "is no list of contacts; call dem_candidates_rebuild or dem_world_step first");
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
-    if (demi_null_look(w, "dem_candidates_get", w, "world")) return -1;
+    if (demi_null_look(w, __func__, w, "world")) return -1;
     int d, l, k, n = 0;
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_candidates_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
     for (d = 0; d < w->domain_count; d++)
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
@@ -16379,8 +16345,8 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
     return n;
 }
 DEM_API dem_result dem_candidates_rebuild(dem_world *w) {
-    if (demi_null(w, "dem_candidates_rebuild", w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_rebuild(w, "dem_candidates_rebuild");
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_rebuild(w, __func__);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -24063,9 +24029,8 @@ static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
     }
     if (low < w->joint_count && w->joints[low].id == joint.id &&
         demi_joint_alive(w, w->joints + low)) return low;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it, one of its "
-              "bodies or its wall was removed, or adding it failed", call, (int)joint.id,
-              demi_joints_in_force(w));
+    demi_refuse(w, call, "joint %d does not exist, there are %d; it, one of its bodies or its wall "
+                "was removed, or adding it failed", (int)joint.id, demi_joints_in_force(w));
     return -1;
 }
 /* The limits of a motor are far beyond any machine and keep the squares of the resulting values
@@ -24086,9 +24051,9 @@ static int demi_motor_sane(dem_world *w, const char *call, const dem_joint_desc 
                         "start from DEM_JOINT_DESC, in SI units")) return 0;
     if (d->motor == DEM_MOTOR_NONE || (demi_joint_rows(d->kind) == 5 &&
                                        !(d->motor == DEM_MOTOR_SPEED && d->torque < 0))) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, torque %g N m; only revolute joints have "
-              "motors, and the limit on torque of DEM_MOTOR_SPEED must be >= 0 (0: no limit)", call,
-              (int)d->motor, (double)d->torque);
+    demi_refuse(w, call, "motor is %d, torque %g N m; only revolute joints have motors, and the "
+                "limit on torque of DEM_MOTOR_SPEED must be >= 0 (0: no limit)", (int)d->motor,
+                (double)d->torque);
     return 0;
 }
 /* Returns x in the frame of body `index`: a point, m, relative to its centre if `place` is 1, a
@@ -24104,20 +24069,19 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     const int hinged = demi_joint_rows(d->kind) == 5;
     int a, b = -1;
     if (!demi_response_is(w, DEMI_JOINTED)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
-                  "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
+        demi_refuse(w, call, "contacts of this world are springs, but joints need impulses; create "
+                    "the world with desc.response = DEM_RESPONSE_IMPULSES");
         return 0;
     }
     if (!demi_motor_sane(w, call, d)) return 0;
     if (hinged && (!(size > 0) || !demi_finite(size))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not 0 for a "
-                  "revolute joint", call, (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
+        demi_refuse(w, call, "axis is (%g, %g, %g), must be finite and not 0 for a revolute joint",
+                    (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
         return 0;
     }
     if (w->desc.planar && hinged && !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z, because "
-                  "discs rotate about no other axis", call, (double)d->axis.x, (double)d->axis.y,
-                  (double)d->axis.z);
+        demi_refuse(w, call, "axis is (%g, %g, %g), must be along z, because discs rotate about no "
+                    "other axis", (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
         return 0;
     }
     a = demi_body_index(w, call, d->a);
@@ -24125,26 +24089,24 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     if (d->b.slot && (b = demi_body_index(w, call, d->b)) < 0) return 0;
     if (!d->b.slot && d->wall.id && demi_wall_find(w, call, d->wall) < 0) return 0;
     if (!w->desc.orientations && (!demi_shape_of(w, a) || (b >= 0 && !demi_shape_of(w, b)))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is a sphere, and this world does not follow "
-                  "the orientations of spheres; create the world with desc.orientations = 1", call,
-                  (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
+        demi_refuse(w, call, "body %u is a sphere, and this world does not follow the orientations "
+                    "of spheres; create the world with desc.orientations = 1",
+                    (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
         return 0;
     }
     if (a != b && w->bodies.inv_mass[a] + (b >= 0 ? w->bodies.inv_mass[b] : 0) > 0) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a is body %u and b is body %u (0: none), but %s; a "
-              "joint holds two different bodies, at least one of which can move",
-              call, (unsigned)d->a.slot,
-              (unsigned)d->b.slot, a == b ? "they are the same" : "neither can move");
+    demi_refuse(w, call, "a is body %u and b is body %u (0: none), but %s; a joint holds two "
+                "different bodies, at least one of which can move", (unsigned)d->a.slot,
+                (unsigned)d->b.slot, a == b ? "they are the same" : "neither can move");
     return 0;
 }
 DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
-    const char *call = "dem_joint_add";
     demi_joint j;
     dem_joint id;
-    if (demi_null(w, call, d, "desc")) return demi_no_joint;
-    if (!demi_joint_sane(w, call, d)) return demi_no_joint;
+    if (demi_null(w, __func__, d, "desc")) return demi_no_joint;
+    if (!demi_joint_sane(w, __func__, d)) return demi_no_joint;
     if (!demi_orient_begin(w) || !DEMI_GROW(w, w->joints, (size_t)w->joint_count + 1)) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return demi_no_joint;
     }
     memset(&j, 0, sizeof j);
@@ -24152,12 +24114,12 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     j.desc.axis = demi_joint_rows(d->kind) == 5 ? demi_unit(d->axis) : demi_v(0, 0, 0);
     if (d->b.slot) j.desc.wall.id = 0;          /* b is a body, so the wall is ignored */
     else j.desc.b.generation = 0;
-    j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
-    j.axis[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), j.desc.axis, 0);
+    j.arm[0] = demi_joint_from_body(w, demi_body_index(w, __func__, d->a), d->point, 1);
+    j.axis[0] = demi_joint_from_body(w, demi_body_index(w, __func__, d->a), j.desc.axis, 0);
     j.arm[1] = d->point;
     j.axis[1] = j.desc.axis;
     if (d->b.slot) {
-        const int b = demi_body_index(w, call, d->b);
+        const int b = demi_body_index(w, __func__, d->b);
         j.arm[1] = demi_joint_from_body(w, b, d->point, 1);
         j.axis[1] = demi_joint_from_body(w, b, j.desc.axis, 0);
     } else if (d->wall.id) {
@@ -24168,38 +24130,37 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     id.id = j.id = ++w->joint_last;
     w->joints[w->joint_count++] = j;
     demi_scene_changed(w);
-    demi_built(w, call);
+    demi_built(w, __func__);
     return id;
 }
 DEM_API dem_result dem_joint_motor_set(dem_world *w, dem_joint joint, dem_motor motor,
                                        dem_real speed, dem_real torque) {
-    const char *call = "dem_joint_motor_set";
     dem_joint_desc d;
     int i;
-    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
-    i = demi_joint_find(w, call, joint);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, __func__, joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     d = w->joints[i].desc;
     d.motor = motor;
     d.speed = speed;
     d.torque = torque;
-    if (!demi_motor_sane(w, call, &d)) return DEM_ERROR_ARGUMENT;
+    if (!demi_motor_sane(w, __func__, &d)) return DEM_ERROR_ARGUMENT;
     w->joints[i].desc = d;
     demi_scene_changed(w);
     return DEM_OK;
 }
 DEM_API dem_result dem_joint_get(const dem_world *w, dem_joint joint, dem_joint_state *state) {
     int i;
-    if (demi_null_look(w, "dem_joint_get", state, "state")) return DEM_ERROR_ARGUMENT;
-    i = demi_joint_find((dem_world *)w, "dem_joint_get", joint);
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find((dem_world *)w, __func__, joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *state = w->joints[i].state;
     return DEM_OK;
 }
 DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
     int i;
-    if (demi_null(w, "dem_joint_remove", w, "world")) return DEM_ERROR_ARGUMENT;
-    i = demi_joint_find(w, "dem_joint_remove", joint);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, __func__, joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     w->joint_count--;
     memmove(w->joints + i, w->joints + i + 1, (size_t)(w->joint_count - i)*sizeof *w->joints);
@@ -25522,13 +25483,12 @@ enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };
 static dem_result demi_impulses_settle(dem_world *w) {
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     if (demi_impulses_twist(w) && !solver->moments)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
-                         "spinning friction, which the solver %s does not support; leave "
-                         "desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+        return demi_refuse(w, "dem_world_step", "materials have rolling or spinning friction, "
+                           "which the solver %s does not support; leave desc.solver at "
+                           "DEM_SOLVER_GAUSS_SEIDEL", solver->name);
     if (demi_joints_in_force(w) && !solver->joints)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
-                         "solver %s does not support; leave desc.solver at "
-                         "DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+        return demi_refuse(w, "dem_world_step", "there are joints, which the solver %s does not "
+                           "support; leave desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
     w->clock.dt = w->desc.dt;
     w->clock.press_since = w->clock.steps;
     w->stage.dt_valid = 1;
@@ -28607,24 +28567,24 @@ static void demi_wall_after(dem_world *w, int wall) {
 }
 
 DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
-    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     demi_wall *wall = i < 0 ? 0 : &w->walls[i];
     if (!wall) return DEM_ERROR_ARGUMENT;
     if (!demi_place(velocity))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
-                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
-                         (double)velocity.z, DEMI_FARTHEST);
+        return demi_refuse(w, __func__, "velocity of wall %d is (%g, %g, "
+                           "%g) m/s, must be finite and within %g m/s; check how it was computed",
+                           (int)id.id, (double)velocity.x, (double)velocity.y, (double)velocity.z,
+                           DEMI_FARTHEST);
     if (w->desc.planar && fabs((double)velocity.z) > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
-                         "grain moves along z", (int)id.id, (double)velocity.z);
+        return demi_refuse(w, __func__, "velocity of wall %d has the z "
+                           "component %g m/s, must be 0 in a planar world, where no grain moves "
+                           "along z", (int)id.id, (double)velocity.z);
     demi_wall_before(w, i);
     wall->glide = demi_unrotate(wall->pose.rotation, velocity);
     wall->glides = demi_dot(velocity, velocity) > 0;
     demi_wall_after(w, i);
-    demi_built(w, "dem_wall_surface_velocity_set");
+    demi_built(w, __func__);
     if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
     return DEM_OK;
 }
@@ -28647,8 +28607,8 @@ static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_w
          !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
 }
 DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
+    if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     demi_wall next;
     const void *rows;
     void *old;
@@ -28666,14 +28626,14 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    if (!dropped) return demi_no_memory(w, __func__);
     if (!alone) demi_surfaces_outdated(w);
     if (!alone || !demi_wall_led(w, &w->walls[i], &next))
         w->stage.forces_valid = w->stage.primed = 0;
     demi_wall_before(w, i);
     w->walls[i] = next;
     demi_wall_after(w, i);
-    demi_built(w, "dem_wall_motion_set");
+    demi_built(w, __func__);
     if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
     return DEM_OK;
 }
@@ -31033,9 +30993,8 @@ static dem_result demi_unstable(dem_world *w) {
             const demi_kept *c = demi_kept_of(w, d) + i;
             if (c->b < 0 && c->deep >= 1)
                 return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
-                                 "overlaps wall %d by %.3g of its "
-                                 "radius, must be below 1; it started inside the wall, hit it too "
-                                 "fast for dt = %g s, or the "
+                                 "overlaps wall %d by %.3g of its radius, must be below 1; it "
+                                 "started inside the wall, hit it too fast for dt = %g s, or the "
                                  "material is too soft", (unsigned long long)w->clock.steps,
                                  (unsigned)w->bodies.slot[c->a] + 1, (int)w->walls[c->wall].id,
                                  (double)c->deep, (double)w->clock.dt);
@@ -31446,11 +31405,11 @@ static dem_result demi_refresh(dem_world *h) {
 }
 
 DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
-    if (demi_null(w, "dem_world_gravity_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (!demi_place(gravity))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_gravity_set: gravity is (%g, %g, %g) "
-                         "m/s2, must be finite and at most %g; check what it was computed from",
-                         (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
+        return demi_refuse(w, __func__, "gravity is (%g, %g, %g) m/s2, must be "
+                           "finite and at most %g; check what it was computed from",
+                           (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
     demi_finish(w);                             /* the open half kick belongs to the old gravity */
     w->desc.gravity = gravity;
     if (w->desc.planar) w->desc.gravity.z = 0;
@@ -31458,15 +31417,13 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
     return DEM_OK;
 }
 DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
-    if (demi_null(w, "dem_world_dt_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (demi_dt_bad(dt))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 or %g to "
-                         "%g s; 0 lets the library choose", (double)dt, DEMI_DT_LEAST,
-                         DEMI_FARTHEST);
+        return demi_refuse(w, __func__, "dt is %g s, must be 0 or %g to %g s; 0 lets the "
+                           "library choose", (double)dt, DEMI_DT_LEAST, DEMI_FARTHEST);
     if (!demi_response_is(w, DEMI_LASTING) && !(dt > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
-                         "no contact time to choose it from; set it, for example 1e-3 s for "
-                         "grains of millimetres");
+        return demi_refuse(w, __func__, "dt is 0 s, but impulses have no contact time to "
+                           "choose it from; set it, for example 1e-3 s for grains of millimetres");
     demi_finish(w);                             /* the open half kick belongs to the old dt */
     w->desc.dt = dt;
     demi_scene_changed(w);
@@ -31529,15 +31486,15 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     return result;
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
-    if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (steps < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
-    if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
+        return demi_refuse(w, __func__, "steps is %d, must be >= 0", steps);
+    if (steps && demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (w->look.under_way)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: called from the function of an "
-                         "output (dem_output_add), which runs between two steps and must not step "
-                         "the world; step it when the run has ended");
-    return demi_steps(w, "dem_world_step", steps);
+        return demi_refuse(w, __func__, "called from the function of an output "
+                           "(dem_output_add), which runs between two steps and must not step the "
+                           "world; step it when the run has ended");
+    return demi_steps(w, __func__, steps);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -31560,15 +31517,14 @@ static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn 
 }
 DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
                                  void *user) {
-    if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const double start = w->clock.time, begun = demi_clock();
     const uint64_t first = w->clock.steps;
     double last = begun, end;
     int chunk = 1;
     if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
-                         ">= 0", seconds);
-    if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
+        return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
+    if (demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
     end = start + seconds;
     /* it continues the last run: from the end that was requested there, so that runs add up */
@@ -31589,7 +31545,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         now = demi_clock();
         if (now - last > 0.1) {
             last = now;
-            result = demi_progress(w, "dem_world_run", progress, user,
+            result = demi_progress(w, __func__, progress, user,
                                    (w->clock.time - start)/seconds, begun);
             if (result != DEM_OK) return result;
         }
@@ -31598,16 +31554,15 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;
-    return demi_progress(w, "dem_world_run", progress, user, 1, begun);
+    return demi_progress(w, __func__, progress, user, 1, begun);
 }
 
 DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
                                     void *user) {
-    if (demi_null(w, "dem_world_run_to", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
-                         "and not before now (%g s); to go back in time, read a checkpoint", time,
-                         w->clock.time);
+        return demi_refuse(w, __func__, "time is %g s, must be finite and not before now "
+                           "(%g s); to go back in time, read a checkpoint", time, w->clock.time);
     w->clock.run_steps = w->clock.steps + 1;        /* it does not continue the last run */
     return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
 }
@@ -31667,22 +31622,21 @@ static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
 }
 DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user) {
-    if (demi_null(w, "dem_world_settle", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const double begun = demi_clock(), start = w->clock.time;
     double look, below = demi_calm(w, (double)speed, &look), last = begun;
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
         (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed is %g "
-                         "m/s; seconds must be > 0, speed >= 0, and > 0 without gravity, from "
-                         "which the default follows; set the speed that counts as rest", seconds,
-                         (double)speed);
+        return demi_refuse(w, __func__, "seconds is %g and speed is %g m/s; seconds must "
+                           "be > 0, speed >= 0, and > 0 without gravity, from which the default "
+                           "follows; set the speed that counts as rest", seconds, (double)speed);
     for (i = 0; i < w->feed_count; i++) {
         const demi_feed *f = demi_feed_at(w, i);
         if (!f->desc.limited && !(f->desc.end > 0))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: feed %d has limited 0 and "
-                             "end 0 s, one of them must be > 0, or the feed never ends; set one "
-                             "of them, or use dem_world_run", i + 1);
+            return demi_refuse(w, __func__, "feed %d has limited 0 and end 0 s, one of "
+                               "them must be > 0, or the feed never ends; set one of them, or use "
+                               "dem_world_run", i + 1);
     }
     w->look.tenths_told = 0;
     while (w->bodies.count || demi_feed_coming(w) >= 0) {
@@ -31698,12 +31652,12 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
             last = demi_clock();
-            result = demi_progress(w, "dem_world_settle", progress, user,
+            result = demi_progress(w, __func__, progress, user,
                                    (w->clock.time - start)/seconds, begun);
             if (result != DEM_OK) return result;
         }
     }
-    return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
+    return demi_progress(w, __func__, progress, user, 1, begun);
 }
 
 /* demi_isatty: true if a file is a terminal. Standard C has no such function. On the systems below
@@ -31721,7 +31675,7 @@ static int demi_isatty(int file) { (void)file; return 1; }
 static int demi_fileno(FILE *file) { (void)file; return 0; }
 #endif
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
-    if (demi_null_look(w, "dem_progress_print", user, "user")) return 0;
+    if (demi_null_look(w, __func__, user, "user")) return 0;
     FILE *out = (FILE *)user;
     const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
     if (line && tenths <= w->look.tenths_told) return 0;
@@ -31729,19 +31683,18 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
             100*done, w->clock.time, w->bodies.count, seconds_left);
     if (w->booked.unsolved)
-        fprintf(out, "%llu steps above the tolerance   ",
-                (unsigned long long)w->booked.unsolved);
+        fprintf(out, "%llu steps above the tolerance   ", (unsigned long long)w->booked.unsolved);
     if (line || done >= 1) fputc('\n', out);
     fflush(out);
     return 0;
 }
 
 DEM_API double dem_world_time_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_time_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     return w->clock.time;
 }
 DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_steps_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     return w->clock.steps;
 }
 
@@ -42565,9 +42518,8 @@ static void demi_film_wall(dem_replay *r, int i) {
     char text[32];
     int k, corners = wall->corners ? wall->element_count*kind->corners : 0;
     fprintf(out, "<script type=\"dem/wall\">{\"id\":%d,\"kind\":\"%s\",\"radius\":%s",
-            (int)wall->id,
-            kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN ? "profile" :
-            wall->ring_count ? "mesh" : kind->name,
+            (int)wall->id, kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN
+            ? "profile" : wall->ring_count ? "mesh" : kind->name,
             demi_format_real(text, (double)wall->radius, 9));
     if (wall->vertices)
         demi_film_reals(out, "vertices", wall->vertices, wall->vertex_count, 3, 3);
@@ -42800,22 +42752,21 @@ static dem_result demi_film_check(dem_replay *r, const char *call) {
                      "has room", call, r->out.path, errno ? strerror(errno) : "unknown cause");
 }
 DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
-    if (!r || demi_null_write(r->world, "dem_replay_frame_write", r,
-                              "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     dem_world *w = r->world;
     const demi_calling was = w->look.calling;
     double time;
     uint32_t values = 0;
     int s, k;
     errno = 0;
-    dem_result result = demi_film_check(r, "dem_replay_frame_write");
+    dem_result result = demi_film_check(r, __func__);
     if (result != DEM_OK) return result;
     if (!demi_grow(w, DEMI_LOOSE, &r->seen, sizeof *r->seen, (size_t)w->bodies.slot_count + 1)) {
         r->failed = 1;
-        return demi_film_check(r, "dem_replay_frame_write");
+        return demi_film_check(r, __func__);
     }
     demi_finish(w);
-    demi_calls(w, "dem_replay_frame_write", 1);
+    demi_calls(w, __func__, 1);
     const dem_bodies b = dem_bodies_get(w);
     if (!(r->resolution > 0)) demi_film_resolve(r, &b);
     for (; r->shape_count < w->shape_count; r->shape_count++)
@@ -42839,7 +42790,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
     if (!r->failed) demi_film_block(r);
     demi_called(w, was);
     r->frames++;
-    return demi_film_check(r, "dem_replay_frame_write");
+    return demi_film_check(r, __func__);
 }
 
 /* --- automatic frames; opening, values, closing --- */
@@ -42888,8 +42839,8 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     dem_replay *r;
     size_t k;
     int i, n, group, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
-    if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
-    if (demi_rows_check(w, "dem_replay_open", demi_replay_rows, &d, "",
+    if (demi_null_write(w, __func__, w, "world")) return 0;
+    if (demi_rows_check(w, __func__, demi_replay_rows, &d, "",
                         "start from DEM_REPLAY_DESC and set only what differs")) return 0;
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
         const char *name = demi_name(w->desc.body_reals, i, &n);
@@ -42899,18 +42850,17 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     group = d.number_fn ? -1 : demi_group_find(w, d.number);
     if (group >= 0) real = -1;
     if (d.number && !d.number_fn && group < 0 && (real < 0 || real >= w->bodies.real_count)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
-                  "desc.body_reals does not name, nor desc.groups; name it there, or give "
-                  "number_fn", d.number);
+        demi_refuse(w, __func__, "number is \"%.60s\", which desc.body_reals does not "
+                    "name, nor desc.groups; name it there, or give number_fn", d.number);
         return 0;
     }
     r = (dem_replay *)demi_alloc(w, 1, sizeof *r);
-    if (!r) { demi_no_memory(w, "dem_replay_open"); return 0; }
+    if (!r) { demi_no_memory(w, __func__); return 0; }
     r->world = w;
     r->desc = d;
     r->real = real;
     r->group = group;
-    if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
+    if (demi_out_open(&r->out, w, __func__, path) != DEM_OK) { demi_free(w, r); return 0; }
     r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
     snprintf(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
@@ -42930,18 +42880,16 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
 }
 DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double value) {
     int k;
-    if (!r || demi_null_write(r->world, "dem_replay_value_set", r,
-                              "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     if (!name || !*name || strlen(name) >= sizeof r->names[0])
-        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: name is %.80s, must "
-                         "have "
-                         "1 to %d letters", name ? *name ? name : "empty" : "null",
-                         (int)sizeof r->names[0] - 1);
+        return demi_refuse(r->world, __func__, "name is %.80s, must have 1 to %d "
+                           "letters", name ? *name ? name : "empty" : "null",
+                           (int)sizeof r->names[0] - 1);
     for (k = 0; k < r->value_count && strcmp(r->names[k], name) != 0; k++) {}
     if (k == DEM_REPLAY_VALUES)
-        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: \"%.60s\" would be "
-                         "value %d, but a replay draws at most %d; leave some out", name, k + 1,
-                         (int)DEM_REPLAY_VALUES);
+        return demi_refuse(r->world, __func__, "\"%.60s\" would be value %d, but a "
+                           "replay draws at most %d; leave some out", name, k + 1,
+                           (int)DEM_REPLAY_VALUES);
     if (k == r->value_count) {
         r->value_count++;
         strcpy(r->names[k], name);
@@ -42955,10 +42903,10 @@ DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double 
 }
 DEM_API dem_result dem_replay_close(dem_replay *r) {
     dem_result result;
-    if (!r || demi_null_write(r->world, "dem_replay_close", r, "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     if (r->failed) {                            /* a frame is missing: the file is removed */
         demi_out_drop(&r->out);
-        result = demi_film_check(r, "dem_replay_close");
+        result = demi_film_check(r, __func__);
         demi_film_free(r);
         return result;
     }
@@ -42969,7 +42917,7 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
     fputs("<script type=\"dem/report\">", r->out.file);
     dem_world_report(r->world, r->out.file);
     fputs("</script>\n", r->out.file);
-    r->out.call = "dem_replay_close";
+    r->out.call = __func__;
     result = demi_out_close(&r->out);
     demi_film_free(r);
     return result;

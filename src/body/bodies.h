@@ -349,10 +349,9 @@ static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall
                                  int body, int part) {
     char who[32] = "the body";
     if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: %s; nothing was "
-                     "added", call, number, demi_wall_kinds[wall->kind].name, who,
-                     demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
-                     demi_wall_why(w, wall, part));
+    return demi_refuse(w, call, "wall %d is a %s and %s a%s %s: %s; nothing was added", number,
+                       demi_wall_kinds[wall->kind].name, who, demi_an(demi_shape_rows[part].name),
+                       demi_shape_rows[part].name, demi_wall_why(w, wall, part));
 }
 /* Returns 1 with an error message if contacts between a shape and some wall are not available. */
 static int demi_walls_strange(dem_world *w, const char *call, int shape) {
@@ -398,28 +397,26 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
                                    const dem_real *positions,
                                    const dem_real *velocities, const dem_real *radii,
                                    dem_real radius) {
-    if (demi_null(w, "dem_spheres_add", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     int i, m = 0;
-    if (demi_material_index(w, "dem_spheres_add", material,
-                            &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_material_index(w, __func__, material, &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (count < 0 || (count > 0 && !positions))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: count is %d, must be >= 0 with "
-                         "positions (count x 3)"
-                         "; check the caller's array", count);
+        return demi_refuse(w, __func__, "count is %d, must be >= 0 with positions (count "
+                           "x 3); check the caller's array", count);
     for (i = 0; i < count; i++) {
         const dem_real r = radii ? radii[i] : radius;
         if (!(r > 0) || !demi_finite(r))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g "
-                             "m, must be > 0 and finite; no sphere was added", i, (double)r);
-        if (demi_mass_refuse(w, "dem_spheres_add", m, r, i)) return DEM_ERROR_ARGUMENT;
+            return demi_refuse(w, __func__, "radius of sphere %d is %g m, must be > 0 and "
+                               "finite; no sphere was added", i, (double)r);
+        if (demi_mass_refuse(w, __func__, m, r, i)) return DEM_ERROR_ARGUMENT;
         if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
                                                       !demi_place(demi_at(velocities + 3*i))))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
-                             "sphere %d is not a finite number, or beyond %g m or m/s; check the "
-                             "data it came from; no sphere was added", i, DEMI_FARTHEST);
+            return demi_refuse(w, __func__, "position or velocity of sphere %d is not a "
+                               "finite number, or beyond %g m or m/s; check the data it came from; "
+                               "no sphere was added", i, DEMI_FARTHEST);
     }
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
-        return demi_no_memory(w, "dem_spheres_add");
+        return demi_no_memory(w, __func__);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
                                                demi_at(positions + 3*i));
@@ -430,13 +427,13 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
-    demi_built(w, "dem_spheres_add");
+    demi_built(w, __func__);
     return DEM_OK;
 }
 
 DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius,
                                 dem_vec3 position) {
-    if (demi_null(w, "dem_sphere_add", w, "world")) return demi_no_body;
+    if (demi_null(w, __func__, w, "world")) return demi_no_body;
     dem_body id;
     dem_real x[3];
     id.slot = id.generation = 0;
@@ -451,28 +448,28 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
                              const dem_real *scale) {
     int i;
     if (count < 0 || (count > 0 && !x)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0 with positions "
-                  "(count x 3); check the caller's array", call, count);
+        demi_refuse(w, call, "count is %d, must be >= 0 with positions (count x 3); check the "
+                    "caller's array", count);
         return 0;
     }
     for (i = 0; i < count; i++) {
         const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
         if (!demi_place(demi_at(x + 3*i)) || (v && !demi_place(demi_at(v + 3*i))) ||
             (spin && !demi_place(demi_at(spin + 3*i)))) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position, velocity or spin of body %d is not a "
-                      "finite number, or beyond %g m, m/s or rad/s; check the data it came from; "
-                      "no body was added", call, i, DEMI_FARTHEST);
+            demi_refuse(w, call, "position, velocity or spin of body %d is not a finite number, or "
+                        "beyond %g m, m/s or rad/s; check the data it came from; no body was added",
+                        i, DEMI_FARTHEST);
             return 0;
         }
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: orientation of body %d is (%g, %g, %g, %g), "
-                      "must be finite and not zero; (1, 0, 0, 0) is no rotation; no body was added",
-                      call, i, (double)o.w, (double)o.x, (double)o.y, (double)o.z);
+            demi_refuse(w, call, "orientation of body %d is (%g, %g, %g, %g), must be finite and "
+                        "not zero; (1, 0, 0, 0) is no rotation; no body was added", i, (double)o.w,
+                        (double)o.x, (double)o.y, (double)o.z);
             return 0;
         }
         if (scale && !(demi_finite(scale[i]) && scale[i] > 0)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: scale of body %d is %g, must be > 0; no body "
-                      "was added", call, i, (double)scale[i]);
+            demi_refuse(w, call, "scale of body %d is %g, must be > 0; no body was added", i,
+                        (double)scale[i]);
             return 0;
         }
     }
@@ -491,11 +488,10 @@ static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, 
     int k, bad = !demi_finite_double(m) || !(m > 0);
     for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
     if (bad)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %d has scale %g and a mass of %g kg, and the "
-                  "mass or its inertia is too small or too large to calculate with in %s "
-                  "precision; lengths are in metres: check the unit; nothing was added",
-                  call, i, s, m,
-                  DEMI_SINGLE ? "single" : "double");
+        demi_refuse(w, call, "body %d has scale %g and a mass of %g kg, and the mass or its "
+                    "inertia is too small or too large to calculate with in %s precision; lengths "
+                    "are in metres: check the unit; nothing was added", i, s, m,
+                    DEMI_SINGLE ? "single" : "double");
     return bad;
 }
 /* Adds bodies of a shape. All checks come first, then the allocations, then what cannot fail, so a
@@ -538,19 +534,19 @@ DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape
                                   const dem_real *positions, const dem_real *orientations,
                                   const dem_real *velocities, const dem_real *spins,
                                   const dem_real *scales) {
-    if (demi_null(w, "dem_bodies_add", w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_bodies_add(w, "dem_bodies_add", material, shape, count, positions, orientations,
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_bodies_add(w, __func__, material, shape, count, positions, orientations,
                            velocities, spins, scales);
 }
 DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation) {
-    if (demi_null(w, "dem_body_add", w, "world")) return demi_no_body;
+    if (demi_null(w, __func__, w, "world")) return demi_no_body;
     dem_body id;
     dem_real x[3], q[4];
     id.slot = id.generation = 0;
     demi_put(x, position);
     demi_quat_put(q, orientation);
-    if (demi_bodies_add(w, "dem_body_add", material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
+    if (demi_bodies_add(w, __func__, material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
     return dem_body_id_get(w, w->bodies.count - 1);
 }
 
@@ -559,9 +555,8 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
     if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
         w->bodies.slot_generation[b.slot - 1] != b.generation ||
         w->bodies.slot_index[b.slot - 1] < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was "
-                  "removed, has left the domain, or was never added", call, (unsigned)b.slot,
-                  (unsigned)b.generation);
+        demi_refuse(w, call, "body %u (generation %u) does not exist; it was removed, has left the "
+                    "domain, or was never added", (unsigned)b.slot, (unsigned)b.generation);
         return -1;
     }
     return w->bodies.slot_index[b.slot - 1];
@@ -587,10 +582,10 @@ static void demi_body_take_out(dem_world *w, int i) {
 }
 
 DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
-    if (demi_null(w, "dem_body_remove", w, "world")) return DEM_ERROR_ARGUMENT;
-    int i = demi_body_index(w, "dem_body_remove", body);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    int i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_remove");
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_body_take_out(w, i);
     w->bodies.balance.removed++;
     demi_scene_changed(w);
@@ -598,10 +593,10 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
 }
 
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
-    if (demi_null_look(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, __func__, s, "state")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     demi_periods p;
-    int i = demi_body_index(w, "dem_body_get", body);
+    int i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     p = demi_periods_of(w);
     s->position = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
@@ -626,23 +621,22 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
 }
 
 DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_state *s) {
-    if (demi_null(w, "dem_body_set", s, "state")) return DEM_ERROR_ARGUMENT;
-    int i = demi_body_index(w, "dem_body_set", body);
+    if (demi_null(w, __func__, s, "state")) return DEM_ERROR_ARGUMENT;
+    int i = demi_body_index(w, __func__, body);
     const demi_shape *shape;
     const dem_quat q = s->orientation;
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     shape = demi_shape_of(w, i);
     if (w->bodies.orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: orientation of body %u is (%g, %g, "
-                         "%g, %g), must be finite and not zero; fill the state with dem_body_get "
-                         "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
-                         (double)q.z);
+        return demi_refuse(w, __func__, "orientation of body %u is (%g, %g, %g, %g), must be "
+                           "finite and not zero; fill the state with dem_body_get first",
+                           (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y, (double)q.z);
     if (!demi_place(s->position) || !demi_place(s->velocity) || !demi_place(s->spin))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
-                         "%u is not a finite number, or beyond %g m, m/s or rad/s; check what it "
-                         "was computed from", (unsigned)body.slot, DEMI_FARTHEST);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
+        return demi_refuse(w, __func__, "position, velocity or spin of body %u is not a "
+                           "finite number, or beyond %g m, m/s or rad/s; check what it was "
+                           "computed from", (unsigned)body.slot, DEMI_FARTHEST);
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     before = demi_body_energy(w, i);
     m = (double)w->bodies.mass[i];
     demi_put(w->bodies.pos + 4*i, s->position);
@@ -704,23 +698,22 @@ static double demi_temperature(const dem_world *w, double *mass, int *count, dou
 DEM_API double dem_temperature_get(const dem_world *w) {
     double mass, mean[3];
     int count;
-    if (demi_null_look(w, "dem_temperature_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     return demi_temperature(w, &mass, &count, mean);
 }
 DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_t seed) {
     const int axes = w && w->desc.planar ? 2 : 3;
     double mass, mean[3], drawn[3], was;
     int count, i, k, pass;
-    if (demi_null(w, "dem_temperature_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     was = demi_temperature(w, &mass, &count, mean);
     if (!(temperature >= 0) || !demi_finite_double(temperature) || count < 2 ||
         (!seed && temperature > 0 && !(was > 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_temperature_set: temperature is %g m2/s2, "
-                         "for %d bodies that can move and have %g m2/s2 now; it must be finite "
-                         "and >= 0, for two bodies at least, and bodies at rest have no "
-                         "velocities to scale: give a seed to draw velocities", temperature, count,
-                         was);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_temperature_set");
+        return demi_refuse(w, __func__, "temperature is %g m2/s2, for %d bodies that "
+                           "can move and have %g m2/s2 now; it must be finite and >= 0, for two "
+                           "bodies at least, and bodies at rest have no velocities to scale: give "
+                           "a seed to draw velocities", temperature, count, was);
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     /* pass 0, with a seed: draws velocities; pass 1: scales them */
     for (pass = seed ? 0 : 1; pass < 2; pass++) {
         double now = demi_temperature(w, &mass, &count, drawn), scale;
@@ -771,36 +764,36 @@ static dem_result demi_reals_ask(const dem_world *world, const char *call, const
     if (setting ? demi_null(w, call, reals, "reals") : demi_null_look(w, call, reals, "reals"))
         return DEM_ERROR_ARGUMENT;
     if (!w->bodies.real_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: bodies carry no user-defined numbers; name "
-                         "the numbers in desc.body_reals when the world is created", call);
+        return demi_refuse(w, call, "bodies carry no user-defined numbers; name the numbers in "
+                           "desc.body_reals when the world is created");
     for (k = 0; setting && k < count*w->bodies.real_count; k++)
         if (!demi_finite(reals[k]))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: number %d is %g, must be finite; check "
-                             "what it was computed from", call, k, (double)reals[k]);
+            return demi_refuse(w, call, "number %d is %g, must be finite; check what it was "
+                               "computed from", k, (double)reals[k]);
     return DEM_OK;
 }
 DEM_API dem_result dem_body_reals_get(const dem_world *w, dem_body body, dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_body_reals_get", reals, 1, 0);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 0);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_body_index((dem_world *)w, "dem_body_reals_get", body);
+    i = demi_body_index((dem_world *)w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(reals, w->bodies.reals + w->bodies.real_count*i,
            (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_body_reals_set(dem_world *w, dem_body body, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_body_reals_set", reals, 1, 1);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 1);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_body_index(w, "dem_body_reals_set", body);
+    i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(w->bodies.reals + w->bodies.real_count*i, reals,
            (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_bodies_reals_set", reals,
+    const dem_result result = demi_reals_ask(w, __func__, reals,
                                              w ? w->bodies.count : 0, 1);
     if (result != DEM_OK) return result;
     if (w->bodies.count)
@@ -809,7 +802,7 @@ DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
     return DEM_OK;
 }
 DEM_API dem_body dem_body_id_get(const dem_world *w, int index) {
-    if (demi_null_look(w, "dem_body_id_get", w, "world")) return demi_no_body;
+    if (demi_null_look(w, __func__, w, "world")) return demi_no_body;
     dem_body id;
     id.slot = id.generation = 0;
     if (index < 0 || index >= w->bodies.count) return id;

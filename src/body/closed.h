@@ -323,10 +323,10 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
             const int in = a == b ? 0 : demi_shells_inside(c, s, a, b);
             if (in < 0) {
                 x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
-                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
-                          "begins at (%g, %g, %g) m), must be apart or one inside the other; "
-                          "unite them in the program that exported them, or pass them as separate "
-                          "meshes", call, x.x, x.y, x.z);
+                demi_refuse(w, call, "two closed shells of the mesh cross (one begins at (%g, %g, "
+                            "%g) m), must be apart or one inside the other; unite them in the "
+                            "program that exported them, or pass them as separate meshes", x.x, x.y,
+                            x.z);
                 return 0;
             }
             s->depth[a] += in;
@@ -337,10 +337,9 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
                 s->around[a] = b;
         if (s->around[a] < 0 || s->volume[a]*s->volume[s->around[a]] < 0) continue;
         x = demi_mesh_corner(c->mesh, s->order[s->start[a]], 0);
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
-                  "lies inside another and faces the same way, must face the other way to be a "
-                  "cavity; reverse its triangles, or leave it out if it is a second body", call,
-                  x.x, x.y, x.z);
+        demi_refuse(w, call, "the shell of the mesh that begins at (%g, %g, %g) m lies inside "
+                    "another and faces the same way, must face the other way to be a cavity; "
+                    "reverse its triangles, or leave it out if it is a second body", x.x, x.y, x.z);
         return 0;
     }
     return 1;
@@ -357,18 +356,18 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     x = demi_mesh_corner(c->mesh, side/3, side%3);
     if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
         if (c->twisted)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is one-sided, as a Moebius strip is "
-                      "(no winding fits at %d edges), so it has no inside; repair it in the "
-                      "program that exported it", call, c->twisted);
+            demi_refuse(w, call, "the mesh is one-sided, as a Moebius strip is (no winding fits at "
+                        "%d edges), so it has no inside; repair it in the program that exported it",
+                        c->twisted);
         else if (loose)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or has more than "
-                      "two triangles there (first near (%.4g, %.4g, %.4g) m), so it has no "
-                      "inside; close it in the program that exported it (dem_mesh_health counts "
-                      "such edges)", call, loose, x.x, x.y, x.z);
+            demi_refuse(w, call, "the mesh is open at %d edges, or has more than two triangles "
+                        "there (first near (%.4g, %.4g, %.4g) m), so it has no inside; close it in "
+                        "the program that exported it (dem_mesh_health counts such edges)", loose,
+                        x.x, x.y, x.z);
         else
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
-                      "%d; if it holds several bodies, pass them as separate meshes", call,
-                      c->shells, (int)DEMI_CLOSED_SHELLS);
+            demi_refuse(w, call, "the mesh has %d closed shells, must have 1 to %d; if it holds "
+                        "several bodies, pass them as separate meshes", c->shells,
+                        (int)DEMI_CLOSED_SHELLS);
         return 0;
     }
     memset(&s, 0, sizeof s);

@@ -337,22 +337,22 @@ static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, do
         if (faces && faces <= DEM_POLYHEDRON_FACES) break;
     }
     if (faces < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d points lie in one plane within %.1g m; a "
-                  "polyhedron needs four points that do not", call, h->count, h->near);
+        demi_refuse(w, call, "the %d points lie in one plane within %.1g m; a polyhedron needs "
+                    "four points that do not", h->count, h->near);
     else if (faces > DEM_POLYHEDRON_FACES)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points has more than %d faces; "
-                  "give fewer points, or use an ellipsoid or a cluster of spheres for a round body",
-                  call, h->count, DEM_POLYHEDRON_FACES);
+        demi_refuse(w, call, "the hull of the %d points has more than %d faces; give fewer points, "
+                    "or use an ellipsoid or a cluster of spheres for a round body", h->count,
+                    DEM_POLYHEDRON_FACES);
     else if (!faces)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points does not close, likely "
-                  "because many points lie nearly, but not exactly, in one plane or on one line; "
-                  "give only the corners", call, h->count);
+        demi_refuse(w, call, "the hull of the %d points does not close, likely because many points "
+                    "lie nearly, but not exactly, in one plane or on one line; give only the "
+                    "corners", h->count);
     if (faces < 1 || faces > DEM_POLYHEDRON_FACES) return 0;
     demi_polyhedron_moments(h->x, rim, faces, &m);
     demi_shape_principal(shape, &m);
     if (!(shape->inertia.x > 0 && shape->inertia.y > 0 && shape->inertia.z > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points is so flat that its volume "
-                  "is %.2g m3; give it some thickness", call, h->count, shape->volume);
+        demi_refuse(w, call, "the hull of the %d points is so flat that its volume is %.2g m3; "
+                    "give it some thickness", h->count, shape->volume);
         return 0;
     }
     shape->faces = faces;
@@ -375,16 +375,15 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     demi_d3 *x;
     int i, made = 0;
     if (count < 4 || count > 10000 || !points) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
-                  "3)", call, count);
+        demi_refuse(w, call, "count is %d, must be 4 to 10000 with points (count x 3)", count);
         return 0;
     }
     lo = hi = demi_at(points);
     for (i = 0; i < count; i++) {
         const dem_vec3 p = demi_at(points + 3*i);
         if (!demi_finite3(p)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g, %g) m, must be finite", call,
-                      i, (double)p.x, (double)p.y, (double)p.z);
+            demi_refuse(w, call, "point %d is (%g, %g, %g) m, must be finite", i, (double)p.x,
+                        (double)p.y, (double)p.z);
             return 0;
         }
         lo = demi_v(DEMI_MIN(lo.x, p.x), DEMI_MIN(lo.y, p.y), DEMI_MIN(lo.z, p.z));
@@ -414,11 +413,10 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     return 1;
 }
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
-    const char *call = "dem_shape_polyhedron_add";
     demi_shape shape;
-    if (demi_null(w, call, w, "world") || demi_shape_planar(w, call)) return demi_no_shape;
-    if (!demi_polyhedron_of(w, call, count, points, &shape)) return demi_no_shape;
-    return demi_shape_adopt(w, call, &shape);
+    if (demi_null(w, __func__, w, "world") || demi_shape_planar(w, __func__)) return demi_no_shape;
+    if (!demi_polyhedron_of(w, __func__, count, points, &shape)) return demi_no_shape;
+    return demi_shape_adopt(w, __func__, &shape);
 }
 /* Returns the depth of a point, in the frame the shape was given in, below its faces, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
@@ -438,24 +436,23 @@ static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const d
     int i;
     if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
         (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: there are %d vertices and %d elements; there must "
-                  "be at least one and at most %d of each, with pointers to them; was the file "
-                  "read?", call, vertices, elements, INT_MAX/8);
+        demi_refuse(w, call, "there are %d vertices and %d elements; there must be at least one "
+                    "and at most %d of each, with pointers to them; was the file read?", vertices,
+                    elements, INT_MAX/8);
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
         if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
-                      "finite and between -%g and %g; check that the file was read completely and "
-                      "is in metres", call, i/per_vertex, (double)xyz[i], DEMI_FARTHEST,
-                      DEMI_FARTHEST);
+            demi_refuse(w, call, "a coordinate of vertex %d is %g m, must be finite and between "
+                        "-%g and %g; check that the file was read completely and is in metres",
+                        i/per_vertex, (double)xyz[i], DEMI_FARTHEST, DEMI_FARTHEST);
             return 0;
         }
     for (i = 0; i < elements*per_element; i++)
         if (corners[i] < 0 || corners[i] >= vertices) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; "
-                      "are vertices numbered from 1 in the file?", call, i/per_element,
-                      (int)corners[i], vertices - 1);
+            demi_refuse(w, call, "element %d names vertex %d, must be 0 to %d; are vertices "
+                        "numbered from 1 in the file?", i/per_element, (int)corners[i],
+                        vertices - 1);
             return 0;
         }
     return 1;
@@ -483,20 +480,19 @@ static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, 
     return made;
 }
 DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
-    const char *call = "dem_shape_mesh_add";
     demi_shape shape;
     dem_vec3 place = demi_v(0, 0, 0);
     dem_real most = 0;
     int i, k;
-    if (demi_null(w, call, mesh, "mesh") || demi_shape_planar(w, call)) return demi_no_shape;
+    if (demi_null(w, __func__, mesh, "mesh") || demi_shape_planar(w, __func__))
+        return demi_no_shape;
     if (!(dent >= 0) || !demi_finite(dent)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: dent is %g m, must be >= 0 and finite", call,
-                  (double)dent);
+        demi_refuse(w, __func__, "dent is %g m, must be >= 0 and finite", (double)dent);
         return demi_no_shape;
     }
-    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+    if (!demi_mesh_sound(w, __func__, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
                          mesh->triangles, 3)) return demi_no_shape;
-    if (!demi_mesh_hull(w, call, mesh, &shape)) return demi_no_shape;
+    if (!demi_mesh_hull(w, __func__, mesh, &shape)) return demi_no_shape;
     for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, midpoints of sides, centroids */
         const int32_t *t = mesh->triangles + i/3*3;
         dem_vec3 x[3], at[3];
@@ -510,14 +506,14 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
         }
     }
     if (most > dent + shape.radius*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-8))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is not convex: at (%g, %g, %g) m it lies "
-                  "%.3g m inside its hull, more than the allowed dent of %g m; cut it into convex "
-                  "pieces, use a cluster of spheres, or increase dent to use the hull", call,
-                  (double)place.x, (double)place.y, (double)place.z, (double)most, (double)dent);
+        demi_refuse(w, __func__, "the mesh is not convex: at (%g, %g, %g) m it lies %.3g m inside "
+                    "its hull, more than the allowed dent of %g m; cut it into convex pieces, use "
+                    "a cluster of spheres, or increase dent to use the hull", (double)place.x,
+                    (double)place.y, (double)place.z, (double)most, (double)dent);
         demi_shape_free(w, &shape);
         return demi_no_shape;
     }
-    return demi_shape_adopt(w, call, &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 static size_t demi_shape_hull_reals(const demi_shape *s) {

@@ -273,11 +273,11 @@ static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
         other = i < 0 ? DEMI_BALL : i < w->shape_count ? w->shapes[i].kind : kind;
         if (demi_listed(demi_shape_rows[DEMI_MAX(kind, other)].touch, DEMI_MIN(kind, other)))
             continue;
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts between shape %d, a%s %s, and shape %d, "
-                  "a%s %s, are not available, so a world can hold only one of the two; nothing "
-                  "was added", call, w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
-                  demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
-                  demi_shape_rows[other].name);
+        demi_refuse(w, call, "contacts between shape %d, a%s %s, and shape %d, a%s %s, are not "
+                    "available, so a world can hold only one of the two; nothing was added",
+                    w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
+                    demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
+                    demi_shape_rows[other].name);
         return 1;
     }
     return 0;
@@ -301,21 +301,21 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
 /* Returns 1 with an error message in a planar world, which has no shapes of three dimensions. */
 static int demi_shape_planar(dem_world *w, const char *call) {
     if (!w->desc.planar) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar and holds only discs and polygons; "
-              "set planar to 0, or use discs and dem_shape_polygon_add", call);
+    demi_refuse(w, call, "the world is planar and holds only discs and polygons; set planar to 0, "
+                "or use discs and dem_shape_polygon_add");
     return 1;
 }
 
 DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
-    if (demi_null(w, "dem_shape_ellipsoid_add", w, "world")) return demi_no_shape;
+    if (demi_null(w, __func__, w, "world")) return demi_no_shape;
     demi_shape shape;
     const double lo = (double)DEMI_MIN(a.x, DEMI_MIN(a.y, a.z));
     const double hi = (double)DEMI_MAX(a.x, DEMI_MAX(a.y, a.z));
-    if (demi_shape_planar(w, "dem_shape_ellipsoid_add")) return demi_no_shape;
+    if (demi_shape_planar(w, __func__)) return demi_no_shape;
     if (!demi_finite3(a) || !(lo > 0) || !(hi <= 1000.001*lo)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_ellipsoid_add: semi-axes are %g, %g and %g m, "
-                  "must be > 0 and the longest at most 1000 times the shortest; give half "
-                  "lengths, in metres", (double)a.x, (double)a.y, (double)a.z);
+        demi_refuse(w, __func__, "semi-axes are %g, %g and %g m, must be > 0 and "
+                    "the longest at most 1000 times the shortest; give half lengths, in metres",
+                    (double)a.x, (double)a.y, (double)a.z);
         return demi_no_shape;
     }
     memset(&shape, 0, sizeof shape);
@@ -325,7 +325,7 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     shape.inertia = demi_v((a.y*a.y + a.z*a.z)/5, (a.x*a.x + a.z*a.z)/5, (a.x*a.x + a.y*a.y)/5);
     shape.frame = dem_quat_make(1, 0, 0, 0);
     demi_ellipsoid_bounds(&shape);
-    return demi_shape_adopt(w, "dem_shape_ellipsoid_add", &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 /* True if no two spheres of a cluster overlap, so that no volume counts twice. */
@@ -378,23 +378,22 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
     int i;
     if (desc->count < 1 || desc->count > 1000 || !desc->positions || desc->rays < 0 ||
         desc->rays > 4096 || (desc->rays > 0 && desc->rays < 16)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and rays is %d; count must be 1 to 1000 "
-                  "with positions (count x 3), rays 0 or 16 to 4096", call, desc->count,
-                  desc->rays);
+        demi_refuse(w, call, "count is %d and rays is %d; count must be 1 to 1000 with positions "
+                    "(count x 3), rays 0 or 16 to 4096", desc->count, desc->rays);
         return 0;
     }
     for (i = 0; i < desc->count; i++) {
         const dem_real r = desc->radii ? desc->radii[i] : desc->radius;
         if (demi_finite(r) && r > 0 && demi_place(demi_at(desc->positions + 3*i))) continue;
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g) m; the "
-                  "radius must be > 0 and finite, coordinates at most 1e15 m; fill in radii or "
-                  "radius", call, i, (double)r, (double)desc->positions[3*i],
-                  (double)desc->positions[3*i + 1], (double)desc->positions[3*i + 2]);
+        demi_refuse(w, call, "sphere %d has radius %g m at (%g, %g, %g) m; the radius must be > 0 "
+                    "and finite, coordinates at most 1e15 m; fill in radii or radius", i, (double)r,
+                    (double)desc->positions[3*i], (double)desc->positions[3*i + 1],
+                    (double)desc->positions[3*i + 2]);
         return 0;
     }
     if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: mass is %d, must be a DEM_CLUSTER_ value; start from "
-                  "DEM_CLUSTER_DESC", call, (int)desc->mass);
+        demi_refuse(w, call, "mass is %d, must be a DEM_CLUSTER_ value; start from "
+                    "DEM_CLUSTER_DESC", (int)desc->mass);
         return 0;
     }
     if (desc->mass != DEM_CLUSTER_GIVEN) return 1;
@@ -402,10 +401,9 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per "
-              "density); all must be > 0, no moment above the sum of the other two, and the "
-              "centre within 1e15 m", call, (double)desc->volume, (double)I[0], (double)I[1],
-              (double)I[2]);
+    demi_refuse(w, call, "volume is %g m3, moments are %g, %g, %g m5 (per density); all must be > "
+                "0, no moment above the sum of the other two, and the centre within 1e15 m",
+                (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
     return 0;
 }
 /* Returns 1 with an error message if the rays are so far apart that they may miss a sphere. */
@@ -422,14 +420,13 @@ static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const
                 side = DEMI_MAX(side, to - (double)(shape->parts[4*j + e] - shape->parts[4*j + 3]));
             }
     if (side/rays <= (double)least/4) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so rays are %.3g m "
-              "apart, more than a quarter of the smallest radius, %g m; set rays to %.0f or more, "
-              "at most 4096, or give the moments", rays, side/rays, (double)least,
-              ceil(4*side/(double)least));
+    demi_refuse(w, "dem_shape_cluster_add", "rays is %d, so rays are %.3g m apart, more than a "
+                "quarter of the smallest radius, %g m; set rays to %.0f or more, at most 4096, or "
+                "give the moments", rays, side/rays, (double)least, ceil(4*side/(double)least));
     return 1;
 }
 DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *desc) {
-    if (demi_null(w, "dem_shape_cluster_add", desc, "desc")) return demi_no_shape;
+    if (demi_null(w, __func__, desc, "desc")) return demi_no_shape;
     demi_shape shape;
     demi_moments m;
     dem_shape none;
@@ -437,12 +434,12 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
     int i;
     none.id = 0;
-    if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
+    if (demi_shape_planar(w, __func__) || !demi_cluster_check(w, desc)) return none;
     memset(&shape, 0, sizeof shape);
     shape.kind = DEMI_BALL;
     shape.count = desc->count;
     shape.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)shape.count, sizeof(dem_real));
-    if (!shape.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
+    if (!shape.parts) { demi_no_memory(w, __func__); return none; }
     /* relative to the first sphere, for precision */
     if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
     for (i = 0; i < shape.count; i++) {
@@ -453,15 +450,15 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     if (demi_cluster_coarse(w, desc, &shape, least)) { demi_shape_free(w, &shape); return none; }
     if (!demi_cluster_moments(w, desc, &shape, &m)) {
         demi_shape_free(w, &shape);
-        demi_no_memory(w, "dem_shape_cluster_add");
+        demi_no_memory(w, __func__);
         return none;
     }
     demi_shape_principal(&shape, &m);
     if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0)) {
         demi_shape_free(w, &shape);
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of inertia is "
-                  "not > 0; %s", desc->mass == DEM_CLUSTER_GIVEN
-                  ? "the given off-diagonal moments are too large" : "use more rays");
+        demi_refuse(w, __func__, "a principal moment of inertia is not > 0; %s",
+                    desc->mass == DEM_CLUSTER_GIVEN ? "the given off-diagonal moments are too large"
+                    : "use more rays");
         return none;
     }
     for (i = 0; i < shape.count; i++)
@@ -471,15 +468,15 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     shape.lone = shape.count == 1 && !(demi_length(demi_at(shape.parts)) > 0);
     shape.centre = demi_add(shape.centre, about);
     demi_cluster_bounds(&shape);
-    return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 /* Returns the index of a shape, or -1 with an error message. */
 static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
     if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
-              "dem_shape_ellipsoid_add and the like and check the id that this returns", call,
-              (int)shape.id, w->shape_count);
+    demi_refuse(w, call, "shape %d does not exist, there are %d; add it with "
+                "dem_shape_ellipsoid_add and the like and check the id that this returns",
+                (int)shape.id, w->shape_count);
     return -1;
 }
 /* Returns the semi-axes, m, of the ellipsoid with the same moments of inertia. */
@@ -491,8 +488,8 @@ static dem_vec3 demi_shape_alike(const demi_shape *s) {
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
 }
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
-    if (demi_null_look(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_shape_index((dem_world *)world, "dem_shape_get", shape);
+    if (demi_null_look(world, __func__, info, "info")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_shape_index((dem_world *)world, __func__, shape);
     const demi_shape *s;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     s = &world->shapes[i];

@@ -86,39 +86,37 @@ static int demi_union_make(dem_world *w, const char *call, int count, const int3
 }
 DEM_API dem_shape dem_shape_union_add(dem_world *w, int count, const dem_shape *shapes,
                                       const dem_real *positions, const dem_real *orientations) {
-    const char *call = "dem_shape_union_add";
     int32_t which[1000];
     demi_shape shape;
     int i;
-    if (demi_null(w, call, w, "world") || demi_null(w, call, shapes, "shapes") ||
-        demi_null(w, call, positions, "positions")) return demi_no_shape;
+    if (demi_null(w, __func__, w, "world") || demi_null(w, __func__, shapes, "shapes") ||
+        demi_null(w, __func__, positions, "positions")) return demi_no_shape;
     if (count < 1 || count > 1000) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to 1000", call, count);
+        demi_refuse(w, __func__, "count is %d, must be 1 to 1000", count);
         return demi_no_shape;
     }
     for (i = 0; i < count; i++) {
         const dem_quat q = orientations ? demi_quat_at(orientations + 4*i)
             : dem_quat_make(1, 0, 0, 0);
-        which[i] = demi_shape_index(w, call, shapes[i]);
+        which[i] = demi_shape_index(w, __func__, shapes[i]);
         if (which[i] < 0) return demi_no_shape;
         if (w->shapes[which[i]].count || w->shapes[which[i]].pieces) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d is a cluster or a union, must be an "
-                      "ellipsoid, a polyhedron or a polygon; pass its pieces instead", call,
-                      which[i] + 1);
+            demi_refuse(w, __func__, "shape %d is a cluster or a union, must be an ellipsoid, a "
+                        "polyhedron or a polygon; pass its pieces instead", which[i] + 1);
             return demi_no_shape;
         }
         if (!demi_place(demi_at(positions + 3*i)) || !demi_quat_finite(q) ||
             !(demi_quat_most(q) > 0) || (w->desc.planar && (positions[3*i + 2] < 0 ||
             positions[3*i + 2] > 0 || q.x < 0 || q.x > 0 || q.y < 0 || q.y > 0))) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position or orientation of piece %d is not "
-                      "finite, is a zero quaternion, or leaves the plane of a planar world; "
-                      "(1, 0, 0, 0) is no rotation", call, i);
+            demi_refuse(w, __func__, "position or orientation of piece %d is not finite, is a zero "
+                        "quaternion, or leaves the plane of a planar world; (1, 0, 0, 0) is no "
+                        "rotation", i);
             return demi_no_shape;
         }
     }
-    if (!demi_union_make(w, call, count, which, positions, orientations, &shape))
+    if (!demi_union_make(w, __func__, count, which, positions, orientations, &shape))
         return demi_no_shape;
-    return demi_shape_adopt(w, call, &shape);
+    return demi_shape_adopt(w, __func__, &shape);
 }
 
 /* --- polygons, in planar worlds --- */
@@ -212,16 +210,16 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     double area = 0;
     int i, k;
     if (count < 3 || count > DEMI_POLYGON || !points) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 3 to %d with points (count x "
-                  "2)", call, count, DEMI_POLYGON);
+        demi_refuse(w, call, "count is %d, must be 3 to %d with points (count x 2)", count,
+                    DEMI_POLYGON);
         return 0;
     }
     for (i = 0; i < 2*count; i++) {
         x[i] = (double)points[i];
         if (!demi_finite(points[i]) || fabs(x[i]) > DEMI_FARTHEST) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g) m, must be finite and "
-                      "between -%g and %g", call, i/2, (double)points[i/2*2],
-                      (double)points[i/2*2 + 1], DEMI_FARTHEST, DEMI_FARTHEST);
+            demi_refuse(w, call, "point %d is (%g, %g) m, must be finite and between -%g and %g",
+                        i/2, (double)points[i/2*2], (double)points[i/2*2 + 1], DEMI_FARTHEST,
+                        DEMI_FARTHEST);
             return 0;
         }
     }
@@ -229,13 +227,13 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     for (i = 0; i < count; i++)
         for (k = 0; k < count; k++)
             if (demi_sides_cross(x, count, i, k)) {
-                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the sides from point %d and from point %d "
-                          "cross or touch; give the corners in order, each once", call, i, k);
+                demi_refuse(w, call, "the sides from point %d and from point %d cross or touch; "
+                            "give the corners in order, each once", i, k);
                 return 0;
             }
     if (!(area < 0 || area > 0))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the area is %g m2, must not be 0; give corners that "
-                  "are not on one line", call, area);
+        demi_refuse(w, call, "the area is %g m2, must not be 0; give corners that are not on one "
+                    "line", area);
     for (i = 0; i < count && area < 0; i++) {
         x[2*i] = (double)points[2*(count - 1 - i)];
         x[2*i + 1] = (double)points[2*(count - 1 - i) + 1];
@@ -243,25 +241,24 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     return fabs(area);
 }
 DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real *points) {
-    const char *call = "dem_shape_polygon_add";
     demi_cut_out piece[DEMI_POLYGON];
     double x[2*DEMI_POLYGON], area, high;
     int32_t which[DEMI_POLYGON];
     demi_shape shape;
     dem_shape id = demi_no_shape;
     int i, k, pieces, first;
-    if (demi_null(w, call, w, "world")) return id;
+    if (demi_null(w, __func__, w, "world")) return id;
     if (!w->desc.planar) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is not planar; set planar to 1, or use "
-                  "dem_shape_polyhedron_add", call);
+        demi_refuse(w, __func__, "the world is not planar; set planar to 1, or use "
+                    "dem_shape_polyhedron_add");
         return id;
     }
-    area = demi_polygon_read(w, call, count, points, x);
+    area = demi_polygon_read(w, __func__, count, points, x);
     if (!(area > 0)) return id;
     pieces = demi_polygon_cut(x, count, piece);
     if (!pieces)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d corners cannot be cut into convex pieces: "
-                  "some are too close to others or to sides; leave those out", call, count);
+        demi_refuse(w, __func__, "the %d corners cannot be cut into convex pieces: some are too "
+                    "close to others or to sides; leave those out", count);
     first = w->shape_count;
     high = 2*sqrt(area/DEMI_PI)/3;              /* m, half the thickness of the prisms */
     for (i = 0; i < pieces; i++) {
@@ -273,17 +270,17 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
             corner[3*k + 1] = (dem_real)x[2*c + 1];
             corner[3*k + 2] = (dem_real)(k & 1 ? high : -high);
         }
-        if (!demi_polyhedron_of(w, call, 2*piece[i].count, corner, &shape)) break;
+        if (!demi_polyhedron_of(w, __func__, 2*piece[i].count, corner, &shape)) break;
         own = shape.volume/(2*high);
         shape.equal = (dem_real)sqrt(own/DEMI_PI);
         shape.volume = own*(double)w->desc.thickness;
-        id = demi_shape_adopt(w, call, &shape);
+        id = demi_shape_adopt(w, __func__, &shape);
         if (!id.id) break;
         which[i] = id.id - 1;
     }
     if (pieces > 1 && i == pieces)
-        id = demi_union_make(w, call, pieces, which, 0, 0, &shape)
-            ? demi_shape_adopt(w, call, &shape) : demi_no_shape;
+        id = demi_union_make(w, __func__, pieces, which, 0, 0, &shape)
+            ? demi_shape_adopt(w, __func__, &shape) : demi_no_shape;
     if (pieces && i == pieces && id.id) return id;
     while (w->shape_count > first) demi_shape_free(w, &w->shapes[--w->shape_count]);
     return demi_no_shape;

@@ -12,13 +12,12 @@
 static dem_result demi_impulses_settle(dem_world *w) {
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     if (demi_impulses_twist(w) && !solver->moments)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
-                         "spinning friction, which the solver %s does not support; leave "
-                         "desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+        return demi_refuse(w, "dem_world_step", "materials have rolling or spinning friction, "
+                           "which the solver %s does not support; leave desc.solver at "
+                           "DEM_SOLVER_GAUSS_SEIDEL", solver->name);
     if (demi_joints_in_force(w) && !solver->joints)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
-                         "solver %s does not support; leave desc.solver at "
-                         "DEM_SOLVER_GAUSS_SEIDEL", solver->name);
+        return demi_refuse(w, "dem_world_step", "there are joints, which the solver %s does not "
+                           "support; leave desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
     w->clock.dt = w->desc.dt;
     w->clock.press_since = w->clock.steps;
     w->stage.dt_valid = 1;

@@ -67,9 +67,8 @@ static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
     }
     if (low < w->joint_count && w->joints[low].id == joint.id &&
         demi_joint_alive(w, w->joints + low)) return low;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it, one of its "
-              "bodies or its wall was removed, or adding it failed", call, (int)joint.id,
-              demi_joints_in_force(w));
+    demi_refuse(w, call, "joint %d does not exist, there are %d; it, one of its bodies or its wall "
+                "was removed, or adding it failed", (int)joint.id, demi_joints_in_force(w));
     return -1;
 }
 /* The limits of a motor are far beyond any machine and keep the squares of the resulting values
@@ -90,9 +89,9 @@ static int demi_motor_sane(dem_world *w, const char *call, const dem_joint_desc 
                         "start from DEM_JOINT_DESC, in SI units")) return 0;
     if (d->motor == DEM_MOTOR_NONE || (demi_joint_rows(d->kind) == 5 &&
                                        !(d->motor == DEM_MOTOR_SPEED && d->torque < 0))) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, torque %g N m; only revolute joints have "
-              "motors, and the limit on torque of DEM_MOTOR_SPEED must be >= 0 (0: no limit)", call,
-              (int)d->motor, (double)d->torque);
+    demi_refuse(w, call, "motor is %d, torque %g N m; only revolute joints have motors, and the "
+                "limit on torque of DEM_MOTOR_SPEED must be >= 0 (0: no limit)", (int)d->motor,
+                (double)d->torque);
     return 0;
 }
 /* Returns x in the frame of body `index`: a point, m, relative to its centre if `place` is 1, a
@@ -108,20 +107,19 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     const int hinged = demi_joint_rows(d->kind) == 5;
     int a, b = -1;
     if (!demi_response_is(w, DEMI_JOINTED)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
-                  "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
+        demi_refuse(w, call, "contacts of this world are springs, but joints need impulses; create "
+                    "the world with desc.response = DEM_RESPONSE_IMPULSES");
         return 0;
     }
     if (!demi_motor_sane(w, call, d)) return 0;
     if (hinged && (!(size > 0) || !demi_finite(size))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not 0 for a "
-                  "revolute joint", call, (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
+        demi_refuse(w, call, "axis is (%g, %g, %g), must be finite and not 0 for a revolute joint",
+                    (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
         return 0;
     }
     if (w->desc.planar && hinged && !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z, because "
-                  "discs rotate about no other axis", call, (double)d->axis.x, (double)d->axis.y,
-                  (double)d->axis.z);
+        demi_refuse(w, call, "axis is (%g, %g, %g), must be along z, because discs rotate about no "
+                    "other axis", (double)d->axis.x, (double)d->axis.y, (double)d->axis.z);
         return 0;
     }
     a = demi_body_index(w, call, d->a);
@@ -129,26 +127,24 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     if (d->b.slot && (b = demi_body_index(w, call, d->b)) < 0) return 0;
     if (!d->b.slot && d->wall.id && demi_wall_find(w, call, d->wall) < 0) return 0;
     if (!w->desc.orientations && (!demi_shape_of(w, a) || (b >= 0 && !demi_shape_of(w, b)))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is a sphere, and this world does not follow "
-                  "the orientations of spheres; create the world with desc.orientations = 1", call,
-                  (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
+        demi_refuse(w, call, "body %u is a sphere, and this world does not follow the orientations "
+                    "of spheres; create the world with desc.orientations = 1",
+                    (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
         return 0;
     }
     if (a != b && w->bodies.inv_mass[a] + (b >= 0 ? w->bodies.inv_mass[b] : 0) > 0) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a is body %u and b is body %u (0: none), but %s; a "
-              "joint holds two different bodies, at least one of which can move",
-              call, (unsigned)d->a.slot,
-              (unsigned)d->b.slot, a == b ? "they are the same" : "neither can move");
+    demi_refuse(w, call, "a is body %u and b is body %u (0: none), but %s; a joint holds two "
+                "different bodies, at least one of which can move", (unsigned)d->a.slot,
+                (unsigned)d->b.slot, a == b ? "they are the same" : "neither can move");
     return 0;
 }
 DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
-    const char *call = "dem_joint_add";
     demi_joint j;
     dem_joint id;
-    if (demi_null(w, call, d, "desc")) return demi_no_joint;
-    if (!demi_joint_sane(w, call, d)) return demi_no_joint;
+    if (demi_null(w, __func__, d, "desc")) return demi_no_joint;
+    if (!demi_joint_sane(w, __func__, d)) return demi_no_joint;
     if (!demi_orient_begin(w) || !DEMI_GROW(w, w->joints, (size_t)w->joint_count + 1)) {
-        demi_no_memory(w, call);
+        demi_no_memory(w, __func__);
         return demi_no_joint;
     }
     memset(&j, 0, sizeof j);
@@ -156,12 +152,12 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     j.desc.axis = demi_joint_rows(d->kind) == 5 ? demi_unit(d->axis) : demi_v(0, 0, 0);
     if (d->b.slot) j.desc.wall.id = 0;          /* b is a body, so the wall is ignored */
     else j.desc.b.generation = 0;
-    j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
-    j.axis[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), j.desc.axis, 0);
+    j.arm[0] = demi_joint_from_body(w, demi_body_index(w, __func__, d->a), d->point, 1);
+    j.axis[0] = demi_joint_from_body(w, demi_body_index(w, __func__, d->a), j.desc.axis, 0);
     j.arm[1] = d->point;
     j.axis[1] = j.desc.axis;
     if (d->b.slot) {
-        const int b = demi_body_index(w, call, d->b);
+        const int b = demi_body_index(w, __func__, d->b);
         j.arm[1] = demi_joint_from_body(w, b, d->point, 1);
         j.axis[1] = demi_joint_from_body(w, b, j.desc.axis, 0);
     } else if (d->wall.id) {
@@ -172,38 +168,37 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     id.id = j.id = ++w->joint_last;
     w->joints[w->joint_count++] = j;
     demi_scene_changed(w);
-    demi_built(w, call);
+    demi_built(w, __func__);
     return id;
 }
 DEM_API dem_result dem_joint_motor_set(dem_world *w, dem_joint joint, dem_motor motor,
                                        dem_real speed, dem_real torque) {
-    const char *call = "dem_joint_motor_set";
     dem_joint_desc d;
     int i;
-    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
-    i = demi_joint_find(w, call, joint);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, __func__, joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     d = w->joints[i].desc;
     d.motor = motor;
     d.speed = speed;
     d.torque = torque;
-    if (!demi_motor_sane(w, call, &d)) return DEM_ERROR_ARGUMENT;
+    if (!demi_motor_sane(w, __func__, &d)) return DEM_ERROR_ARGUMENT;
     w->joints[i].desc = d;
     demi_scene_changed(w);
     return DEM_OK;
 }
 DEM_API dem_result dem_joint_get(const dem_world *w, dem_joint joint, dem_joint_state *state) {
     int i;
-    if (demi_null_look(w, "dem_joint_get", state, "state")) return DEM_ERROR_ARGUMENT;
-    i = demi_joint_find((dem_world *)w, "dem_joint_get", joint);
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find((dem_world *)w, __func__, joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *state = w->joints[i].state;
     return DEM_OK;
 }
 DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
     int i;
-    if (demi_null(w, "dem_joint_remove", w, "world")) return DEM_ERROR_ARGUMENT;
-    i = demi_joint_find(w, "dem_joint_remove", joint);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, __func__, joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     w->joint_count--;
     memmove(w->joints + i, w->joints + i + 1, (size_t)(w->joint_count - i)*sizeof *w->joints);

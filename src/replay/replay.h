@@ -198,9 +198,8 @@ static void demi_film_wall(dem_replay *r, int i) {
     char text[32];
     int k, corners = wall->corners ? wall->element_count*kind->corners : 0;
     fprintf(out, "<script type=\"dem/wall\">{\"id\":%d,\"kind\":\"%s\",\"radius\":%s",
-            (int)wall->id,
-            kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN ? "profile" :
-            wall->ring_count ? "mesh" : kind->name,
+            (int)wall->id, kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN
+            ? "profile" : wall->ring_count ? "mesh" : kind->name,
             demi_format_real(text, (double)wall->radius, 9));
     if (wall->vertices)
         demi_film_reals(out, "vertices", wall->vertices, wall->vertex_count, 3, 3);
@@ -433,22 +432,21 @@ static dem_result demi_film_check(dem_replay *r, const char *call) {
                      "has room", call, r->out.path, errno ? strerror(errno) : "unknown cause");
 }
 DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
-    if (!r || demi_null_write(r->world, "dem_replay_frame_write", r,
-                              "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     dem_world *w = r->world;
     const demi_calling was = w->look.calling;
     double time;
     uint32_t values = 0;
     int s, k;
     errno = 0;
-    dem_result result = demi_film_check(r, "dem_replay_frame_write");
+    dem_result result = demi_film_check(r, __func__);
     if (result != DEM_OK) return result;
     if (!demi_grow(w, DEMI_LOOSE, &r->seen, sizeof *r->seen, (size_t)w->bodies.slot_count + 1)) {
         r->failed = 1;
-        return demi_film_check(r, "dem_replay_frame_write");
+        return demi_film_check(r, __func__);
     }
     demi_finish(w);
-    demi_calls(w, "dem_replay_frame_write", 1);
+    demi_calls(w, __func__, 1);
     const dem_bodies b = dem_bodies_get(w);
     if (!(r->resolution > 0)) demi_film_resolve(r, &b);
     for (; r->shape_count < w->shape_count; r->shape_count++)
@@ -472,7 +470,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
     if (!r->failed) demi_film_block(r);
     demi_called(w, was);
     r->frames++;
-    return demi_film_check(r, "dem_replay_frame_write");
+    return demi_film_check(r, __func__);
 }
 
 /* --- automatic frames; opening, values, closing --- */
@@ -521,8 +519,8 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     dem_replay *r;
     size_t k;
     int i, n, group, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
-    if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
-    if (demi_rows_check(w, "dem_replay_open", demi_replay_rows, &d, "",
+    if (demi_null_write(w, __func__, w, "world")) return 0;
+    if (demi_rows_check(w, __func__, demi_replay_rows, &d, "",
                         "start from DEM_REPLAY_DESC and set only what differs")) return 0;
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
         const char *name = demi_name(w->desc.body_reals, i, &n);
@@ -532,18 +530,17 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     group = d.number_fn ? -1 : demi_group_find(w, d.number);
     if (group >= 0) real = -1;
     if (d.number && !d.number_fn && group < 0 && (real < 0 || real >= w->bodies.real_count)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
-                  "desc.body_reals does not name, nor desc.groups; name it there, or give "
-                  "number_fn", d.number);
+        demi_refuse(w, __func__, "number is \"%.60s\", which desc.body_reals does not "
+                    "name, nor desc.groups; name it there, or give number_fn", d.number);
         return 0;
     }
     r = (dem_replay *)demi_alloc(w, 1, sizeof *r);
-    if (!r) { demi_no_memory(w, "dem_replay_open"); return 0; }
+    if (!r) { demi_no_memory(w, __func__); return 0; }
     r->world = w;
     r->desc = d;
     r->real = real;
     r->group = group;
-    if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
+    if (demi_out_open(&r->out, w, __func__, path) != DEM_OK) { demi_free(w, r); return 0; }
     r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
     snprintf(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
@@ -563,18 +560,16 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
 }
 DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double value) {
     int k;
-    if (!r || demi_null_write(r->world, "dem_replay_value_set", r,
-                              "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     if (!name || !*name || strlen(name) >= sizeof r->names[0])
-        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: name is %.80s, must "
-                         "have "
-                         "1 to %d letters", name ? *name ? name : "empty" : "null",
-                         (int)sizeof r->names[0] - 1);
+        return demi_refuse(r->world, __func__, "name is %.80s, must have 1 to %d "
+                           "letters", name ? *name ? name : "empty" : "null",
+                           (int)sizeof r->names[0] - 1);
     for (k = 0; k < r->value_count && strcmp(r->names[k], name) != 0; k++) {}
     if (k == DEM_REPLAY_VALUES)
-        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: \"%.60s\" would be "
-                         "value %d, but a replay draws at most %d; leave some out", name, k + 1,
-                         (int)DEM_REPLAY_VALUES);
+        return demi_refuse(r->world, __func__, "\"%.60s\" would be value %d, but a "
+                           "replay draws at most %d; leave some out", name, k + 1,
+                           (int)DEM_REPLAY_VALUES);
     if (k == r->value_count) {
         r->value_count++;
         strcpy(r->names[k], name);
@@ -588,10 +583,10 @@ DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double 
 }
 DEM_API dem_result dem_replay_close(dem_replay *r) {
     dem_result result;
-    if (!r || demi_null_write(r->world, "dem_replay_close", r, "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     if (r->failed) {                            /* a frame is missing: the file is removed */
         demi_out_drop(&r->out);
-        result = demi_film_check(r, "dem_replay_close");
+        result = demi_film_check(r, __func__);
         demi_film_free(r);
         return result;
     }
@@ -602,7 +597,7 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
     fputs("<script type=\"dem/report\">", r->out.file);
     dem_world_report(r->world, r->out.file);
     fputs("</script>\n", r->out.file);
-    r->out.call = "dem_replay_close";
+    r->out.call = __func__;
     result = demi_out_close(&r->out);
     demi_film_free(r);
     return result;

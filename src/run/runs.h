@@ -18,15 +18,14 @@ static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn 
 }
 DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
                                  void *user) {
-    if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const double start = w->clock.time, begun = demi_clock();
     const uint64_t first = w->clock.steps;
     double last = begun, end;
     int chunk = 1;
     if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
-                         ">= 0", seconds);
-    if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
+        return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
+    if (demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
     end = start + seconds;
     /* it continues the last run: from the end that was requested there, so that runs add up */
@@ -47,7 +46,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         now = demi_clock();
         if (now - last > 0.1) {
             last = now;
-            result = demi_progress(w, "dem_world_run", progress, user,
+            result = demi_progress(w, __func__, progress, user,
                                    (w->clock.time - start)/seconds, begun);
             if (result != DEM_OK) return result;
         }
@@ -56,16 +55,15 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;
-    return demi_progress(w, "dem_world_run", progress, user, 1, begun);
+    return demi_progress(w, __func__, progress, user, 1, begun);
 }
 
 DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
                                     void *user) {
-    if (demi_null(w, "dem_world_run_to", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
-                         "and not before now (%g s); to go back in time, read a checkpoint", time,
-                         w->clock.time);
+        return demi_refuse(w, __func__, "time is %g s, must be finite and not before now "
+                           "(%g s); to go back in time, read a checkpoint", time, w->clock.time);
     w->clock.run_steps = w->clock.steps + 1;        /* it does not continue the last run */
     return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
 }
@@ -125,22 +123,21 @@ static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
 }
 DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user) {
-    if (demi_null(w, "dem_world_settle", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const double begun = demi_clock(), start = w->clock.time;
     double look, below = demi_calm(w, (double)speed, &look), last = begun;
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
         (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed is %g "
-                         "m/s; seconds must be > 0, speed >= 0, and > 0 without gravity, from "
-                         "which the default follows; set the speed that counts as rest", seconds,
-                         (double)speed);
+        return demi_refuse(w, __func__, "seconds is %g and speed is %g m/s; seconds must "
+                           "be > 0, speed >= 0, and > 0 without gravity, from which the default "
+                           "follows; set the speed that counts as rest", seconds, (double)speed);
     for (i = 0; i < w->feed_count; i++) {
         const demi_feed *f = demi_feed_at(w, i);
         if (!f->desc.limited && !(f->desc.end > 0))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: feed %d has limited 0 and "
-                             "end 0 s, one of them must be > 0, or the feed never ends; set one "
-                             "of them, or use dem_world_run", i + 1);
+            return demi_refuse(w, __func__, "feed %d has limited 0 and end 0 s, one of "
+                               "them must be > 0, or the feed never ends; set one of them, or use "
+                               "dem_world_run", i + 1);
     }
     w->look.tenths_told = 0;
     while (w->bodies.count || demi_feed_coming(w) >= 0) {
@@ -156,12 +153,12 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
             last = demi_clock();
-            result = demi_progress(w, "dem_world_settle", progress, user,
+            result = demi_progress(w, __func__, progress, user,
                                    (w->clock.time - start)/seconds, begun);
             if (result != DEM_OK) return result;
         }
     }
-    return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
+    return demi_progress(w, __func__, progress, user, 1, begun);
 }
 
 /* demi_isatty: true if a file is a terminal. Standard C has no such function. On the systems below
@@ -179,7 +176,7 @@ static int demi_isatty(int file) { (void)file; return 1; }
 static int demi_fileno(FILE *file) { (void)file; return 0; }
 #endif
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
-    if (demi_null_look(w, "dem_progress_print", user, "user")) return 0;
+    if (demi_null_look(w, __func__, user, "user")) return 0;
     FILE *out = (FILE *)user;
     const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
     if (line && tenths <= w->look.tenths_told) return 0;
@@ -187,18 +184,17 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
             100*done, w->clock.time, w->bodies.count, seconds_left);
     if (w->booked.unsolved)
-        fprintf(out, "%llu steps above the tolerance   ",
-                (unsigned long long)w->booked.unsolved);
+        fprintf(out, "%llu steps above the tolerance   ", (unsigned long long)w->booked.unsolved);
     if (line || done >= 1) fputc('\n', out);
     fflush(out);
     return 0;
 }
 
 DEM_API double dem_world_time_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_time_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     return w->clock.time;
 }
 DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_steps_get", w, "world")) return 0;
+    if (demi_null_look(w, __func__, w, "world")) return 0;
     return w->clock.steps;
 }

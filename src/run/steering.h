@@ -67,24 +67,24 @@ static void demi_wall_after(dem_world *w, int wall) {
 }
 
 DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
-    if (demi_null(w, "dem_wall_surface_velocity_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_surface_velocity_set", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     demi_wall *wall = i < 0 ? 0 : &w->walls[i];
     if (!wall) return DEM_ERROR_ARGUMENT;
     if (!demi_place(velocity))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d is (%g, %g, %g) m/s, must be finite and within %g m/s; check how it "
-                         "was computed", (int)id.id, (double)velocity.x, (double)velocity.y,
-                         (double)velocity.z, DEMI_FARTHEST);
+        return demi_refuse(w, __func__, "velocity of wall %d is (%g, %g, "
+                           "%g) m/s, must be finite and within %g m/s; check how it was computed",
+                           (int)id.id, (double)velocity.x, (double)velocity.y, (double)velocity.z,
+                           DEMI_FARTHEST);
     if (w->desc.planar && fabs((double)velocity.z) > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_surface_velocity_set: velocity of wall "
-                         "%d has the z component %g m/s, must be 0 in a planar world, where no "
-                         "grain moves along z", (int)id.id, (double)velocity.z);
+        return demi_refuse(w, __func__, "velocity of wall %d has the z "
+                           "component %g m/s, must be 0 in a planar world, where no grain moves "
+                           "along z", (int)id.id, (double)velocity.z);
     demi_wall_before(w, i);
     wall->glide = demi_unrotate(wall->pose.rotation, velocity);
     wall->glides = demi_dot(velocity, velocity) > 0;
     demi_wall_after(w, i);
-    demi_built(w, "dem_wall_surface_velocity_set");
+    demi_built(w, __func__);
     if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
     return DEM_OK;
 }
@@ -107,8 +107,8 @@ static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_w
          !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
 }
 DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
+    if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     demi_wall next;
     const void *rows;
     void *old;
@@ -126,14 +126,14 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
+    if (!dropped) return demi_no_memory(w, __func__);
     if (!alone) demi_surfaces_outdated(w);
     if (!alone || !demi_wall_led(w, &w->walls[i], &next))
         w->stage.forces_valid = w->stage.primed = 0;
     demi_wall_before(w, i);
     w->walls[i] = next;
     demi_wall_after(w, i);
-    demi_built(w, "dem_wall_motion_set");
+    demi_built(w, __func__);
     if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
     return DEM_OK;
 }

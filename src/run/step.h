@@ -347,9 +347,8 @@ static dem_result demi_unstable(dem_world *w) {
             const demi_kept *c = demi_kept_of(w, d) + i;
             if (c->b < 0 && c->deep >= 1)
                 return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
-                                 "overlaps wall %d by %.3g of its "
-                                 "radius, must be below 1; it started inside the wall, hit it too "
-                                 "fast for dt = %g s, or the "
+                                 "overlaps wall %d by %.3g of its radius, must be below 1; it "
+                                 "started inside the wall, hit it too fast for dt = %g s, or the "
                                  "material is too soft", (unsigned long long)w->clock.steps,
                                  (unsigned)w->bodies.slot[c->a] + 1, (int)w->walls[c->wall].id,
                                  (double)c->deep, (double)w->clock.dt);
@@ -760,11 +759,11 @@ static dem_result demi_refresh(dem_world *h) {
 }
 
 DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
-    if (demi_null(w, "dem_world_gravity_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (!demi_place(gravity))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_gravity_set: gravity is (%g, %g, %g) "
-                         "m/s2, must be finite and at most %g; check what it was computed from",
-                         (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
+        return demi_refuse(w, __func__, "gravity is (%g, %g, %g) m/s2, must be "
+                           "finite and at most %g; check what it was computed from",
+                           (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
     demi_finish(w);                             /* the open half kick belongs to the old gravity */
     w->desc.gravity = gravity;
     if (w->desc.planar) w->desc.gravity.z = 0;
@@ -772,15 +771,13 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
     return DEM_OK;
 }
 DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
-    if (demi_null(w, "dem_world_dt_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (demi_dt_bad(dt))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 or %g to "
-                         "%g s; 0 lets the library choose", (double)dt, DEMI_DT_LEAST,
-                         DEMI_FARTHEST);
+        return demi_refuse(w, __func__, "dt is %g s, must be 0 or %g to %g s; 0 lets the "
+                           "library choose", (double)dt, DEMI_DT_LEAST, DEMI_FARTHEST);
     if (!demi_response_is(w, DEMI_LASTING) && !(dt > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
-                         "no contact time to choose it from; set it, for example 1e-3 s for "
-                         "grains of millimetres");
+        return demi_refuse(w, __func__, "dt is 0 s, but impulses have no contact time to "
+                           "choose it from; set it, for example 1e-3 s for grains of millimetres");
     demi_finish(w);                             /* the open half kick belongs to the old dt */
     w->desc.dt = dt;
     demi_scene_changed(w);
@@ -843,13 +840,13 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     return result;
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
-    if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     if (steps < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
-    if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
+        return demi_refuse(w, __func__, "steps is %d, must be >= 0", steps);
+    if (steps && demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (w->look.under_way)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: called from the function of an "
-                         "output (dem_output_add), which runs between two steps and must not step "
-                         "the world; step it when the run has ended");
-    return demi_steps(w, "dem_world_step", steps);
+        return demi_refuse(w, __func__, "called from the function of an output "
+                           "(dem_output_add), which runs between two steps and must not step the "
+                           "world; step it when the run has ended");
+    return demi_steps(w, __func__, steps);
 }

@@ -193,11 +193,11 @@ static int demi_crowd_refuse(dem_world *w) {
         crowd = DEMI_MAX(crowd, here);
     }
     if (!demi_searches[w->desc.search].crowds || work <= 1e9 + 2e4*w->bodies.count) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
-              "bodies are in one cell of %.3g by %.3g by %.3g m; either they lie on each other, "
-              "or a few bodies far away stretch the grid: remove those (an outflow boundary "
-              "does), or spread the others", work, crowd, w->bodies.count, w->cell_size[0],
-              w->cell_size[1], w->cell_size[2]);
+    demi_refuse(w, "dem_world_step", "a search would compare %.2g pairs: %d of %d bodies are in "
+                "one cell of %.3g by %.3g by %.3g m; either they lie on each other, or a few "
+                "bodies far away stretch the grid: remove those (an outflow boundary does), or "
+                "spread the others", work, crowd, w->bodies.count, w->cell_size[0], w->cell_size[1],
+                w->cell_size[2]);
     return 1;
 }
 /* A wall longer than the period does not repeat, so it must extend beyond the box far enough for
@@ -214,13 +214,13 @@ static int demi_walls_end(dem_world *w, const char *call) {
             if (wall->kind == DEMI_WALL_NONE || wall->extent < 0 || wall->repeats[k] ||
                 !(p.period[k] > 0) || !(w->bodies.count > 0) ||
                 (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic "
-                      "axis %d, which is longer than the period of %g m, so that it does not "
-                      "repeat; extend it by %g m (the largest radius%s) beyond the faces at %g "
-                      "and %g m, or make it no longer than the period", call, (int)wall->id,
-                      (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
-                      (double)w->effects.radius_max + reach, reach > 0 ? " and the law's range"
-                      : "", (double)lo, (double)hi);
+            demi_refuse(w, call, "wall %d goes from %g to %g m along periodic axis %d, which is "
+                        "longer than the period of %g m, so that it does not repeat; extend it by "
+                        "%g m (the largest radius%s) beyond the faces at %g and %g m, or make it "
+                        "no longer than the period", (int)wall->id, (double)wall->span_lo[k],
+                        (double)wall->span_hi[k], k, (double)p.period[k],
+                        (double)w->effects.radius_max + reach,
+                        reach > 0 ? " and the law's range" : "", (double)lo, (double)hi);
             return 1;
         }
     return 0;
@@ -367,10 +367,10 @@ static int demi_periods_refuse(dem_world *w) {
     int k;
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (twice the sum of the largest diameter "
-                      "and the skin%s); make it longer or the grains smaller", (double)p.period[k],
-                      k, need, w->margin.reach > 0 ? " and the law's range" : "");
+            demi_refuse(w, "dem_world_step", "the domain is %g m long on periodic axis %d, must be "
+                        "at least %g m (twice the sum of the largest diameter and the skin%s); "
+                        "make it longer or the grains smaller", (double)p.period[k], k, need,
+                        w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }
     return 0;
@@ -499,15 +499,14 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
 
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
-    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls were added or changed "
-              "after the last step, so there is no list of contacts; call dem_candidates_rebuild "
-              "or dem_world_step first", call);
+    demi_refuse(world, call, "bodies or walls were added or changed after the last step, so there "
+                "is no list of contacts; call dem_candidates_rebuild or dem_world_step first");
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
-    if (demi_null_look(w, "dem_candidates_get", w, "world")) return -1;
+    if (demi_null_look(w, __func__, w, "world")) return -1;
     int d, l, k, n = 0;
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_candidates_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
     for (d = 0; d < w->domain_count; d++)
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
@@ -521,6 +520,6 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
     return n;
 }
 DEM_API dem_result dem_candidates_rebuild(dem_world *w) {
-    if (demi_null(w, "dem_candidates_rebuild", w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_rebuild(w, "dem_candidates_rebuild");
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_rebuild(w, __func__);
 }

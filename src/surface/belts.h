@@ -16,10 +16,9 @@ DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, d
 }
 DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
                                                  dem_vec3 *velocity) {
-    const char *call = "dem_wall_surface_velocity_get";
     int i;
-    if (demi_null_look(world, call, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, call, id);
+    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
     return DEM_OK;

@@ -148,9 +148,9 @@ static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **o
 static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) {
     int k, bad = -1;
     if (!m->table || m->table_count < 2)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the table of wall %d has %d "
-                         "rows, must have at least 2; set table and table_count", wall,
-                         m->table ? m->table_count : 0);
+        return demi_refuse(w, "dem_wall_motion_set", "the table of wall %d has %d rows, must have "
+                           "at least 2; set table and table_count", wall,
+                           m->table ? m->table_count : 0);
     for (k = 0; k < m->table_count && bad < 0; k++) {
         const dem_motion_row *r = m->table + k;
         if (!demi_finite_double(r->time) || !demi_place(r->position) ||
@@ -158,9 +158,9 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
             (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
     }
     if (bad < 0) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: row %d of the table of wall %d, "
-                     "at %g s, is not finite or not later than the row before; the first row must "
-                     "be at 0 s", bad, wall, m->table[bad].time);
+    return demi_refuse(w, "dem_wall_motion_set", "row %d of the table of wall %d, at %g s, is not "
+                       "finite or not later than the row before; the first row must be at 0 s", bad,
+                       wall, m->table[bad].time);
 }
 /* Sets the pose of a wall at a time. Rotations start from the first pose each time, so no error
    builds up. Velocities are exact derivatives. */

@@ -450,22 +450,21 @@ static int demi_surfaces_make(dem_world *w) {
 /* Here, because it changes which walls form a surface if the materials ignored each other before
    and do not now, or the other way round. Contacts of an ignored pair end with the next list. */
 DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
-    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, __func__, p, "pair")) return DEM_ERROR_ARGUMENT;
     int i = 0, j = 0;
     char of[48];
-    if (demi_material_index(w, "dem_pair_set", a, &i) ||
-        demi_material_index(w, "dem_pair_set", b, &j))
+    if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
     snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
-    if (demi_rows_check(w, "dem_pair_set", demi_pair_rows, p, of,
+    if (demi_rows_check(w, __func__, demi_pair_rows, p, of,
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;
     if (p->ignored != demi_ignores(w, i, j)) {
-        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_pair_set");
+        if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
         demi_surfaces_outdated(w);
     }
     demi_pair_put(w, i, j, p);
     demi_pairs_changed(w);
-    demi_built(w, "dem_pair_set");
+    demi_built(w, __func__);
     return DEM_OK;
 }

@@ -259,8 +259,8 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
     if (i == DEMI_WALLS_MOST || !DEMI_GROW(w, w->walls, (size_t)i + 1) || !demi_list_drop(w)) {
         demi_wall_free(w, wall);
         if (i == DEMI_WALLS_MOST)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a world holds at most %d walls; put several "
-                      "surfaces into one mesh", call, (int)DEMI_WALLS_MOST);
+            demi_refuse(w, call, "a world holds at most %d walls; put several surfaces into one "
+                        "mesh", (int)DEMI_WALLS_MOST);
         else demi_no_memory(w, call);
         return id;
     }
@@ -301,17 +301,16 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
 
 DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec3 point,
                                dem_vec3 normal) {
-    if (demi_null(w, "dem_wall_plane_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_PLANE, &wall)) return none;
     if (!demi_place(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_plane_add: normal is (%g, %g, %g), must be "
-                  "finite "
-                  "and not zero; point is (%g, %g, %g) m, must be within %g m of the origin",
-                  (double)normal.x, (double)normal.y, (double)normal.z, (double)point.x,
-                  (double)point.y, (double)point.z, DEMI_FARTHEST);
+        demi_refuse(w, __func__, "normal is (%g, %g, %g), must be finite and not zero; "
+                    "point is (%g, %g, %g) m, must be within %g m of the origin", (double)normal.x,
+                    (double)normal.y, (double)normal.z, (double)point.x, (double)point.y,
+                    (double)point.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -320,24 +319,23 @@ DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec
     wall.motion.axis = demi_unit(normal);
     demi_frame_of(wall.home.rotation, demi_unit(normal));
     wall.extent = -1;
-    return demi_wall_adopt(w, "dem_wall_plane_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside) {
-    if (demi_null(w, "dem_wall_cylinder_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_cylinder_add", material, DEMI_WALL_CYLINDER,
-                         &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_CYLINDER, &wall)) return none;
     if (!demi_place(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
         !(radius > 0) || !demi_bounded((double)radius)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_cylinder_add: radius is %g m and axis is (%g, "
-                  "%g, %g); the radius must be > 0, the axis not zero, the radius and the "
-                  "coordinates of the point at most %g m", (double)radius, (double)axis.x,
-                  (double)axis.y, (double)axis.z, DEMI_FARTHEST);
+        demi_refuse(w, __func__, "radius is %g m and axis is (%g, %g, %g); the "
+                    "radius must be > 0, the axis not zero, the radius and the coordinates of the "
+                    "point at most %g m", (double)radius, (double)axis.x, (double)axis.y,
+                    (double)axis.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -348,7 +346,7 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_
     wall.motion.axis = demi_unit(axis);
     demi_frame_of(wall.home.rotation, demi_unit(axis));
     wall.extent = -1;
-    return demi_wall_adopt(w, "dem_wall_cylinder_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 /* dem_wall_revolved_add on behalf of `call`. */
@@ -360,9 +358,9 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
     if (!demi_wall_begin(w, call, material, DEMI_WALL_REVOLVED, &wall)) return demi_no_wall;
     if (count < 2 || count > DEM_RINGS || !demi_place(point) || !demi_finite3(axis) ||
         !(demi_dot(axis, axis) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and axis is (%g, %g, %g); there must be "
-                  "2 to %d rings, the axis must not be zero, the point must be finite", call, count,
-                  (double)axis.x, (double)axis.y, (double)axis.z, (int)DEM_RINGS);
+        demi_refuse(w, call, "count is %d and axis is (%g, %g, %g); there must be 2 to %d rings, "
+                    "the axis must not be zero, the point must be finite", count, (double)axis.x,
+                    (double)axis.y, (double)axis.z, (int)DEM_RINGS);
         return demi_no_wall;
     }
     for (k = 0; k < count && bad < 0; k++) {
@@ -378,9 +376,9 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
         wall.extent = DEMI_MAX(wall.extent, DEMI_SQRT(r*r + h*h));
     }
     if (bad >= 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: ring %d has radius %g m at height %g m; both must "
-                  "be finite, the radius >= 0, not 0 for two rings in a row, and no ring equal to "
-                  "the one before", call, bad, (double)radii[bad], (double)heights[bad]);
+        demi_refuse(w, call, "ring %d has radius %g m at height %g m; both must be finite, the "
+                    "radius >= 0, not 0 for two rings in a row, and no ring equal to the one "
+                    "before", bad, (double)radii[bad], (double)heights[bad]);
         return demi_no_wall;
     }
     wall.ring_count = count;
@@ -393,21 +391,20 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
 DEM_API dem_wall dem_wall_revolved_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
                                   const dem_real *heights) {
-    if (demi_null(w, "dem_wall_revolved_add", radii, "radii") ||
-        demi_null(w, "dem_wall_revolved_add", heights, "heights")) return demi_no_wall;
-    return demi_revolved_make(w, "dem_wall_revolved_add", material, point, axis, count, radii,
-                              heights);
+    if (demi_null(w, __func__, radii, "radii") ||
+        demi_null(w, __func__, heights, "heights")) return demi_no_wall;
+    return demi_revolved_make(w, __func__, material, point, axis, count, radii, heights);
 }
 DEM_API dem_wall dem_wall_cone_add(dem_world *w, dem_material material, dem_vec3 from, dem_vec3 to,
                               dem_real radius_from, dem_real radius_to) {
     const dem_vec3 way = demi_sub(to, from);
     dem_real radii[2], heights[2];
-    if (demi_null(w, "dem_wall_cone_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     radii[0] = radius_from;
     radii[1] = radius_to;
     heights[0] = 0;
     heights[1] = demi_length(way);
-    return demi_revolved_make(w, "dem_wall_cone_add", material, from, way, 2, radii, heights);
+    return demi_revolved_make(w, __func__, material, from, way, 2, radii, heights);
 }
 /* Number of flat sides that a surface of revolution has in pictures. */
 enum { DEMI_RING_SIDES = 48 };
@@ -456,9 +453,9 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     demi_wall_bounds(wall);
     if (per_element && (!demi_facets_any(wall) ||
                         !(demi_size(demi_sub(wall->box.hi, wall->box.lo)) > DEMI_LEAST))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: none of the %d elements has a size: corners "
-                  "coincide, triangles have no height, or all lie within %g m; check that "
-                  "coordinates were read and are in metres", call, elements, DEMI_LEAST);
+        demi_refuse(w, call, "none of the %d elements has a size: corners coincide, triangles have "
+                    "no height, or all lie within %g m; check that coordinates were read and are "
+                    "in metres", elements, DEMI_LEAST);
         demi_wall_free(w, wall);
         return 0;
     }
@@ -473,31 +470,29 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
 DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
                                       const dem_profile *profile,
                                  dem_edge_rule rule) {
-    if (demi_null(w, "dem_wall_profile_add", profile, "profile")) return demi_no_wall;
+    if (demi_null(w, __func__, profile, "profile")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_profile_add", material, rule == DEM_EDGE_FRACTION
+    if (!demi_wall_begin(w, __func__, material, rule == DEM_EDGE_FRACTION
                          ? DEMI_WALL_SEGMENTS : DEMI_WALL_PROFILE, &wall)) return none;
     if (rule < DEM_EDGE_RESOLVED || rule > DEM_EDGE_FRACTION) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is %d, must be "
-                  "DEM_EDGE_RESOLVED "
-                  "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
+        demi_refuse(w, __func__, "rule is %d, must be DEM_EDGE_RESOLVED (0) to "
+                    "DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
         return none;
     }
     if (rule == DEM_EDGE_FRACTION && (w->desc.law_range > 0 || w->desc.law_range_radii > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is DEM_EDGE_FRACTION, but "
-                  "the law of this world has a range; that rule weighs the chord of a segment "
-                  "inside a grain, which does not exist before the two touch: use "
-                  "DEM_EDGE_RESOLVED");
+        demi_refuse(w, __func__, "rule is DEM_EDGE_FRACTION, but the law of this "
+                    "world has a range; that rule weighs the chord of a segment inside a grain, "
+                    "which does not exist before the two touch: use DEM_EDGE_RESOLVED");
         return none;
     }
     wall.rule = rule;
-    if (!demi_wall_load(w, "dem_wall_profile_add", &wall, profile->vertex_count, profile->vertices,
+    if (!demi_wall_load(w, __func__, &wall, profile->vertex_count, profile->vertices,
                         2,
                         profile->segment_count, profile->segments, 2)) return none;
     wall.motion.axis = demi_v(0, 0, 1);
-    return demi_wall_adopt(w, "dem_wall_profile_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 /* Makes a wall of triangles that is not added yet. Returns 0 with an error message if it is
@@ -511,32 +506,31 @@ static int demi_mesh_make(dem_world *w, dem_material material, const dem_mesh *m
     return 1;
 }
 DEM_API dem_wall dem_wall_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
-    if (demi_null(w, "dem_wall_mesh_add", mesh, "mesh")) return demi_no_wall;
+    if (demi_null(w, __func__, mesh, "mesh")) return demi_no_wall;
     demi_wall wall;
-    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, "dem_wall_mesh_add", &wall)
+    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, __func__, &wall)
                                                     : demi_no_wall;
 }
 
 DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share) {
-    if (demi_null(w, "dem_wall_grains_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, __func__, w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_grains_add", material, DEMI_WALL_GRAINS, &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_GRAINS, &wall)) return none;
     if (!(radius > 0) || !demi_bounded((double)radius) || !(share > 0) || !(share <= 1)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_grains_add: radius is %g m and share is %g; "
-                  "the radius must be > 0 and at most %g m, the share > 0 and at most 1",
-                  (double)radius, (double)share, DEMI_FARTHEST);
+        demi_refuse(w, __func__, "radius is %g m and share is %g; the radius must be "
+                    "> 0 and at most %g m, the share > 0 and at most 1", (double)radius,
+                    (double)share, DEMI_FARTHEST);
         return none;
     }
     wall.radius = radius;
     wall.share = share;
     wall.motion.axis = demi_v(0, 0, 1);
-    if (!demi_wall_load(w, "dem_wall_grains_add", &wall, count, positions, 3, count, 0,
-                        0)) return none;
-    return demi_wall_adopt(w, "dem_wall_grains_add", &wall);
+    if (!demi_wall_load(w, __func__, &wall, count, positions, 3, count, 0, 0)) return none;
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 static uint64_t demi_digest_vertices(const void *item) {
@@ -587,20 +581,19 @@ static const demi_field_row demi_wall_rows[] = {
     DEMI_ROW_DIGEST("vertices", demi_digest_vertices), DEMI_ROW_DIGEST("elements",
     demi_digest_elements), DEMI_ROW_DIGEST("motion.table", demi_digest_table), DEMI_ROW_END};
 DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
-    if (demi_null(w, "dem_wall_sieve_add", d, "desc")) return demi_no_wall;
+    if (demi_null(w, __func__, d, "desc")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     dem_vec3 n = d->normal, t = d->along;
     dem_real *R = wall.home.rotation;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
+    if (!demi_wall_begin(w, __func__, material, DEMI_WALL_SIEVE, &wall)) return none;
     wall.sieve = *d;
-    if (demi_rows_check(w, "dem_wall_sieve_add", demi_wall_rows, &wall, "",
+    if (demi_rows_check(w, __func__, demi_wall_rows, &wall, "",
                         "start from DEM_SIEVE_DESC and set only what differs")) return none;
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
-                  "finite, or point is farther than %g m from the origin; check how it was "
-                  "computed", DEMI_FARTHEST);
+        demi_refuse(w, __func__, "point, normal or along is not finite, or point is "
+                    "farther than %g m from the origin; check how it was computed", DEMI_FARTHEST);
         return none;
     }
     n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
@@ -621,22 +614,21 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     wall.home.position = wall.motion.point = d->point;
     wall.motion.axis = n;
     wall.extent = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
-    return demi_wall_adopt(w, "dem_wall_sieve_add", &wall);
+    return demi_wall_adopt(w, __func__, &wall);
 }
 
 /* Returns the index of a wall, or -1 with an error message. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     const int place = demi_wall_place(wall);
     if (wall.id < 1 || place >= w->wall_count) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids in this world are 1 to "
-                  "%d; adding it failed (dem_world_error_get says why) or it belongs to another "
-                  "world: check the id that adding it returned", call, (int)wall.id, w->wall_count);
+        demi_refuse(w, call, "wall %d does not exist, ids in this world are 1 to %d; adding it "
+                    "failed (dem_world_error_get says why) or it belongs to another world: check "
+                    "the id that adding it returned", (int)wall.id, w->wall_count);
         return -1;
     }
     if (!demi_wall_there(w, wall)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more, because "
-                  "dem_wall_remove removed it; add it again and use the id that this returns", call,
-                  (int)wall.id);
+        demi_refuse(w, call, "wall %d does not exist any more, because dem_wall_remove removed it; "
+                    "add it again and use the id that this returns", (int)wall.id);
         return -1;
     }
     return place;
@@ -659,18 +651,18 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 /* Checks what only a servo wall needs. */
 static dem_result demi_servo_check(dem_world *w, dem_wall id, const dem_motion *m) {
     if (!demi_response_is(w, DEMI_LASTING))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
-                         "DEM_MOTION_SERVO, which needs contacts with a stiffness, but contacts of "
-                         "this world are impulses; use DEM_RESPONSE_SPRINGS, or a heavy body "
-                         "instead of the wall", (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_SERVO, which "
+                           "needs contacts with a stiffness, but contacts of this world are "
+                           "impulses; use DEM_RESPONSE_SPRINGS, or a heavy body instead of the "
+                           "wall", (int)id.id);
     if (!(demi_dot(m->velocity, m->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
-                         "is zero, but gives the direction in which it presses and its largest "
-                         "speed; set it", (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "velocity of servo wall %d is zero, but gives "
+                           "the direction in which it presses and its largest speed; set it",
+                           (int)id.id);
     if (w->desc.planar && fabs((double)m->velocity.z) > 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of servo wall %d "
-                         "has the z component %g m/s, must be 0 in a planar world, where no grain "
-                         "can bear its load", (int)id.id, (double)m->velocity.z);
+        return demi_refuse(w, "dem_wall_motion_set", "velocity of servo wall %d has the z "
+                           "component %g m/s, must be 0 in a planar world, where no grain can bear "
+                           "its load", (int)id.id, (double)m->velocity.z);
     return DEM_OK;
 }
 /* Checks a motion for the wall with this id, which need not exist yet. */
@@ -680,19 +672,15 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
     if (demi_rows_check(w, "dem_wall_motion_set", demi_motion_rows, motion, of,
                         "start from DEM_MOTION")) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
-                         "zero; give a direction",
-                         (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "axis of rotating wall %d is zero; give a "
+                           "direction", (int)id.id);
     if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity,
                                                              motion->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of oscillating "
-                         "wall %d is zero, but gives the direction of its motion; set it",
-                         (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "velocity of oscillating wall %d is zero, but "
+                           "gives the direction of its motion; set it", (int)id.id);
     if (motion->kind == DEM_MOTION_USER && !motion->function)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
-                         "DEM_MOTION_USER "
-                         "and no function; "
-                         "set motion.function", (int)id.id);
+        return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_USER and no "
+                           "function; set motion.function", (int)id.id);
     if (motion->kind == DEM_MOTION_SERVO && demi_servo_check(w, id, motion) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
     return demi_tabled(motion) ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
@@ -721,17 +709,17 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the motion of wall %d gives "
-                         "a pose that is not finite, whose matrix is not a rotation, or that is "
-                         "beyond %g m, m/s or rad/s now, at %g s; check the motion", (int)id.id,
-                         DEMI_FARTHEST, w->clock.time);
+        return demi_refuse(w, "dem_wall_motion_set", "the motion of wall %d gives a pose that is "
+                           "not finite, whose matrix is not a rotation, or that is beyond %g m, "
+                           "m/s or rad/s now, at %g s; check the motion", (int)id.id, DEMI_FARTHEST,
+                           w->clock.time);
     }
     *next = laid;
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null_look(world, "dem_wall_pose_get", pose, "pose")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, "dem_wall_pose_get", id);
+    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *pose = world->walls[i].pose;
     return DEM_OK;
@@ -749,16 +737,15 @@ static void demi_wall_forget(dem_world *w, int wall) {
     }
 }
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
-    if (demi_null(w, "dem_wall_remove", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_remove", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     int k;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     for (k = 0; k < w->outlet_count; k++)
         if (w->outlets[k].desc.frame.id == id.id)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_remove: outlet %d moves with wall "
-                             "%d and would stop working without it; keep the wall", k + 1,
-                             (int)id.id);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
+            return demi_refuse(w, __func__, "outlet %d moves with wall %d and would stop "
+                               "working without it; keep the wall", k + 1, (int)id.id);
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_wall_forget(w, i);
     demi_wall_free(w, &w->walls[i]);            /* other walls keep their indices */
     w->walls[i].id = id.id;
@@ -768,26 +755,26 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
 }
 
 DEM_API dem_result dem_wall_reals_get(const dem_world *w, dem_wall id, dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_wall_reals_get", reals, 1, 0);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 0);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_wall_find((dem_world *)w, "dem_wall_reals_get", id);
+    i = demi_wall_find((dem_world *)w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(reals, w->walls[i].reals, (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_reals_set(dem_world *w, dem_wall id, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, "dem_wall_reals_set", reals, 1, 1);
+    const dem_result result = demi_reals_ask(w, __func__, reals, 1, 1);
     int i;
     if (result != DEM_OK) return result;
-    i = demi_wall_find(w, "dem_wall_reals_set", id);
+    i = demi_wall_find(w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     memcpy(w->walls[i].reals, reals, (size_t)w->bodies.real_count*sizeof *reals);
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_wall_loads *loads) {
-    if (demi_null_look(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, "dem_wall_loads_get", id);
+    if (demi_null_look(world, __func__, loads, "loads")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *loads = world->walls[i].loads;
     return DEM_OK;
@@ -798,8 +785,8 @@ static void demi_loads_reset(dem_wall_loads *loads) {
     loads->torque_impulse = loads->work = loads->time = 0;
 }
 DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
-    if (demi_null(w, "dem_wall_loads_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     demi_loads_reset(&w->walls[i].loads);
     return DEM_OK;
