@@ -373,28 +373,30 @@ static dem_world *rods(int other) {
 /* Surfaces have all points on the capsule; replays have planes that touch it. */
 static void rods_drawn(void) {
     dem_world *world = rods(0);
+    demi_columns columns;
     demi_surfaces s;
-    dem_real *reals = 0;
-    int32_t *told = 0;
     int i;
     memset(&s, 0, sizeof s);
     demi_surfaces_draw(world, &s);
-    CHECK(demi_surfaces_room(world, &s, &reals, &told));
+    demi_columns_begin(&columns, world, "rods_drawn");
+    s.place = demi_columns_reals(&columns, "Points", "position", 3, s.points);
+    s.velocity = demi_columns_reals(&columns, "PointData", "velocity", 3, s.points);
+    s.id = demi_columns_ints(&columns, "PointData", "id", 'u', s.points);
+    s.material = demi_columns_ints(&columns, "PointData", "material", 'i', s.points);
+    s.link = demi_columns_ints(&columns, "Polys", "connectivity", 'i', s.links);
+    s.end = demi_columns_ints(&columns, "Polys", "offsets", 'i', s.polygons);
+    CHECK(!columns.failed);
+    s.points = s.polygons = s.links = 0;
     demi_surfaces_draw(world, &s);
     CHECK_EQ(s.points, 8*DEMI_ROUND_POINTS);
     for (i = 0; i < s.points; i++) {
-        const int body = s.body[i];
+        const int body = world->bodies.slot_index[s.id[i]];
         const dem_vec3 from = demi_sub(demi_at(s.place + 3*i), demi_at(world->bodies.pos + 4*body));
         const dem_vec3 axis = dem_quat_rotate(demi_quat_at(world->bodies.orient + 4*body), demi_v(0, 0, 1));
         const dem_real along = DEMI_MAX(DEM_R(-0.006), DEMI_MIN(DEM_R(0.006), demi_dot(from, axis)));
         CHECK_REL(demi_length(demi_sub(from, demi_scale(axis, along))), 0.004, 1e-6);
     }
-    demi_free(world, s.place);
-    demi_free(world, s.body);
-    demi_free(world, s.link);
-    demi_free(world, s.end);
-    demi_free(world, reals);
-    demi_free(world, told);
+    CHECK_EQ(demi_vtp(&columns, "build/recipes/rods.vtp", 0, 0, (int)s.polygons), DEM_OK);
     replay_has(world, ",100,40.09979,0,96.80946,");  /* the pole: 1/(0.006 + 0.004) per m */
     dem_world_destroy(world);
 }
