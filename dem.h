@@ -29870,22 +29870,22 @@ static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
    from number *next on, because some may have ended; the hash table finds the others. If one of the
    four fits, *next becomes the number after it. */
 static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
-    const int32_t *last = e->order + !(e->turn & 1);
     int k;
-    for (k = *next; k < *next + 4 && k < e->ordered; k++)
-        if (last[2*k] < e->n.open && demi_event_same(&e->open[last[2*k]].event, key)) {
-            *next = k + 1;
-            return last[2*k];
-        }
+    for (k = *next; k < *next + 4 && k < e->ordered; k++) {
+        const int last = e->order[2*k + !(e->turn & 1)];
+        if (last >= e->n.open || !demi_event_same(&e->open[last].event, key)) continue;
+        *next = k + 1;
+        return last;
+    }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
 /* Prefetches the open contact that is needed some six notes later. */
 DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
     const int i = next + 6 < e->ordered ? e->order[2*(next + 6) + !(e->turn & 1)] : e->n.open;
-    const char *at = (const char *)(e->open + i), *end = (const char *)(e->open + i + 1);
+    size_t k;
     if (i >= e->n.open) return;
     DEMI_FETCH(e->seen + i);
-    for (; at < end; at += 64) DEMI_FETCH(at);
+    for (k = 0; k < sizeof *e->open; k += 64) DEMI_FETCH((const char *)(e->open + i) + k);
 }
 /* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
    out. */
