@@ -12118,12 +12118,13 @@ static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
 /* --- collecting --- */
 
 /* The facets of the walls of a group while they are joined. Points are corners, one wall after the
-   other, in the pose in which their motion began, so that a restart finds the same; then the
-   corners of periodic images that are near. */
+   other, in the pose in which their motion began or, of a wall that moves alone, in its own frame,
+   so that a restart finds the same; then the corners of periodic images that are near. */
 typedef struct demi_join {
     int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
     int points, facets, sides, lead;
     int changed;                   /* facets were removed or divided */
+    int alone;                     /* 1: no other wall is part of the group */
     double *x, *near_by;           /* points x 3, m; welding tolerance, m */
     demi_tree tree;                /* of points */
     int32_t *same;                 /* points: the first one at this position */
@@ -12198,6 +12199,15 @@ static int demi_join_images(const dem_world *w, demi_join *j, int fill) {
     }
     return count;
 }
+/* The pose in which the corners of a wall are joined. A wall that moves alone keeps its surface
+   when it gets a new motion, so that its pose then does not count. */
+static dem_pose demi_join_pose(const demi_join *j, const demi_wall *wall) {
+    dem_pose pose = wall->home;
+    if (!j->alone) return pose;
+    if (!wall->repeats[0] && !wall->repeats[1] && !wall->repeats[2]) demi_pose_identity(&pose);
+    pose.position = demi_v(0, 0, 0);
+    return pose;
+}
 /* Collects the points and facets of all walls of a group. Returns 0 if memory ran out. */
 static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
     size_t points = 0, facets = 0, images;
@@ -12205,6 +12215,10 @@ static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
     memset(j, 0, sizeof *j);
     j->per = per;
     j->lead = lead;
+    j->alone = 1;
+    for (i = 0; i < w->wall_count; i++)
+        if (i != lead && w->walls[i].kind != DEMI_WALL_NONE &&
+            w->walls[i].group == w->walls[lead].group) j->alone = 0;
     for (i = lead; i < w->wall_count; i++) {
         if (!demi_join_member(w, i, lead, per)) continue;
         points += (size_t)w->walls[i].vertex_count;
@@ -12219,10 +12233,11 @@ static int demi_join_begin(dem_world *w, demi_join *j, int lead, int per) {
     if (!j->x || !j->near_by || !j->facet || !j->side || !j->root) return 0;
     for (i = lead; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
+        const dem_pose pose = demi_join_pose(j, wall);
         if (!demi_join_member(w, i, lead, per)) continue;
         for (k = 0; k < wall->vertex_count; k++)
-            demi_d3_put(j->x + 3*j->points++, demi_d3_of(demi_add(wall->home.position,
-                        demi_rotate(wall->home.rotation, demi_at(wall->vertices + 3*k)))));
+            demi_d3_put(j->x + 3*j->points++, demi_d3_of(demi_add(pose.position,
+                        demi_rotate(pose.rotation, demi_at(wall->vertices + 3*k)))));
         demi_near_by(j->x, wall, first, j->near_by);
         first += wall->vertex_count;
     }
@@ -13217,7 +13232,7 @@ static int demi_surface_end(dem_world *w, demi_wall *s) {
 }
 /* Writes the joined facets to a surface. Returns 0 if memory ran out. */
 static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
-    const demi_wall *lead = &w->walls[j->lead];
+    const dem_pose pose = demi_join_pose(j, &w->walls[j->lead]);
     int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
     int i, k, ok;
     demi_surface_begin(w, j->lead, s);
@@ -13231,8 +13246,8 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
             const int32_t p = j->facet[5*i + k];
             if (at[p] < 0) {
                 at[p] = s->vertex_count++;
-                demi_put(s->vertices + 3*at[p], demi_unrotate(lead->home.rotation, demi_sub(
-                    demi_d3_real(demi_d3_at(j->x + 3*p)), lead->home.position)));
+                demi_put(s->vertices + 3*at[p], demi_unrotate(pose.rotation, demi_sub(
+                    demi_d3_real(demi_d3_at(j->x + 3*p)), pose.position)));
             }
             s->corners[j->per*i + k] = at[p];
         }

@@ -83,7 +83,7 @@ static int demi_surface_end(dem_world *w, demi_wall *s) {
 }
 /* Writes the joined facets to a surface. Returns 0 if memory ran out. */
 static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
-    const demi_wall *lead = &w->walls[j->lead];
+    const dem_pose pose = demi_join_pose(j, &w->walls[j->lead]);
     int32_t *at = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *at);
     int i, k, ok;
     demi_surface_begin(w, j->lead, s);
@@ -97,8 +97,8 @@ static int demi_join_make(dem_world *w, const demi_join *j, demi_wall *s) {
             const int32_t p = j->facet[5*i + k];
             if (at[p] < 0) {
                 at[p] = s->vertex_count++;
-                demi_put(s->vertices + 3*at[p], demi_unrotate(lead->home.rotation, demi_sub(
-                    demi_d3_real(demi_d3_at(j->x + 3*p)), lead->home.position)));
+                demi_put(s->vertices + 3*at[p], demi_unrotate(pose.rotation, demi_sub(
+                    demi_d3_real(demi_d3_at(j->x + 3*p)), pose.position)));
             }
             s->corners[j->per*i + k] = at[p];
         }
