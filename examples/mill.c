@@ -87,7 +87,7 @@ static const study_option table[] = {
         "shape: 1, 2, 3 or 4 spheres, of the volume of the bead"},
     {"aspect", STUDY_REAL, &options.aspect, 1, 3, "", "length over width of a pair (at most 1.9) or rod"},
     {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the places at the start"},
-    {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "control: runs of each, with the seeds that follow"},
+    {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "control: runs of each, with the seeds that follow; sheet: drops"},
     {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
     {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume",
         "charge, at a solid fraction of 0.6"},
@@ -127,7 +127,7 @@ static const study_option table[] = {
         "file written every quarter revolution"},
     {"resume", STUDY_TEXT, &options.resume, 0, 0, "",
         "such a file, of a run with the same options"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|overlap|speeds|friction|control",
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|rebound|sheet|overlap|speeds|friction|control|fields|backup",
         "what to run"},
     {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "",
         "write the lifters' profile to a file, and stop"},
@@ -146,6 +146,7 @@ typedef struct mill {
     dem_profile profile;
     dem_field field;
     int wall_count, grains, sample_count, sample_steps, settled;
+    int cells;             /* of the field along x and y; 0: CELLS, below 0: no field */
     int recorded;          /* 1: contacts are recorded */
     double shell, critical, omega, period, dt, mass;
     sample *samples;
@@ -425,10 +426,11 @@ static int mill_create(mill *m, double dt) {
     if (world_create(m, &desc) || materials_add(m) || shell_add(m) || shape_add(m) || charge_add(m)) return 1;
     memset(&field, 0, sizeof field);
     field.box = dem_box_make(-R, -R, -L/2, R, R, L/2);
-    field.cells[0] = field.cells[1] = CELLS;
+    field.cells[0] = field.cells[1] = m->cells ? m->cells : CELLS;
     field.cells[2] = 1;
     field.start = m->settled*m->period/SAMPLES;
     field.interval = m->period/720;
+    if (m->cells < 0) return 0;
     m->field = dem_field_add(m->world, &field);
     return m->field.id ? 0 : refused(m->world, DEM_ERROR_ARGUMENT);
 }
@@ -1073,6 +1075,91 @@ static int study_control(void) {
     return 0;
 }
 
+/* The same mill with fields of several resolutions and without one, all stepped in turns: the processor time of each over
+   that without a field, and the time of a step over the run. */
+static int study_fields(void) {
+    enum { MILLS = 5, ROUNDS = 1000 };
+    static const int cells[MILLS] = {-1, 64, 128, 256, 512};
+    static double spent[MILLS][ROUNDS], turn[ROUNDS], pace[ROUNDS];
+    const double *columns[2] = {turn, pace};
+    mill m[MILLS];
+    char text[64];
+    int i, k, rounds = 0, window;
+    options.threads = 1;
+    memset(m, 0, sizeof m);
+    for (i = 0; i < MILLS; i++) {
+        m[i].o = options;
+        m[i].o.settle = 0;                       /* the field begins with the run */
+        m[i].cells = cells[i];
+        if (mill_begin(&m[i])) return 1;
+    }
+    window = options.brief ? 1 : SAMPLES/20;     /* a twentieth of a revolution */
+    for (k = 0; k < (options.settle + options.revolutions)*SAMPLES && rounds < ROUNDS; k += window, rounds++) {
+        for (i = 0; i < MILLS; i++) {
+            const clock_t begun = clock();
+            if (refused(m[i].world, dem_world_step(m[i].world, window*m[i].sample_steps))) return 1;
+            spent[i][rounds] = (double)(clock() - begun)/CLOCKS_PER_SEC/(window*m[i].sample_steps);
+        }
+        turn[rounds] = (k + window)/(double)SAMPLES;
+        pace[rounds] = 1e6*spent[0][rounds];
+        study_progress("fields", fmin(1, turn[rounds]/(options.settle + options.revolutions)), 0);
+    }
+    study_result("grains", m[0].grains, "");
+    for (i = 1; i < MILLS; i++) {
+        double ratio[ROUNDS], mean = 0, square = 0;
+        for (k = 0; k < rounds; k++) {
+            const double before = mean;
+            ratio[k] = spent[i][k]/fmax(spent[0][k], 1e-9);
+            mean += (ratio[k] - before)/(k + 1);
+            square += (ratio[k] - before)*(ratio[k] - mean);
+        }
+        snprintf(text, sizeof text, "cells%d.time", cells[i]);
+        study_result(text, mean, "of a run without a field");
+        snprintf(text, sizeof text, "cells%d.time_error", cells[i]);
+        if (rounds > 1) study_result(text, sqrt(square/(rounds - 1)/rounds), "");
+    }
+    study_result("first_step", pace[0], "microseconds");
+    study_result("last_step", pace[rounds - 1], "microseconds");
+    study_csv("pace.csv", "revolutions,step_microseconds", rounds, 2, columns);
+    for (i = 0; i < MILLS; i++) {
+        if (memcmp(dem_bodies_get(m[i].world).positions, dem_bodies_get(m[0].world).positions,
+                   4*(size_t)m[0].grains*sizeof(dem_real)))
+            study_fail("a field of %d cells changes the run", cells[i]);
+    }
+    for (i = 0; i < MILLS; i++) mill_destroy(&m[i]);
+    return 0;
+}
+
+/* Section 5.2.10: checkpoints of the mill after --settle revolutions, in a slice of --length and in one twice as thick. The
+   difference is what a bead adds; the rest does not depend on their number. */
+static int study_backup(void) {
+    double size[2], grains[2], slope;
+    int i;
+    for (i = 0; i < 2; i++) {
+        FILE *file;
+        mill m;
+        memset(&m, 0, sizeof m);
+        m.o = options;
+        m.o.length *= i + 1;
+        m.cells = -1;
+        if (mill_begin(&m) || refused(m.world, dem_world_step(m.world, m.settled*m.sample_steps)) ||
+            refused(m.world, dem_checkpoint_write(m.world, study_path("mill.checkpoint")))) return 1;
+        file = fopen(study_path("mill.checkpoint"), "rb");
+        if (!file || fseek(file, 0, SEEK_END)) { study_fail("cannot read the checkpoint"); return 1; }
+        size[i] = (double)ftell(file);
+        fclose(file);
+        remove(study_path("mill.checkpoint"));
+        grains[i] = m.grains;
+        if (i) study_result("contacts", (double)dem_contacts_get(m.world, 0, 0)/m.grains, "per bead");
+        if (i) study_result("candidates", (double)dem_counters_get(m.world).candidates/m.grains, "per bead");
+        mill_destroy(&m);
+    }
+    slope = (size[1] - size[0])/(grains[1] - grains[0]);
+    study_result("checkpoint", slope, "bytes per bead");
+    study_result("checkpoint_303156", (size[0] + slope*(303156 - grains[0]))/1e6, "MB, extrapolated; [MIL]: 47");
+    return 0;
+}
+
 /* ---- one bead ---- */
 
 static dem_body bead_add(mill *m, double y, double vx, double vy) {
@@ -1188,6 +1275,175 @@ static int study_drop(void) { /* Fig 6.1 to 6.6 */
     return 0;
 }
 
+/* Fig 4.5: a bead falls from rest, three radii above the centre of a fixed bead. The first contact step by step, and the
+   height and velocity for 0.1 s; in the mode of the thesis and in the standard mode, both with its step of 1e-6 s. */
+static int study_rebound(void) {
+    static const char *const modes[2] = {"standard", "thesis"};
+    enum { STEPS = 100000, STRIDE = 50, CONTACT = 60 };
+    double *log[6];
+    static double force[2][2][60];
+    study_figure f[3];
+    int mode, k, c;
+    f[2] = line_figure("The first contact", "step of 1 microsecond", "force on the bead (N)");
+    f[0] = line_figure("A bead dropped on a fixed bead", "time (s)", "height of the centre (m)");
+    f[1] = line_figure("A bead dropped on a fixed bead", "time (s)", "vertical velocity (m/s)");
+    for (c = 0; c < 6; c++) log[c] = (double *)study_alloc(STEPS/STRIDE, sizeof(double));
+    for (mode = 0; mode < 2; mode++) {
+        double speed = 0, highest = 0, impact = 0, most = 0;
+        const double *columns[2] = {force[mode][0], force[mode][1]};
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_body_state s;
+        dem_body bead, fixed;
+        int touched = 0, contact = 0, attracting = 0, bounces = 0, steps = options.brief ? STEPS/4 : STEPS;
+        char name[64];
+        mill m;
+        memset(&m, 0, sizeof m);
+        m.o = options;
+        m.o.stiffness = "true";
+        desc.gravity.y = -GRAVITY;
+        desc.impact_speed = 0.5;
+        desc.threads = 1;
+        desc.dt = 1e-6;
+        desc.allow_large_dt = 1;
+        desc.tension = DEM_TENSION_ALLOWED;
+        if (mode) {
+            desc.convention = DEM_CONVENTION_MILL;
+            desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
+            desc.tangent_law = DEM_TANGENT_STEP;
+        }
+        if (world_create(&m, &desc) || materials_add(&m)) return 1;
+        fixed = bead_add(&m, 0, 0, 0);
+        bead = bead_add(&m, 3*m.o.radius, 0, 0);
+        if (refused(m.world, dem_body_get(m.world, fixed, &s))) return 1;
+        s.fixed = 1;
+        if (refused(m.world, dem_body_set(m.world, fixed, &s))) return 1;
+        for (k = 0; k < steps; k++) {
+            dem_contact_info touch;
+            if (refused(m.world, dem_body_get(m.world, bead, &s))) return 1;
+            if (k%STRIDE == 0) {
+                log[3*mode][k/STRIDE] = k*desc.dt;
+                log[3*mode + 1][k/STRIDE] = s.position.y;
+                log[3*mode + 2][k/STRIDE] = s.velocity.y;
+            }
+            if (s.position.y > 2*m.o.radius) {
+                if (touched && !bounces++) impact = s.velocity.y;
+                touched = 0;
+                if (bounces == 1) highest = fmax(highest, s.position.y);
+            } else {
+                if (!touched && !bounces) speed = s.velocity.y;
+                touched = 1;
+                if (!bounces && contact < CONTACT && dem_contacts_get(m.world, &touch, 1) == 1) {
+                    /* the force on the bead that falls, upwards */
+                    const double up = touch.a.slot == bead.slot ? touch.force.y : -touch.force.y;
+                    force[mode][0][contact] = contact + 1;
+                    force[mode][1][contact++] = up;
+                    most = fmax(most, up);
+                    attracting += up < 0;
+                }
+            }
+            if (refused(m.world, dem_world_step(m.world, 1))) return 1;
+        }
+        study_result(mode ? "contact_steps_thesis" : "contact_steps_standard", contact, "");
+        study_result(mode ? "attracting_steps_thesis" : "attracting_steps_standard", attracting, "");
+        study_result(mode ? "force_most_thesis" : "force_most_standard", most, "N");
+        study_result(mode ? "impact_speed_thesis" : "impact_speed_standard", -speed, "m/s");
+        study_result(mode ? "restitution_thesis" : "restitution_standard", -impact/speed, "");
+        study_result(mode ? "apex_thesis" : "apex_standard", highest, "m");
+        study_result(mode ? "bounces_thesis" : "bounces_standard", bounces, "");
+        if (fabs(-impact/speed - 0.66) > 0.02) study_fail("restitution is %g instead of 0.66", -impact/speed);
+        snprintf(name, sizeof name, "rebound_%s.csv", modes[mode]);
+        study_csv(name, "time_s,height_m,velocity_m_s", steps/STRIDE, 3, (const double *const *)(log + 3*mode));
+        snprintf(name, sizeof name, "rebound_force_%s.csv", modes[mode]);
+        study_csv(name, "step,force_N", contact, 2, columns);
+        for (c = 0; c < 2; c++)
+            study_curve(&f[c], modes[mode], mode ? STUDY_DASHED : STUDY_LINE, steps/STRIDE, log[3*mode], log[3*mode + 1 + c]);
+        study_curve(&f[2], modes[mode], mode ? STUDY_DASHED : STUDY_LINE, contact, columns[0], columns[1]);
+        mill_destroy(&m);
+    }
+    study_figure_write(&f[0], "rebound_height.svg");
+    study_figure_write(&f[1], "rebound_velocity.svg");
+    study_figure_write(&f[2], "rebound_force.svg");
+    for (c = 0; c < 6; c++) free(log[c]);
+    return 0;
+}
+
+/* Section 5.2.1: a bead falls 5 mm on a flat sheet made of wall grains, at random places of the sheet. Sheets are square
+   lattices: grains of several sizes that just touch, and grains of the size of the bead that overlap, with their forces
+   divided by the number of grains on the area that one would cover. Means and spreads over --repeats places. */
+static int study_sheet(void) {
+    /* radius and spacing over the radius of the bead; 0: a plane */
+    static const struct { const char *name; double radius, spacing; int divided; } sheets[] = {
+        {"plane", 0, 0, 0}, {"touching_1", 1, 2, 0}, {"touching_2", 0.5, 1, 0}, {"touching_4", 0.25, 0.5, 0},
+        {"touching_8", 0.125, 0.25, 0}, {"overlapping_4", 1, 0.4, 1}, {"overlapping_2", 1, 0.2, 1},
+        {"overlapping_1", 1, 0.1, 1}, {"overlapping_1_undivided", 1, 0.1, 0}};
+    enum { SHEETS = sizeof sheets/sizeof *sheets };
+    static const char *const names[4] = {"restitution", "sideways", "overlap", "contact"};
+    static const char *const units[4] = {"", "of the impact speed", "of the radius", "microseconds"};
+    int i, n, c, x, y;
+    for (i = 0; i < SHEETS; i++) {
+        double mean[4] = {0, 0, 0, 0}, square[4] = {0, 0, 0, 0};
+        const double r = options.radius, step = sheets[i].spacing*r, impact = sqrt(2*GRAVITY*0.005);
+        const int side = sheets[i].radius > 0 ? (int)(1.5*r/step) + 2 : 0, places = sheets[i].radius > 0 ? options.repeats : 1;
+        dem_real *at = (dem_real *)study_alloc(3*(size_t)((2*side + 1)*(2*side + 1)), sizeof *at);
+        uint32_t random = (uint32_t)options.seed;
+        char text[64];
+        for (n = 0; n < places; n++) {
+            const double offset[2] = {step*chance(&random), step*chance(&random)};
+            double found[4] = {0, 0, 0, 0};
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_body_state s;
+            dem_body bead;
+            dem_wall wall;
+            int count = 0, touched = 0, k;
+            mill m;
+            memset(&m, 0, sizeof m);
+            m.o = options;
+            m.o.stiffness = "true";
+            m.o.friction = 0;               /* the sheet's shape alone */
+            desc.impact_speed = impact;
+            desc.threads = 1;
+            desc.dt = 1e-7;
+            desc.allow_large_dt = 1;
+            if (world_create(&m, &desc) || materials_add(&m)) return 1;
+            for (x = -side; x <= side; x++)
+                for (y = -side; y <= side; y++) {
+                    at[3*count] = offset[0] + x*step;
+                    at[3*count + 1] = -sheets[i].radius*r;
+                    at[3*count++ + 2] = offset[1] + y*step;
+                }
+            if (side) wall = dem_wall_grains_add(m.world, m.glass, count, at, sheets[i].radius*r,
+                                                 sheets[i].divided ? pow(sheets[i].spacing/2, 2) : 1);
+            else wall = dem_wall_plane_add(m.world, m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+            if (!wall.id) return refused(m.world, DEM_ERROR_ARGUMENT);
+            bead = bead_add(&m, 1.0001*r, 0, -impact);
+            for (k = 0; k < 100000; k++) {
+                if (refused(m.world, dem_world_step(m.world, 1)) || refused(m.world, dem_body_get(m.world, bead, &s))) return 1;
+                if (dem_contacts_get(m.world, 0, 0) > 0) { touched = 1; found[3] += 1e6*desc.dt; }
+                else if (touched || s.position.y < -r) break;
+            }
+            found[0] = s.velocity.y/impact;
+            found[1] = hypot(s.velocity.x, s.velocity.z)/impact;
+            found[2] = dem_counters_get(m.world).overlap_max;
+            if (!touched || found[0] <= 0) study_fail("sheet %s: the bead does not rebound", sheets[i].name);
+            if (!side && fabs(found[0] - 0.66) > 0.002) study_fail("restitution on a plane is %g instead of 0.66", found[0]);
+            for (c = 0; c < 4; c++) {
+                const double old = mean[c];
+                mean[c] += (found[c] - old)/(n + 1);
+                square[c] += (found[c] - old)*(found[c] - mean[c]);
+            }
+            mill_destroy(&m);
+        }
+        free(at);
+        for (c = 0; c < 4; c++) {
+            snprintf(text, sizeof text, "%s.%s", sheets[i].name, names[c]);
+            study_result(text, mean[c], units[c]);
+            snprintf(text, sizeof text, "%s.%s_spread", sheets[i].name, names[c]);
+            if (places > 1) study_result(text, sqrt(square[c]/(places - 1)), units[c]);
+        }
+    }
+    return 0;
+}
+
 static int study_overlap(void) { /* Fig 6.0: a bead hits another, or the mill, head on */
     static const char *const names[4] = {"bead on bead, true", "bead on mill, true",
                                          "bead on bead, softened", "bead on mill, softened"};
@@ -1264,9 +1520,13 @@ int main(int argc, char **argv) {
     m.o = options;
     if (is(options.study, "mill")) mill_run(&m);
     if (is(options.study, "drop")) study_drop();
+    if (is(options.study, "rebound")) study_rebound();
+    if (is(options.study, "sheet")) study_sheet();
     if (is(options.study, "overlap")) study_overlap();
     if (is(options.study, "speeds")) study_several(0);
     if (is(options.study, "friction")) study_several(1);
     if (is(options.study, "control")) study_control();
+    if (is(options.study, "fields")) study_fields();
+    if (is(options.study, "backup")) study_backup();
     return study_end();
 }
