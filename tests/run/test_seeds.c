@@ -110,6 +110,14 @@ static double hysteresis_closed(double d) {
     return lo/d;
 }
 
+/* The normal force of [MIL] section 4.1: 2 pi E (R - r/2)^2, r the distance of the centres, without the cubic term. */
+static const double first_young = 6.396e10;            /* Pa, glass */
+static void first_principles(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
+    const double half = (double)c->overlap/2;
+    (void)memory;
+    push->normal = (dem_real)(2*pi*first_young*half*half);
+}
+
 /* ---- a gas that runs forwards and backwards ---- */
 
 /* Runs 64 elastic balls in a periodic box for `steps`, reverses all velocities and runs as many steps again. Returns the
@@ -279,6 +287,33 @@ int main(int argc, char **argv) {
         CHECK_NEAR(hysteresis_closed(0.75*(1 - 0.81)), 0.913, 5e-4);
         CHECK_NEAR(hysteresis_closed(0.75*(1 - 0.25)), 0.725, 5e-4);
         CHECK_NEAR(hysteresis_closed(0.75), 0.663, 5e-4);
+    }
+
+    TEST("an elastic normal force 2 pi E (R - r/2)2 overlaps by (3 m v2/(pi E))^(1/3)") {
+        const double R = 0.0015, mass = 2500*4*pi*R*R*R/3, speed = 1.2, deep = cbrt(3*mass/2*speed*speed/(pi*first_young));
+        double c;
+        int k;
+        for (k = 0; k < 2; k++) {                      /* by this law, and by Hertz's */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc m = scene_stuff(first_young, 1, 0, 0);
+            dem_world *world;
+            dem_material stuff;
+            if (!k) desc.law = first_principles;
+            if (!k) desc.law_stiffness = (dem_real)(pi*first_young*deep);
+            desc.dt = DEM_R(2e-8);
+            desc.threads = 1;
+            m.poisson = DEM_R(0.23);
+            world = dem_world_create(&desc);
+            stuff = dem_material_add(world, &m);
+            scene_move(world, dem_sphere_add(world, stuff, (dem_real)R, at(-1.00001*R, 0, 0)), at(speed/2, 0, 0), at(0, 0, 0));
+            scene_move(world, dem_sphere_add(world, stuff, (dem_real)R, at(1.00001*R, 0, 0)), at(-speed/2, 0, 0), at(0, 0, 0));
+            CHECK_EQ(dem_world_step(world, 2000), DEM_OK);
+            CHECK_REL((double)dem_counters_get(world).overlap_max*R, k ? 0.00245*R : deep, k ? 0.01 : 2e-3);
+            dem_world_destroy(world);
+        }
+        CHECK_NEAR(deep/R, 0.0048, 5e-5);              /* twice as deep as with Hertz's law */
+        for (c = 0.975; c < 1; c += 0.005)             /* the cubic term, for overlaps up to 5 % of R */
+            CHECK_NEAR(4*((1 - c*c*c)/3 - c*(1 - c*c)/2)/(2*(1 - c)*(1 - c)), 1, 0.01);
     }
 
     TEST("five discs with Verlet circles of five radii have five candidate pairs instead of ten") {
