@@ -1,5 +1,6 @@
 /* The small examples and formulas of the texts of docs/seeds.md that no other test has: those of [ALK07] on searches, Verlet
-   lists, slices for several processors, sieves, damping and reversibility, and those of [MIL] on packings and clusters. */
+   lists, slices for several processors, sieves, damping and reversibility, those of [MIL] on forces, packings and clusters,
+   and claims of [RUB15] and [CRI14] on gases and splitters. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../test.h"
@@ -609,6 +610,47 @@ int main(int argc, char **argv) {
         CHECK_NEAR(temperature[1]/temperature[0], 1, 0.25);                 /* 108 bodies each, some ten independent samples */
         CHECK_NEAR(translation/rotation, 1, 0.2);
         dem_world_destroy(g.world);
+    }
+
+    TEST("a splitter that is a fixed body divides a stream as its position does, except at its edge") {
+        /* balls of 1 mm radius fall by their weight onto the upper edge, at y = 0, of an upright plate 1 mm thick; impulses */
+        enum { BALLS = 200 };
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material stuff;
+        dem_body ball[BALLS], plate;
+        dem_body_state s;
+        double start[BALLS];
+        uint64_t random = 11;
+        int i, right = 0, by_position = 0, edge = 0;
+        desc.gravity.y = DEM_R(-9.81);
+        desc.response = DEM_RESPONSE_IMPULSES;
+        desc.dt = DEM_R(1e-4);
+        desc.threads = 1;
+        world = dem_world_create(&desc);
+        stuff = scene_material(world, 1e7, 0.5, 0.3, 0);
+        plate = dem_body_add(world, stuff, scene_box(world, 0.001, 0.05, 1), at(0, -0.025, 0), dem_quat_make(1, 0, 0, 0));
+        s = scene_state(world, plate);
+        s.fixed = 1;
+        CHECK_EQ(dem_body_set(world, plate, &s), DEM_OK);
+        for (i = 0; i < BALLS; i++) {
+            start[i] = 0.02*(scene_random(&random) - 0.5);
+            ball[i] = dem_sphere_add(world, stuff, DEM_R(0.001), at(start[i], 0.005, 0.004*(i - BALLS/2)));
+        }
+        CHECK_EQ(dem_world_step(world, 1000), DEM_OK);
+        for (i = 0; i < BALLS; i++) {
+            const double x = (double)scene_state(world, ball[i]).position.x;
+            right += x > 0;
+            by_position += start[i] > 0;
+            if (fabs(start[i]) > 0.0015) CHECK_NEAR(x, start[i], SINGLE ? 1e-6 : 1e-12);    /* these do not touch it */
+            else {
+                edge++;
+                CHECK(fabs(x) > 0.0014 || (double)scene_state(world, ball[i]).position.y > 0);
+            }
+        }
+        CHECK(edge > 10 && abs(right - by_position) <= edge/2);           /* 36 balls; 106 on the right either way */
+        CHECK_NEAR(scene_state(world, plate).position.y, -0.025, 1e-9);
+        dem_world_destroy(world);
     }
 
     return test_end();
