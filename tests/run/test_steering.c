@@ -54,6 +54,7 @@ static dem_world *heap(int wall, int threads, dem_wall *floor) {
     return world;
 }
 /* Sets the motion of the floor, or its surface velocity (BELT). speed: m/s. */
+/* Sets the motion of the floor, or its surface velocity (BELT). speed: m/s. */
 static dem_result lead(dem_world *world, dem_wall floor, int motion, int planar, double speed) {
     dem_motion m = DEM_MOTION;
     if (motion == BELT) return dem_wall_surface_velocity_set(world, floor, at(speed, 0, 0));
