@@ -1180,6 +1180,21 @@ static dem_body bead_add(mill *m, double y, double vx, double vy) {
 typedef struct throw_of { const char *title; double height, vx, vy, time; } throw_of;
 enum { ROWS = 2000 };
 
+/* Makes a world for a few beads, with the convention, scheme and friction of the thesis if `thesis`. Returns 1 on an error. */
+static int beads_world(mill *m, dem_world_desc *desc, int thesis) {
+    memset(m, 0, sizeof *m);
+    m->o = options;
+    m->o.stiffness = "true";
+    desc->gravity.y = -GRAVITY;
+    desc->impact_speed = 0.5;
+    desc->threads = 1;
+    if (thesis) {
+        desc->convention = DEM_CONVENTION_MILL;
+        desc->integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
+        desc->tangent_law = DEM_TANGENT_STEP;
+    }
+    return world_create(m, desc) || materials_add(m);
+}
 static int throw_bead(const throw_of *t, int figure, int thesis, double *const *log,
                       double worst[3]) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -1188,20 +1203,9 @@ static int throw_bead(const throw_of *t, int figure, int thesis, double *const *
     char name[64];
     dem_body bead;
     mill m;
-    memset(&m, 0, sizeof m);
-    m.o = options;
-    m.o.stiffness = "true";
-    desc.gravity.y = -GRAVITY;
-    desc.impact_speed = 0.5;
-    desc.threads = 1;
     desc.dt = thesis ? 1e-6 : 1e-7;
-    if (thesis) {
-        desc.convention = DEM_CONVENTION_MILL;
-        desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
-        desc.tangent_law = DEM_TANGENT_STEP;
-        desc.allow_large_dt = 1;
-    }
-    if (world_create(&m, &desc) || materials_add(&m)) return 1;
+    desc.allow_large_dt = thesis;
+    if (beads_world(&m, &desc, thesis)) return 1;
     dem_wall_plane_add(m.world, thesis ? m.lining : m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
     bead = bead_add(&m, m.o.radius + t->height, t->vx, t->vy);
     steps = (int)((options.brief ? 0.05 : t->time)/desc.dt + 0.5);      /* 0.05 s: one bounce, or two */
@@ -1297,21 +1301,10 @@ static int study_rebound(void) {
         int touched = 0, contact = 0, attracting = 0, bounces = 0, steps = options.brief ? STEPS/4 : STEPS;
         char name[64];
         mill m;
-        memset(&m, 0, sizeof m);
-        m.o = options;
-        m.o.stiffness = "true";
-        desc.gravity.y = -GRAVITY;
-        desc.impact_speed = 0.5;
-        desc.threads = 1;
         desc.dt = 1e-6;
         desc.allow_large_dt = 1;
         desc.tension = DEM_TENSION_ALLOWED;
-        if (mode) {
-            desc.convention = DEM_CONVENTION_MILL;
-            desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
-            desc.tangent_law = DEM_TANGENT_STEP;
-        }
-        if (world_create(&m, &desc) || materials_add(&m)) return 1;
+        if (beads_world(&m, &desc, mode)) return 1;
         fixed = bead_add(&m, 0, 0, 0);
         bead = bead_add(&m, 3*m.o.radius, 0, 0);
         if (refused(m.world, dem_body_get(m.world, fixed, &s))) return 1;
