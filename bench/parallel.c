@@ -26,6 +26,7 @@
                       says of the scene is kept: planar, alike along the width, cut into slices, 1e-5 s. What it
                       does not say is ours: the discs of its Fig 2.16 at rest in a box twice as wide as the
                       layer is high, periodic sideways
+     shapes           clusters of four spheres, ellipsoids as a gas, cubes, and spheres with impulses, which slabs refuse
      searches         Fig 2.17: discs of three sizes in a round tank (Fig 2.16), 720 N/m, e = 0.2, 1e-5 s, five
                       groups of growing number. Ours: fifths; tank of 4 m; discs of glass, 0.5 mm thick (at
                       720 N/m the weight of balls would press them through each other); no friction
@@ -819,6 +820,124 @@ static void searches_part(void) {
     study_figure_write(&f, "searches.svg");
 }
 
+/* ---- other bodies, and the other response ---- */
+
+/* Bodies that fall onto a floor, in a box that is periodic along x and y; or a gas without gravity and floor. */
+typedef struct heap { const char *name; int count, gas, impulses; double radius, fraction, fall; } heap; /* m; of the box; s */
+static const heap heaps[] = {
+    {"clusters", 4096, 0, 0, 2e-3, 0.12, 0.15},                  /* of four spheres */
+    {"ellipsoid_gas", 4096, 1, 0, 2e-3, 0.058, 0.01},            /* 1 : 1 : 2, solid fraction of [RUB15] */
+    {"cubes", 4096, 0, 0, 2e-3, 0.12, 0.1},
+    {"impulses", 8192, 0, 1, 2e-3, 0.3, 0.3},                    /* spheres */
+};
+enum { HEAPS = (int)(sizeof heaps/sizeof *heaps) };
+
+static dem_shape heap_shape(const heap *h, dem_world *world) {
+    static const dem_real four[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
+    const dem_real r = (dem_real)h->radius;
+    dem_real corners[24];
+    dem_shape none = {0};
+    int i;
+    if (h->gas) return dem_shape_ellipsoid_add(world, dem_vec3_make(r, r, 2*r));
+    if (h->impulses) return none;
+    for (i = 0; i < 24; i++) corners[i] = r*(i/3 >> i%3 & 1 ? DEM_R(0.8) : DEM_R(-0.8));
+    if (!strcmp(h->name, "cubes")) return dem_shape_polyhedron_add(world, 8, corners);
+    else {
+        dem_cluster_desc desc = DEM_CLUSTER_DESC;
+        for (i = 0; i < 12; i++) corners[i] = DEM_R(0.4)*r*four[i];
+        desc.count = 4;
+        desc.positions = corners;
+        desc.radius = DEM_R(0.6)*r;
+        return dem_shape_cluster_add(world, &desc);
+    }
+}
+/* The scene without bodies. */
+static dem_world *heap_begin(const heap *h, int threads, dem_material *material, dem_shape *shape, dem_box *box) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc stuff = DEM_MATERIAL_DESC;
+    const double volume = (h->gas ? 8.38 : 4.19)*pow(h->radius, 3)*h->count/h->fraction, side = pow(h->gas ? volume : volume/2, 1.0/3);
+    dem_world *world;
+    int ok;
+    *box = dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)(h->gas ? side : 2*side));
+    desc.domain = *box;
+    desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+    if (h->gas) desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
+    else desc.gravity.z = DEM_R(-9.81);
+    desc.response = h->impulses ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+    if (h->impulses) desc.dt = DEM_R(2.5e-4);
+    desc.threads = threads;
+    desc.impact_speed = 1;
+    world = dem_world_create(&desc);
+    if (!world) { study_fail("%s: %s", h->name, dem_world_create_error_get(&desc)); return 0; }
+    stuff.density = 2500;
+    stuff.young = DEM_R(1e7);
+    stuff.friction = DEM_R(0.4);
+    stuff.restitution = h->gas ? DEM_R(0.95) : DEM_R(0.5);
+    *material = dem_material_add(world, &stuff);
+    *shape = heap_shape(h, world);
+    ok = material->id && (h->impulses || shape->id) &&
+        (h->gas || dem_wall_plane_add(world, *material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id);
+    if (ok) return world;
+    study_fail("%s: %s", h->name, dem_world_error_get(world));
+    dem_world_destroy(world);
+    return 0;
+}
+static const char *heap_path(const heap *h) {
+    char name[64];
+    snprintf(name, sizeof name, "%s.state", h->name);
+    return study_path(name);
+}
+/* Fills the box, lets the bodies fall, and saves the state. Returns how many they are; 0 if something broke. */
+static int heap_fall(const heap *h) {
+    dem_material material;
+    dem_shape shape;
+    dem_box box;
+    dem_world *world = heap_begin(h, 0, &material, &shape, &box);
+    int count = 0, i, k;
+    if (!world) return 0;
+    box.lo.z = (dem_real)h->radius;
+    count = h->impulses ? dem_spheres_fill(world, material, (dem_real)h->radius, dem_region_make(box), h->count, 1)
+        : dem_bodies_fill(world, material, shape, dem_region_make(box), h->count, 1);
+    disc_random = 1;
+    for (i = 0; i < count && h->gas; i++) {
+        dem_body_state state;
+        dem_real v[3];
+        for (k = 0; k < 3; k++) v[k] = (dem_real)(disc_uniform() - 0.5);
+        dem_body_get(world, dem_body_id_get(world, i), &state);
+        state.velocity = dem_vec3_make(v[0], v[1], v[2]);
+        dem_body_set(world, dem_body_id_get(world, i), &state);
+    }
+    while (count > 0 && dem_world_time_get(world) < (short_form ? 0.1 : 1)*h->fall)
+        if (dem_world_step(world, 20) != DEM_OK) count = 0;
+    if (count < 1 || dem_checkpoint_write(world, heap_path(h)) != DEM_OK) {
+        study_fail("%s: %s", h->name, dem_world_error_get(world));
+        count = 0;
+    }
+    dem_world_destroy(world);
+    return count;
+}
+static dem_world *heap_world(const subject *s, int threads) {
+    const heap *h = (const heap *)s->scene;
+    dem_material material;
+    dem_shape shape;
+    dem_box box;
+    dem_world *world = heap_begin(h, threads, &material, &shape, &box);
+    if (!world || dem_checkpoint_read(world, heap_path(h)) == DEM_OK) return world;
+    study_fail("%s: %s", h->name, dem_world_error_get(world));
+    dem_world_destroy(world);
+    return 0;
+}
+static void shapes_part(void) {
+    int i;
+    for (i = 0; i < HEAPS; i++) {
+        subject of;
+        of.name = heaps[i].name; of.warm_up = 40; of.axis = 0; of.scene = &heaps[i]; of.world = heap_world;
+        of.count = heap_fall(&heaps[i]);
+        if (of.count) compare_ways(&of, 1);
+        remove(heap_path(&heaps[i]));
+    }
+}
+
 /* ---- scaling: what a bead costs in beds of a thousand to a million ---- */
 
 /* Seams leave gaps: a cut bed sinks for 50 ms, and comes to rest in 10 more, with drag. */
@@ -1118,7 +1237,7 @@ static int wanted(const char *name) { return !strcmp(part, "all") || !strcmp(par
 
 int main(int argc, char **argv) {
     static const study_option choices[] = {
-        {"part", STUDY_CHOICE, &part, 0, 0, "all|bed|drum|gas|mill|tables|searches|scaling", "what to measure"},
+        {"part", STUDY_CHOICE, &part, 0, 0, "all|bed|drum|gas|mill|tables|shapes|searches|scaling", "what to measure"},
         {"threads", STUDY_INT, &most_workers, 1, 64, "", "and slabs, the most: of 2, 3, 4, 8"},
         {"short", STUDY_FLAG, &short_form, 0, 0, "", "a first look: shorter loops, fewer turns, no million"},
         {"full", STUDY_FLAG, &full_form, 0, 0, "", "long loops, all threads, the whole 4 s of the tank: an hour"},
@@ -1146,6 +1265,7 @@ int main(int argc, char **argv) {
         if (wanted("gas")) scene_part("gas");
         if (wanted("mill")) mill_part();
         if (wanted("tables")) tables_part();
+        if (wanted("shapes")) shapes_part();
         study_close(csv, "speedups.csv");
         csv = 0;
         page_speedups();

@@ -126,7 +126,7 @@ static const study_option table[] = {
     {"image-permittivity", STUDY_REAL, &options.image_permittivity, 1, 100, "", "er that divides the image force"},
     {"image", STUDY_INT, &options.image, 0, 1, "", "1: image force"},
     {"pull", STUDY_INT, &options.pull, 0, 1, "", "1: the field pulls ions' charge; 0: as [CRI14] has it"},
-    {"drag", STUDY_CHOICE, &options.drag, 0, 0, "none|stokes|schiller", "of the air"},
+    {"drag", STUDY_CHOICE, &options.drag, 0, 0, "none|stokes|schiller|holzer", "of the air; holzer: depends on shape and attitude"},
     {"air-density", STUDY_REAL, &options.air_density, 0, 100, "kg/m3", ""},
     {"air-viscosity", STUDY_REAL, &options.air_viscosity, 1e-9, 1, "Pa s", ""},
     {"wind-x", STUDY_REAL, &options.wind_x, -30, 30, "m/s", "of the air"},
@@ -153,7 +153,7 @@ static const study_option table[] = {
     {"check", STUDY_FLAG, &options.check, 0, 0, "", "equal bits for 1, 2, 3, 4, 8 threads and after a restart"},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|settings|solvers|steps|choices|papers",
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|drag|settings|solvers|steps|choices|papers|load",
         "what to run"},
 };
 enum { OPTIONS = sizeof table/sizeof *table };
@@ -228,7 +228,7 @@ static void charging_set(separator_desc *d, const struct separator_options *o) {
     c->field_share = o->field_share; c->image_permittivity = o->image_permittivity;
     c->air_density = o->air_density; c->air_viscosity = o->air_viscosity;
     c->drag = is(o->drag, "none") ? CORONA_DRAG_NONE : is(o->drag, "stokes") ? CORONA_DRAG_STOKES
-        : CORONA_DRAG_SCHILLER;
+        : is(o->drag, "holzer") ? CORONA_DRAG_HOLZER : CORONA_DRAG_SCHILLER;
     c->wind[0] = o->wind_x; c->wind[1] = o->wind_y; c->swirl = o->swirl;
     d->ions_begin = o->ions_begin*degree; d->ions_end = o->ions_end*degree;
     d->brush_middle = o->brush_middle*degree; d->brush_half = o->brush_half*degree;
@@ -248,7 +248,7 @@ static void setting_set(separator_desc *d, const struct separator_options *o) {
     d->solver = is(o->solver, "jacobi") ? DEM_SOLVER_JACOBI : is(o->solver, "apgd") ? DEM_SOLVER_APGD
         : is(o->solver, "spectral") ? DEM_SOLVER_SPECTRAL : DEM_SOLVER_GAUSS_SEIDEL;
     d->dt = o->dt > 0 ? o->dt : springs ? 0 : seeds ? 1e-3 : fragments_fed(o) ? 5e-5 : 2.5e-4;
-    d->sweeps = o->sweeps ? o->sweeps : seeds ? 100 : 0;
+    d->sweeps = o->sweeps ? o->sweeps : seeds ? 100 : 3000;  /* a full layer needs up to 1000 in some steps */
     d->tolerance = o->tolerance > 0 ? o->tolerance : seeds ? 1e-30 : 0;      /* all of the 100 */
     d->cold = o->cold < 0 ? seeds : o->cold;
     d->range = o->range > 0 ? o->range/1000 : 2e-3;
@@ -685,6 +685,11 @@ typedef struct sweep {
 static void set_rate(struct separator_options *o, double v) { o->rate = v; }
 static void set_rpm(struct separator_options *o, double v) { o->rpm = v; }
 static void set_voltage(struct separator_options *o, double v) { o->voltage = v; }
+/* Spheres, flakes and shavings, each with a drag of spheres and with one of their shape. */
+static void set_drag(struct separator_options *o, double value) {
+    o->metal_form = o->plastic_form = form_names[(int)value/2];
+    o->drag = (int)value%2 ? "holzer" : "schiller";
+}
 static void set_form(struct separator_options *o, double v) { o->metal_form = o->plastic_form = form_names[(int)v]; }
 static void set_setting(struct separator_options *o, double v) {
     static const char *const words[3] = {"ours", "seeds", "springs"};
@@ -742,6 +747,8 @@ static const sweep sweeps[] = {
     {"sizes", "Mean size", "mean diameter [mm]", 5, {1.2, 1.5, 2, 2.5, 3}, {0}, set_size},
     {"shape", "Shape", "0 sphere, 1 flake, 2 shaving, 3 fragment", 4, {0, 1, 2, 3},
         {"sphere", "flake", "shaving", "fragment"}, set_form},
+    {"drag", "Drag by shape", "0 sphere, 2 flake, 4 shaving; + 1: drag depends on shape", 6, {0, 1, 2, 3, 4, 5},
+        {"sphere.schiller", "sphere.holzer", "flake.schiller", "flake.holzer", "shaving.schiller", "shaving.holzer"}, set_drag},
     {"settings", "Contacts", "0 ours, 1 seeds, 2 springs", 3, {0, 1, 2}, {"ours", "seeds", "springs"}, set_setting},
     {"solvers", "Solvers", "0 Gauss-Seidel, 1 Jacobi, 2 accelerated, 3 spectral", 4, {0, 1, 2, 3},
         {"seidel", "jacobi", "apgd", "spectral"}, set_solver},
@@ -1011,6 +1018,102 @@ static void check_run(const struct separator_options *base) {
     }
 }
 
+/* ---- what a step costs ---- */
+
+typedef struct cost { double step, sweeps, residual, overlap; int unsolved, steps, threads; } cost;
+
+/* Continues the saved stream for so many milliseconds with the contacts of the options, and times the steps after the first
+   millisecond. Returns 0 on success. */
+static int cost_measure(const struct separator_options *o, int milliseconds, cost *c) {
+    static separator s;
+    separator_desc d;
+    dem_result result;
+    double begun = 0;
+    int i, bad = 1;
+    memset(c, 0, sizeof *c);
+    if (!desc_of(&d, o)) return 1;
+    result = separator_create(&s, &d);
+    if (result == DEM_OK) {
+        result = separator_refused(&s, dem_checkpoint_read_changed(s.world, study_path("load.dem"),
+                                   "dt sweeps tolerance cold_start cone solver"));
+        if (result == DEM_OK) result = separator_restored(&s);
+    }
+    for (i = 0; i <= milliseconds && result == DEM_OK; i++) {
+        result = separator_step(&s);
+        if (i) continue;
+        c->unsolved = -(int)dem_counters_get(s.world).unsolved;
+        s.sweeps = s.residual_max = 0;
+        s.steps = 0;
+        dem_overlap_max_reset(s.world);
+        begun = study_clock();
+    }
+    if (result == DEM_OK) {
+        const dem_counters k = dem_counters_get(s.world);
+        c->steps = (int)s.steps;
+        c->step = 1000*(study_clock() - begun)/c->steps;
+        c->sweeps = s.sweeps/c->steps;
+        c->residual = s.residual_max;
+        c->overlap = (double)k.overlap_max;
+        c->unsolved += (int)k.unsolved;
+        c->threads = k.threads;
+        bad = 0;
+    } else study_fail("%s", s.error);
+    separator_end(&s);
+    return bad;
+}
+static void cost_tell(const char *name, const cost *c, const cost *few, const cost *many) {
+    const double more = many->sweeps - few->sweeps, one = more > 1 ? (many->step - few->step)/more : nan("");
+    snprintf(study.prefix, sizeof study.prefix, "%s.", name);
+    study_result("steps", c->steps, "");
+    study_result("unsolved_steps", c->unsolved, "");
+    study_result("sweeps_mean", c->sweeps, "");
+    study_result("residual_max", c->residual, "m/s");
+    study_result("overlap_max", c->overlap, "");
+    study_result("step", c->step, "ms");
+    study_result("sweep", one, "ms");                        /* nan: so few contacts that they need fewer sweeps */
+    study_result("sweeps_share", 100*c->sweeps*one/c->step, "%");
+    study.prefix[0] = 0;
+}
+/* Runs the stream until --seconds and saves it. From this state, for three ways to solve contacts and on one and on all
+   threads: the time of a step, and that of a sweep, from the difference between 60 and 20 sweeps in each step. */
+static void load_run(struct separator_options *base) {
+    static const char *const names[3] = {"ours", "seeds_seidel", "seeds_spectral"};
+    static separator s;
+    static outcome r;
+    const int milliseconds = base->brief ? 2 : 20;
+    int way, all, bad;
+    base->drain = -1;                          /* the feed lasts longer than the run */
+    base->seconds += 1;
+    bad = separator_run(&s, base, "load", &r, 0);
+    if (!bad) {
+        study_result("grains", dem_bodies_get(s.world).count, "");
+        study_result("candidates", dem_counters_get(s.world).candidates, "");
+        study_result("unknowns_max", 3.0*s.loaded_max, "");
+        outcome_tell(&r, 0);
+        if (dem_checkpoint_write(s.world, study_path("load.dem")) != DEM_OK) study_fail("%s", dem_world_error_get(s.world));
+    }
+    separator_end(&s);
+    for (way = 0; way < 3 && !bad; way++)
+        for (all = 0; all < 2; all++) {
+            struct separator_options o = *base;
+            cost whole, few, many;
+            char name[48];
+            o.setting = way ? "seeds" : "ours";
+            o.solver = way == 2 ? "spectral" : "seidel";
+            o.threads = all ? 0 : 1;
+            if (cost_measure(&o, milliseconds, &whole)) return;
+            if (all && whole.threads == 1) continue;
+            o.tolerance = 1e-30;
+            o.sweeps = 20;
+            if (cost_measure(&o, milliseconds/2, &few)) return;
+            o.sweeps = 60;
+            if (cost_measure(&o, milliseconds/2, &many)) return;
+            snprintf(name, sizeof name, "%s.threads%d", names[way], whole.threads);
+            cost_tell(name, &whole, &few, &many);
+        }
+    remove(study_path("load.dem"));
+}
+
 static void one_run(const struct separator_options *o) {
     static separator s;
     static outcome r;
@@ -1045,6 +1148,7 @@ int main(int argc, char **argv) {
     study_begin(options.out);
     if (is(options.study, "run")) one_run(&options);
     else if (is(options.study, "check")) check_run(&options);
+    else if (is(options.study, "load")) load_run(&options);
     else
         for (i = 0; i < sizeof sweeps/sizeof *sweeps; i++)
             if (is(sweeps[i].name, options.study)) sweep_run(&sweeps[i], &options);

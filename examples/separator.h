@@ -74,6 +74,7 @@ typedef struct separator {
     uint32_t *seen, seen_count;              /* generation that has been counted, by slot */
     uint64_t binned[SEPARATOR_CLASSES];
     double sweeps, residual_max;             /* sum over steps; m/s */
+    int loaded_max;                          /* contacts that carry an impulse or a force, in the step with most of them */
     uint64_t steps, unbalanced;
     int near_steps;
     char error[600];
@@ -119,6 +120,7 @@ static inline int separator_class_add(separator *s, int part, int variant) {
     if (form != SEPARATOR_SPHERE) {
         const int count = separator_points(form, variant, points);
         dem_shape_info info;
+        double axes[3];
         if (form == SEPARATOR_FRAGMENT) shape = dem_shape_polyhedron_add(s->world, count, points);
         else {
             dem_cluster_desc cluster = DEM_CLUSTER_DESC;
@@ -129,11 +131,14 @@ static inline int separator_class_add(separator *s, int part, int variant) {
             shape = dem_shape_cluster_add(s->world, &cluster);
         }
         if (!shape.id || dem_shape_get(s->world, shape, &info) != DEM_OK || shape.id >= CORONA_SHAPES) return 0;
+        axes[0] = (double)info.semi_axes.x; axes[1] = (double)info.semi_axes.y; axes[2] = (double)info.semi_axes.z;
         s->physics.shapes[shape.id].count = count;
         s->physics.shapes[shape.id].points = points;
         s->physics.shapes[shape.id].radii = form == SEPARATOR_FRAGMENT ? 0 : s->ones;
         s->physics.shapes[shape.id].radius = info.radius;
         s->physics.shapes[shape.id].centre = info.centre;
+        s->physics.shapes[shape.id].frame = info.frame;
+        s->physics.shapes[shape.id].outline = corona_outline_make(axes);
     }
     s->class_part[n] = part;
     s->class_shape[n] = shape;
@@ -426,6 +431,8 @@ static inline dem_result separator_advance(separator *s, int steps) {
     counters = dem_counters_get(s->world);
     s->sweeps += counters.sweeps;
     if ((double)counters.residual > s->residual_max) s->residual_max = (double)counters.residual;
+    if (counters.contacts + counters.wall_contacts > s->loaded_max)
+        s->loaded_max = counters.contacts + counters.wall_contacts;
     s->steps++;
     s->unbalanced += !separator_balanced(s, present);
     return DEM_OK;

@@ -433,6 +433,52 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("drag that depends on shape is a sphere's law for spheres, and within 15 % of Stokes's exact drag of spheroids") {
+        static const double aspect[5] = {0.1, 0.2, 0.5, 2, 5};
+        int i, side;
+        for (i = 0; i < 5; i++) {
+            const double b = aspect[i], q = 1 - b*b, e = sqrt(fabs(q)), axes[3] = {1, 1, b};
+            const corona_outline o = corona_outline_make(axes);
+            for (side = 0; side < 2; side++) {           /* along the axis, across it; Happel & Brenner (1983), section 5-11 */
+                const double n[3] = {side, 0, !side};
+                const double exact = 8.0/3/(side ? b < 1 ? -b/q - (2*b*b - 3)/(e*e*e)*asin(e)
+                                                         : b/-q + (2*b*b - 3)/(e*e*e)*log(b + e)
+                                            : b < 1 ? 2*b/q + 2*(1 - 2*b*b)/(e*e*e)*atan(e/b)
+                                                    : 2*b/q + (2*b*b - 1)/(e*e*e)*log((b + e)/(b - e)))/cbrt(b);
+                CHECK_REL(corona_drag_coefficient(&o, n, 1e-8)*1e-8/24, exact, 0.15);
+            }
+        }
+        for (i = 0; i < 3; i++) {
+            static const double ones[3] = {2e-3, 2e-3, 2e-3}, reynolds[3] = {0.1, 60, 900};
+            const corona_outline o = corona_outline_make(ones);
+            const double n[3] = {0.36, -0.48, 0.8}, re = reynolds[i];
+            CHECK_REL(corona_drag_coefficient(&o, n, re), 24/re + 3/sqrt(re) + 0.42, 1e-9);
+        }
+    }
+
+    TEST("the drag of a plate turns with the plate: largest with the air on its face") {
+        static const double plate[3] = {2, 2, 0.4}, face[3] = {0, 0, 1}, edge[3] = {1, 0, 0};
+        const dem_real h = DEM_R(0.70710678118654752);
+        corona c = corona_make();
+        dem_body_state body;
+        int k;
+        c.drag = CORONA_DRAG_HOLZER;
+        c.shapes[1].outline = corona_outline_make(plate);
+        c.shapes[1].frame = dem_quat_make(h, h, 0, 0);   /* the plate's axis is z; the shape was given with it along -y */
+        memset(&body, 0, sizeof body);
+        body.shape.id = 1;
+        body.orientation = dem_quat_make(h, 0, 0, h);    /* the body has turned it to x */
+        for (k = 0; k < 3; k++) {
+            double w[3] = {0, 0, 0};
+            const double r = 1e-3, v = 2, re = 2*r*v*c.air_density/c.air_viscosity;
+            w[k] = k ? -v : v;
+            CHECK_REL(corona_air(&c, &body, r, w), corona_drag_coefficient(&c.shapes[1].outline, k ? edge : face, re)*
+                      c.air_density*CORONA_PI*r*r*v/2, 1e-6);
+        }
+        CHECK(corona_drag_coefficient(&c.shapes[1].outline, face, 200) >
+              1.5*corona_drag_coefficient(&c.shapes[1].outline, edge, 200));
+    }
+
     TEST("two charged grains repel by Coulomb's law far from the rotor, less near it, and as dipoles close to it") {
         static const double height[3] = {0.5, 4e-3, 0.5e-3};
         int i;
