@@ -679,5 +679,75 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a mill of 96 triangles on 96 vertices lifts 200 beads as the profile of its 48 segments does") {
+        /* [MIL] Fig 5.14: 12 lifters, 120 mm wide and long; the heights of the lifters are ours. End plates are planes */
+        enum { AROUND = 48, BEADS = 200 };
+        dem_real corners[2*AROUND], vertices[6*AROUND];
+        int32_t segments[2*AROUND], triangles[6*AROUND];
+        dem_profile profile;
+        dem_mesh mesh;
+        double apart = 0, work[2], rise[2];
+        dem_body bead[2][BEADS];
+        dem_world *world[2];
+        int i, k, n, by_mesh;
+        for (i = 0; i < AROUND; i++) {
+            const double angle = 2*pi*(i/4 + 0.08*(i%4))/12, r = i%4 == 1 || i%4 == 2 ? 0.054 : 0.06;
+            corners[2*i] = (dem_real)(r*cos(angle));
+            corners[2*i + 1] = (dem_real)(r*sin(angle));
+            segments[2*i] = i;
+            segments[2*i + 1] = (i + 1)%AROUND;
+            for (k = 0; k < 2; k++) {
+                const int32_t turn[6] = {0, 1, AROUND, 1, AROUND + 1, AROUND};
+                dem_real *v = vertices + 3*(AROUND*k + i);
+                v[0] = corners[2*i]; v[1] = corners[2*i + 1]; v[2] = DEM_R(0.06)*(dem_real)(2*k - 1);
+                for (n = 3*k; n < 3*k + 3; n++)
+                    triangles[6*i + n] = turn[n]%AROUND ? (i + 1)%AROUND + turn[n]/AROUND*AROUND : i + turn[n];
+            }
+        }
+        profile.vertex_count = profile.segment_count = AROUND;
+        profile.vertices = corners; profile.segments = segments;
+        mesh.vertex_count = mesh.triangle_count = 2*AROUND;
+        mesh.vertices = vertices; mesh.triangles = triangles;
+        for (by_mesh = 0; by_mesh < 2; by_mesh++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_motion turn = DEM_MOTION;
+            dem_material stuff;
+            dem_wall shell;
+            dem_wall_loads loads;
+            uint64_t random = 3;
+            desc.gravity.y = DEM_R(-9.81);
+            desc.dt = DEM_R(2e-5);
+            desc.threads = 1;
+            world[by_mesh] = dem_world_create(&desc);
+            stuff = scene_material(world[by_mesh], 1e6, 0.5, 0.3, 0);
+            dem_wall_plane_add(world[by_mesh], stuff, at(0, 0, -0.06), at(0, 0, 1));
+            dem_wall_plane_add(world[by_mesh], stuff, at(0, 0, 0.06), at(0, 0, -1));
+            shell = by_mesh ? dem_wall_mesh_add(world[by_mesh], stuff, &mesh)
+                : dem_wall_profile_add(world[by_mesh], stuff, &profile, DEM_EDGE_RESOLVED);
+            CHECK(shell.id > 0);
+            turn.kind = DEM_MOTION_ROTATING;
+            turn.axis = at(0, 0, 1);
+            turn.speed = 8;
+            CHECK_EQ(dem_wall_motion_set(world[by_mesh], shell, &turn), DEM_OK);
+            rise[by_mesh] = 0;
+            for (i = 0; i < BEADS; i++)                              /* a block of 5 x 4 x 10 in the lower half */
+                bead[by_mesh][i] = dem_sphere_add(world[by_mesh], stuff, DEM_R(0.004), at(
+                    -0.018 + 0.009*(i%5) + 1e-4*scene_random(&random), -0.042 + 0.009*(i/5%4), -0.045 + 0.01*(i/20)));
+            CHECK_EQ(dem_world_step(world[by_mesh], 10000), DEM_OK);
+            CHECK_EQ(dem_wall_loads_get(world[by_mesh], shell, &loads), DEM_OK);
+            work[by_mesh] = loads.work;
+            for (i = 0; i < BEADS; i++) rise[by_mesh] += (double)scene_state(world[by_mesh], bead[by_mesh][i]).position.x/BEADS;
+        }
+        for (i = 0; i < BEADS; i++) {
+            const dem_vec3 a = scene_state(world[0], bead[0][i]).position, b = scene_state(world[1], bead[1][i]).position;
+            apart = fmax(apart, fabs((double)(a.x - b.x)) + fabs((double)(a.y - b.y)) + fabs((double)(a.z - b.z)));
+        }
+        CHECK(apart < (SINGLE ? 1e-2 : 1e-8));                       /* 2e-11 after 10,000 steps */
+        CHECK_REL(work[1], work[0], SINGLE ? 0.05 : 1e-6);
+        CHECK(work[0] > 0.03 && rise[0] > 0.02);                     /* J; m, towards the side that goes up */
+        dem_world_destroy(world[0]);
+        dem_world_destroy(world[1]);
+    }
+
     return test_end();
 }
