@@ -79,13 +79,14 @@ static const double restitutions[RESTITUTIONS] = {0.9, 0.95, 0.98};
 
 static struct gas_options {
     double xi, restitution, fraction, overlap, collisions, run_in, dt, seconds, spread;
-    const char *damping, *hold, *integrator, *rotation, *out;
+    const char *damping, *hold, *integrator, *rotation, *values, *out;
     int count, seed, repeats, threads, slabs, quick, brief, all, theory, direct, speeds, integrators, sizes, contact, replay;
-} options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, 0, "exact", "true", "verlet", "spiral", "build/out/ellipsoids",
+} options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, 0, "exact", "true", "verlet", "spiral", "", "build/out/ellipsoids",
              512, 1, 3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
+    {"values", STUDY_TEXT, &options.values, 0, 0, "", "elongations instead of 1,1.5,2,3"},
     {"restitution", STUDY_REAL, &options.restitution, 0, 1, "", "0: 0.9"},
     {"fraction", STUDY_REAL, &options.fraction, 0.001, 0.1, "of the volume", "taken up by bodies"},
     {"count", STUDY_INT, &options.count, 27, 262144, "", "of bodies, made a cube"},
@@ -997,11 +998,22 @@ static void velocities_draw(const gas *g) {
 typedef struct choice { const double *xi, *e; int rows, pairs; } choice;
 static choice chosen(void) {
     static const double few[4] = {1, 1.5, 2, 3};
+    static double given[ELONGATIONS];
     choice c;
+    int i;
     c.xi = options.xi > 0 ? &options.xi : options.all ? elongations : few;
     c.rows = options.xi > 0 ? 1 : options.all ? ELONGATIONS : 4;
     c.e = options.restitution > 0 ? &options.restitution : restitutions;
     c.pairs = options.restitution > 0 || !options.all ? 1 : RESTITUTIONS;
+    if (*options.values) {
+        c.xi = given;
+        c.rows = study_values("values", options.values, given, ELONGATIONS);
+        for (i = 0; i < c.rows; i++)
+            if (!(given[i] >= 1 && given[i] <= 10)) {
+                study_fail("--values has the elongation %g, must be from 1 to 10", given[i]);
+                c.rows = 0;
+            }
+    }
     return c;
 }
 
@@ -1223,6 +1235,7 @@ static void cases_run(void) {
     const choice c = chosen();
     int i, k, count = 0, drawn;
     double *data[8];
+    if (!c.rows) return;
     study_result("count", pow((int)(cbrt(options.count) + 0.5), 3), "");
     for (k = 0; k < c.pairs; k++)
         for (i = 0; i < c.rows; i++) {

@@ -66,13 +66,13 @@
 static struct mill_options {
     double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt;
     double contact_steps, revolutions, settle, replay_from, aspect;
-    const char *grains, *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study;
+    const char *grains, *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study, *values;
     const char *out;
     const char *checkpoint, *resume, *write_profile;
     int seed, repeats, threads, slabs, frames, first, quick, brief, replay, spectrum;
 } options = {0.3, 0.0068, 0.0015, 0.7, 0.37426, 0.154, 0.32, 500, 0, 20, 0.5, 0.5, 0, 1.5,
-             "sphere", "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill",
-             "build/out/mill", 0, 0, 0, 1, 3, 0, 0, 4, 0, 0, 0, 0, 0};
+             "sphere", "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill", "",
+             "build/out/mill", 0, 0, 0, 1, 0, 0, 0, 4, 0, 0, 0, 0, 0};
 
 /* in the order of dem_integrator and dem_tangent_law */
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
@@ -87,7 +87,8 @@ static const study_option table[] = {
         "shape: 1, 2, 3 or 4 spheres, of the volume of the bead"},
     {"aspect", STUDY_REAL, &options.aspect, 1, 3, "", "length over width of a pair (at most 1.9) or rod"},
     {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the places at the start"},
-    {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "control: runs of each, with the seeds that follow; sheet: drops"},
+    {"repeats", STUDY_INT, &options.repeats, 0, 20, "",
+        "runs of each, with the seeds that follow; sheet: drops; 0: 3, of speeds and friction 1"},
     {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
     {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume",
         "charge, at a solid fraction of 0.6"},
@@ -129,9 +130,13 @@ static const study_option table[] = {
         "such a file, of a run with the same options"},
     {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|rebound|sheet|overlap|speeds|friction|control|fields|backup",
         "what to run"},
+    {"values", STUDY_TEXT, &options.values, 0, 0, "", "of speeds or friction instead of their own, such as 0.5,0.6"},
     {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "",
         "write the lifters' profile to a file, and stop"},
 };
+enum { OPTIONS = sizeof table/sizeof *table };
+/* Runs of each case. */
+static int runs_of(int usual) { return options.repeats ? options.repeats : usual; }
 
 typedef struct sample {    /* sums since the start, so that any window is a difference */
     double time, impulse, work, x, angular; /* s, N m s, J, m, kg m2/s */
@@ -998,32 +1003,56 @@ static int mill_run(mill *m) {
     return bad;
 }
 
-/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a
-   smooth drum lined with beads at 50 % (Fig 6.13). */
+/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth drum lined with beads at
+   50 % (Fig 6.13); or other values. Means over --repeats seeds, with standard errors. */
 static int study_several(int friction) {
-    double column[6][3];
-    const double *columns[6] = {column[0], column[1], column[2], column[3], column[4], column[5]};
-    int i;
-    for (i = 0; i < 3; i++) {
-        char part[32];
-        mill m;
-        memset(&m, 0, sizeof m);
-        m.o = options;
-        m.o.speed = friction ? 0.5 : 0.6 + 0.1*i;
-        if (friction) { m.o.wall = "grains"; m.o.friction = 0.42 + 0.02*i; }
-        column[0][i] = friction ? m.o.friction : m.o.speed;
-        snprintf(part, sizeof part, "%s_%.0f", friction ? "friction" : "speed", 100*column[0][i]);
-        study_part(part);
-        if (mill_run(&m)) return 1;
-        column[1][i] = m.torque;
-        column[2][i] = m.power;
-        column[3][i] = m.toe;
-        column[4][i] = m.shoulder;
-        column[5][i] = m.solidicity;
+    enum { MOST = 12, MEASURED = 5 };
+    static const char *const names[MEASURED] = {"torque", "power", "toe", "shoulder", "solidicity"};
+    static const char *const units[MEASURED] = {"N m", "W", "degrees", "degrees", ""};
+    double value[MOST], column[2*MEASURED][MOST];
+    const double *columns[1 + 2*MEASURED] = {value};
+    const int runs = runs_of(1);
+    int i, k, n, count;
+    for (i = 0; i < 3; i++) value[i] = friction ? 0.42 + 0.02*i : 0.6 + 0.1*i;
+    count = study_values_take(options.values, 0, value, 3, MOST);
+    for (k = 0; k < 2*MEASURED; k++) columns[1 + k] = column[k];
+    for (i = 0; i < count; i++) {
+        double mean[MEASURED] = {0, 0, 0, 0, 0}, square[MEASURED] = {0, 0, 0, 0, 0};
+        char part[48];
+        for (n = 0; n < runs; n++) {
+            double found[MEASURED];
+            mill m;
+            memset(&m, 0, sizeof m);
+            m.o = options;
+            m.o.seed += n;
+            m.o.speed = friction ? 0.5 : value[i];
+            if (friction) { m.o.wall = "grains"; m.o.friction = value[i]; }
+            if (!study_within(table, OPTIONS, &options, &m.o)) return 1;
+            snprintf(part, sizeof part, runs > 1 ? "%s_%.4g_seed%d" : "%s_%.4g", friction ? "friction" : "speed",
+                     100*value[i], m.o.seed);
+            study_part(part);
+            if (mill_run(&m)) return 1;
+            found[0] = m.torque; found[1] = m.power; found[2] = m.toe; found[3] = m.shoulder; found[4] = m.solidicity;
+            for (k = 0; k < MEASURED; k++) {
+                const double before = mean[k];
+                mean[k] += (found[k] - before)/(n + 1);
+                square[k] += (found[k] - before)*(found[k] - mean[k]);
+            }
+        }
+        study_part("");
+        for (k = 0; k < MEASURED; k++) {
+            column[2*k][i] = mean[k];
+            column[2*k + 1][i] = runs > 1 ? sqrt(square[k]/(runs - 1)/runs) : nan("");
+            if (runs < 2) continue;
+            snprintf(part, sizeof part, "%s_%.4g.%s", friction ? "friction" : "speed", 100*value[i], names[k]);
+            study_result(part, mean[k], units[k]);
+            snprintf(part, sizeof part, "%s_%.4g.%s_error", friction ? "friction" : "speed", 100*value[i], names[k]);
+            study_result(part, column[2*k + 1][i], units[k]);
+        }
     }
-    study_part("");
-    study_csv("comparison.csv", "speed_or_friction,torque_Nm,power_W,toe_deg,shoulder_deg,"
-              "solidicity", 3, 6, columns);
+    if (count)
+        study_csv("comparison.csv", "speed_or_friction,torque_Nm,error,power_W,error,toe_deg,error,shoulder_deg,error,"
+                  "solidicity,error", count, 1 + 2*MEASURED, columns);
     return 0;
 }
 
@@ -1041,12 +1070,13 @@ static int study_control(void) {
         {"tetra", "none", "grains", "tetra", 0.154, 1, 0.5}};
     static const struct { const char *name, *unit; } names[4] = {
         {"bend", ""}, {"torque", "N m"}, {"shoulder", "degrees"}, {"toe", "degrees"}};
+    const int runs = runs_of(3);
     size_t i;
     int k, n;
     for (i = 0; i < sizeof cases/sizeof *cases; i++) {
         double mean[4] = {0, 0, 0, 0}, square[4] = {0, 0, 0, 0};
         char text[64];
-        for (n = 0; n < options.repeats; n++) {
+        for (n = 0; n < runs; n++) {
             double found[4];
             mill m;
             memset(&m, 0, sizeof m);
@@ -1069,7 +1099,7 @@ static int study_control(void) {
             snprintf(text, sizeof text, "%s.%s", cases[i].name, names[k].name);
             study_result(text, mean[k], names[k].unit);
             snprintf(text, sizeof text, "%s.%s_error", cases[i].name, names[k].name);
-            if (options.repeats > 1) study_result(text, sqrt(square[k]/(options.repeats - 1)/options.repeats), names[k].unit);
+            if (runs > 1) study_result(text, sqrt(square[k]/(runs - 1)/runs), names[k].unit);
         }
     }
     return 0;
@@ -1376,7 +1406,7 @@ static int study_sheet(void) {
     for (i = 0; i < SHEETS; i++) {
         double mean[4] = {0, 0, 0, 0}, square[4] = {0, 0, 0, 0};
         const double r = options.radius, step = sheets[i].spacing*r, impact = sqrt(2*GRAVITY*0.005);
-        const int side = sheets[i].radius > 0 ? (int)(1.5*r/step) + 2 : 0, places = sheets[i].radius > 0 ? options.repeats : 1;
+        const int side = sheets[i].radius > 0 ? (int)(1.5*r/step) + 2 : 0, places = sheets[i].radius > 0 ? runs_of(3) : 1;
         dem_real *at = (dem_real *)study_alloc(3*(size_t)((2*side + 1)*(2*side + 1)), sizeof *at);
         uint32_t random = (uint32_t)options.seed;
         char text[64];
@@ -1481,23 +1511,22 @@ static int study_overlap(void) { /* Fig 6.0: a bead hits another, or the mill, h
 
 int main(int argc, char **argv) {
     const char *about = "A tumbling mill with lifters, filled with glass beads.";
-    int count = (int)(sizeof table/sizeof *table);
     mill m;
     program_path = argv[0];
-    study_options(argc, argv, about, table, count);
+    study_options(argc, argv, about, table, OPTIONS);
     if (options.quick) { /* a smaller mill of fewer, softer beads; options given by name keep their values */
         options.diameter = 0.12;
         options.fill = 0.3;
         options.soften = 1000;
         options.contact_steps = 30;
         options.revolutions = 0.6;
-        study_options(argc, argv, about, table, count);
+        study_options(argc, argv, about, table, OPTIONS);
     }
     if (options.first) { /* beads of 6 mm; the slice remains 2.3 beads thick */
         options.radius = 0.003;
         options.length = 0.0136;
         options.replay_from = options.settle;
-        study_options(argc, argv, about, table, count);
+        study_options(argc, argv, about, table, OPTIONS);
     }
     if (options.brief) {
         options.replay_from = 0;

@@ -58,11 +58,11 @@ static struct screener_options {
     double seconds, stiffness, restitution, spacing, open, vane, steps, orifice, rolling, share;
     double radius, narrowing, phase, plate_u, plate_e, aperture, bars, thickness, lift, slot, density, size, size_spread;
     double aspect, feed_radius, feed_height;
-    const char *machine, *holes, *feed, *barrel, *grains, *study, *out;
+    const char *machine, *holes, *feed, *barrel, *grains, *study, *values, *out;
     int decks, openings, threads, frames, balls, seed, repeats, replay, quick, brief;
 } options = {0, -1, -1, -1, 1, 0, 0.2, 0.06, -1, 0, 0, 0, 0.5, 0, 1, -1, 22, 0.08, -1, 1,
              0, 0.15, 0, 0, 0, 1, 0, 0, 0, 0, 2500, 1, 0, 1.3, 0, 0,
-             "large", "model2", "rate", "uniform", "sphere", "run", "build/out/screener", 0, 6, 1, 0, 0, 1, 1, 0, 0, 0};
+             "large", "model2", "rate", "uniform", "sphere", "run", "", "build/out/screener", 0, 6, 1, 0, 0, 1, 1, 0, 0, 0};
 
 static const study_option table[] = {
     {"machine", STUDY_CHOICE, &options.machine, 0, 0, "large|glass|small", "which example"},
@@ -127,7 +127,9 @@ static const study_option table[] = {
     {"study", STUDY_CHOICE, &options.study, 0, 0,
         "run|speed|feed|nozzle|inclination|eccentricity|oscillation|friction|size|holes|grains|rim|parameters|choices|hour|check",
         "what to run"},
+    {"values", STUDY_TEXT, &options.values, 0, 0, "", STUDY_VALUES},
 };
+enum { OPTIONS = sizeof table/sizeof *table };
 
 typedef struct screener {
     struct screener_options o;
@@ -854,24 +856,31 @@ static void sweep_run(const sweep *w, const struct screener_options *base, const
         {SIFTING_OUT, 0, "Outflow over time", "outflow"},
         {SIFTING_ON, 0, "Mass in the machine over time", "mass"},
         {SIFTING_SORTED, 1, "Balls that left the lowest deck", "lowest"}};
-    double thesis_x[12], thesis_y[12];
+    double thesis_x[12], thesis_y[12], asked[12];
     study_figure figure[2];
     char file[128], decks[LEVELS][16], start[64];
     FILE *csv;
-    int i, k, known = 0;
+    int i, k, cases, known = 0;
     memset(&r, 0, sizeof r);
     memset(figure, 0, sizeof figure);
     snprintf(start, sizeof start, "%s%s%s", tag, *tag ? "_" : "", w->name);
-    for (i = 0; i < w->count; i++) {
+    memcpy(asked, w->value, sizeof asked);
+    cases = study_values_take(base->values, w->words[0] != 0, asked, w->count, 12);
+    for (i = 0; i < cases; i++) {
         struct screener_options o = *base;
-        w->set(&o, w->value[i]);
-        r.value[r.count] = w->value[i];
-        if (w->words[0]) snprintf(r.name[r.count], sizeof r.name[0], "%s", w->words[i]);
-        else snprintf(r.name[r.count], sizeof r.name[0], "%s%g", w->name, w->value[i]);
-        if (is(w->name, "rate") && !(w->value[i] > 0))
+        w->set(&o, asked[i]);
+        if (!study_within(table, OPTIONS, &options, &o)) return;
+        r.value[r.count] = asked[i];
+        if (w->words[0]) snprintf(r.name[r.count], sizeof r.name[0], "%s", w->words[(int)asked[i]]);
+        else snprintf(r.name[r.count], sizeof r.name[0], "%s%g", w->name, asked[i]);
+        if (is(w->name, "rate") && !(asked[i] > 0))
             snprintf(r.name[r.count], sizeof r.name[0], "batch");
         if (value_run(&o, tag, &r)) continue;
-        if (w->thesis[i] >= 0) { thesis_x[known] = w->value[i]; thesis_y[known++] = w->thesis[i]; }
+        for (k = 0; k < w->count && known < 12; k++)
+            if (w->thesis[k] >= 0 && fabs(w->value[k] - asked[i]) <= 1e-9*fabs(asked[i])) {
+                thesis_x[known] = asked[i];
+                thesis_y[known++] = w->thesis[k];
+            }
     }
     if (!r.count) return;
     figure[0].title = "Sorting efficiency";
@@ -939,11 +948,11 @@ static void also(const struct screener_options *o, const char *name) {
 int main(int argc, char **argv) {
     struct screener_options o;
     study_options(argc, argv, "A tumbling screening machine after [ALK07] section 4.4.", table,
-                  (int)(sizeof table/sizeof *table));
+                  OPTIONS);
     if (options.quick) { /* options given by name keep their values */
         options.share = 0.6;
         options.seconds = 15;
-        study_options(argc, argv, "", table, (int)(sizeof table/sizeof *table));
+        study_options(argc, argv, "", table, OPTIONS);
     }
     if (options.brief) {
         options.repeats = 1;

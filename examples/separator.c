@@ -47,7 +47,7 @@ static struct separator_options {
     double dt, tolerance, range, young, mixed, air_density, air_viscosity, feeder_length, feeder_edge, near_interval,
         touch;
     double roughness, at_contact, in_flight, field_share, image_permittivity;
-    const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *out;
+    const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *values, *out;
     int sweeps, cold, threads, seed, repeats, image, pull, in_front, quick, brief, replay, check;
 } options = {
     30, 44.8, 0.160, 0.019, 0.267, 30, 0.03, 0.182, 5000, 6, 2,
@@ -57,7 +57,7 @@ static struct separator_options {
     270, 19.3, 0.3, 10, 0, 0, 0, -0.5, 0.2,
     0, 0, 0, 5e6, 0, 1.204, 1.81e-5, 0.07, -0.015, 1, 2,
     0.8, 0.832, 1, 1, 1,
-    "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "build/out/separator",
+    "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "", "build/out/separator",
     0, -1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
@@ -155,6 +155,7 @@ static const study_option table[] = {
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|drag|settings|solvers|steps|choices|papers|load",
         "what to run"},
+    {"values", STUDY_TEXT, &options.values, 0, 0, "", STUDY_VALUES},
 };
 enum { OPTIONS = sizeof table/sizeof *table };
 
@@ -948,15 +949,18 @@ static void sweep_table_write(const sweep *w, const double *value, int count) {
               COLUMNS, columns);
 }
 static void sweep_run(const sweep *w, const struct separator_options *base) {
-    double value[VALUES];
-    int i, count = 0;
-    for (i = 0; i < w->count; i++) {
+    double asked[VALUES], value[VALUES];
+    int i, count = 0, cases;
+    memcpy(asked, w->value, sizeof asked);
+    cases = study_values_take(base->values, w->words[0] != 0, asked, w->count, VALUES);
+    for (i = 0; i < cases; i++) {
         struct separator_options o = *base;
         char name[32];
-        w->set(&o, w->value[i]);
-        if (w->words[0]) snprintf(name, sizeof name, "%s", w->words[i]);
-        else snprintf(name, sizeof name, "%s%g", w->name, w->value[i]);
-        value[count] = w->value[i];
+        w->set(&o, asked[i]);
+        if (!study_within(table, OPTIONS, &options, &o)) return;
+        if (w->words[0]) snprintf(name, sizeof name, "%s", w->words[(int)asked[i]]);
+        else snprintf(name, sizeof name, "%s%g", w->name, asked[i]);
+        value[count] = asked[i];
         if (!value_run(&o, name, &kept[count])) count++;
     }
     if (count < 2) return;

@@ -99,6 +99,7 @@ typedef struct study_option {
 } study_option;
 
 /* Help text of the flag --short. Every study accepts it together with all its other options; tests/studies.sh uses it. */
+#define STUDY_VALUES "of a sweep instead of its own: 20,25,30, or numbers of its cases, from 0"
 #define STUDY_SHORT "for tests: all runs that were asked for, in seconds, whatever else is said of their length"
 
 STUDY_FN void study_help(const char *about, const study_option *table, int count) {
@@ -160,6 +161,57 @@ STUDY_FN void study_options(int argc, char **argv, const char *about, const stud
         else if (o->kind == STUDY_INT) *(int *)o->value = (int)number;
         else *(double *)o->value = number;
     }
+}
+
+/* Reads numbers with commas between them, such as "20,25,30", at most `most`. name: of the option that has them. Returns
+   how many; 0 after a message. */
+STUDY_FN int study_values(const char *name, const char *text, double *value, int most) {
+    int count = 0;
+    const char *at = text;
+    char *end;
+    for (;; at = end + 1) {
+        const double number = strtod(at, &end);
+        if (end == at || !(number > -1e300 && number < 1e300) || (*end && *end != ',')) {
+            study_fail("--%s needs numbers with commas between them, such as 20,25,30, not '%s'", name, text);
+            return 0;
+        }
+        if (count == most) {
+            study_fail("--%s has more than %d values, the limit; leave some out", name, most);
+            return 0;
+        }
+        value[count++] = number;
+        if (!*end) return count;
+    }
+}
+/* Returns 1 if the numbers of `copy` that differ from those at `base` are within the limits of the table; 0 after a message.
+   base: the structure in which the table has its variables; copy: another one of this kind. */
+STUDY_FN int study_within(const study_option *table, int count, const void *base, const void *copy) {
+    int i;
+    for (i = 0; i < count; i++) {
+        const study_option *o = &table[i];
+        const void *at = (const char *)copy + ((const char *)o->value - (const char *)base);
+        double number, before;
+        if (o->kind != STUDY_INT && o->kind != STUDY_REAL) continue;
+        number = o->kind == STUDY_INT ? *(const int *)at : *(const double *)at;
+        before = o->kind == STUDY_INT ? *(const int *)o->value : *(const double *)o->value;
+        if ((number >= o->lo && number <= o->hi) || !(number < before || number > before)) continue;
+        study_fail("--values sets --%s to %g, must be from %g to %g%s%s", o->name, number, o->lo, o->hi, *o->unit ? " " : "",
+                   o->unit);
+        return 0;
+    }
+    return 1;
+}
+/* Replaces the values of a sweep, `count` of at most `most`, by those of --values. words: the sweep numbers its cases from 0
+   to count - 1. Returns how many there are then; 0 after a message. */
+STUDY_FN int study_values_take(const char *text, int words, double *value, int count, int most) {
+    const int given = *text ? study_values("values", text, value, most) : count;
+    int i;
+    for (i = 0; i < given && words && *text; i++)
+        if (!(value[i] >= 0 && value[i] < count && floor(value[i]) == value[i])) {
+            study_fail("--values has %g, but the cases of this sweep are numbered from 0 to %d", value[i], count - 1);
+            return 0;
+        }
+    return given;
 }
 
 /* ---- folders, files, results ---- */

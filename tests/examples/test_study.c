@@ -93,6 +93,33 @@ int main(int argc, char **argv) {
         CHECK_STR(read_all("build/tmp/study_sweep.csv"), "third");      /* it stays as it was */
     }
 
+    TEST("--values replaces the values of a sweep; what is no number, too much or out of range is told and refused") {
+        static struct { double speed, other; } base = {10, -1}, copy = {10, -1};
+        const study_option table[2] = {{"speed", STUDY_REAL, &base.speed, 1, 50, "1/min", ""},
+                                       {"other", STUDY_REAL, &base.other, 0, 9, "", ""}};
+        double value[4] = {1, 2, 3, 4};
+        const int failures = study.failures;
+        CHECK_EQ(study_values_take("", 0, value, 4, 4), 4);
+        CHECK_EQ(study_values_take("20,2.5e1", 0, value, 4, 4), 2);
+        CHECK_NEAR(value[0], 20, 0);
+        CHECK_NEAR(value[1], 25, 0);
+        CHECK_EQ(study_values_take("3,0", 1, value, 4, 4), 2);       /* cases by their numbers */
+        CHECK_EQ(study.failures, failures);
+        CHECK_EQ(study_values_take("4", 1, value, 4, 4), 0);
+        CHECK_EQ(study_values_take("0.5", 1, value, 4, 4), 0);
+        CHECK_EQ(study_values_take("1,2,3,4,5", 0, value, 4, 4), 0);
+        CHECK_EQ(study_values_take("1,,2", 0, value, 4, 4), 0);
+        CHECK_EQ(study_values_take("1,", 0, value, 4, 4), 0);
+        CHECK_EQ(study_values_take("nan", 0, value, 4, 4), 0);
+        CHECK_EQ(study_values_take("1 2", 0, value, 4, 4), 0);
+        CHECK_EQ(study.failures, failures + 7);
+        CHECK(study_within(table, 2, &base, &copy));                 /* a default may be outside: -1 */
+        copy.speed = 60;
+        CHECK(!study_within(table, 2, &base, &copy));
+        CHECK_EQ(study.failures, failures + 8);
+        study.failures = failures;
+    }
+
     TEST("the mean leaves out missing values and has the standard error of the others") {
         const double x[8] = {1, 9, 2, 9, NAN, 9, 3, 9};
         double error;
