@@ -93,7 +93,7 @@ int main(int argc, char **argv) {
         CHECK_STR(read_all("build/tmp/study_sweep.csv"), "third");      /* it stays as it was */
     }
 
-    TEST("--values replaces the values of a sweep; what is no number, too much or out of range is told and refused") {
+    TEST("a sweep takes the values of --values, and refuses text, too many values, and values out of range") {
         static struct { double speed, other; } base = {10, -1}, copy = {10, -1};
         const study_option table[2] = {{"speed", STUDY_REAL, &base.speed, 1, 50, "1/min", ""},
                                        {"other", STUDY_REAL, &base.other, 0, 9, "", ""}};
