@@ -46,6 +46,16 @@ else echo "FAIL  $(cat "$1")"; grep -v ' %  .*particle-steps/s\| = ' "$1.log" | 
 rm -rf "${1%.sh}"
 Y
 ls $dir/*.sh | xargs -P "$JOBS" -n 1 sh $dir/one
+
+# the numbers of tests/studies.txt, in the logs of the short forms
+[ "$1" = long ] || grep -v '^#' tests/studies.txt | while IFS='|' read -r program words name value tolerance; do
+    logs=$(grep -l -- "^build/$program .*$words" $dir/*.sh | sed 's/$/.log/')
+    found=$(sed -n "s/^$name = \([^ ]*\).*/\1/p" ${logs:-/dev/null} | head -n 1)
+    echo "$found" | awk -v want="$value" -v by="$tolerance" '
+        { off = $1/want - 1; good = $1 != "" && off < by && off > -by } END { exit !good }' ||
+        echo "build/$program $words: $name is '$found', expected $value (tests/studies.txt)"
+done > $dir/missed
+while read -r line; do miss "$line"; done < $dir/missed
 passed=$(ls $dir/*.ok 2>/dev/null | wc -l)
 echo "studies: $((passed)) passed, $((number - passed + bad)) failed"
 [ "$passed" -eq "$number" ] && [ $bad -eq 0 ]
