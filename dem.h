@@ -2812,7 +2812,9 @@ typedef struct dem_counters {
     /* impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of
        the last step; compare desc.tolerance */
     dem_real residual, residual_rms;
-    uint64_t unsolved;          /* impulses: steps whose sweeps did not reach the tolerance */
+    /* impulses: steps whose sweeps did not reach the tolerance. Before a step that follows a change
+       of the scene, such as a feed's new grain, dem.h solves once more; that counts, too */
+    uint64_t unsolved;
     size_t memory;              /* bytes allocated by the world */
 } dem_counters;
 /* Returns the counters. */

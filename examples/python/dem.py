@@ -2901,7 +2901,9 @@ class Counters(Struct):
          'impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of the '
          'last step; compare desc.tolerance'),
         ('residual_rms', Real, ""),
-        ('unsolved', ctypes.c_uint64, 'impulses: steps whose sweeps did not reach the tolerance'),
+        ('unsolved', ctypes.c_uint64,
+         'impulses: steps whose sweeps did not reach the tolerance. Before a step that follows a change of the'
+         " scene, such as a feed's new grain, dem.h solves once more; that counts, too"),
         ('memory', ctypes.c_size_t, 'bytes allocated by the world'),
     ]
 
