@@ -8,7 +8,7 @@
    silo      beads in a tube that rises (lesson 5): load of the floor over the weight of the beads
    hopper    discs run out of a slot (lesson 6): rate of discharge
    drum      discs in a rotating drum with lips (lesson 8), Froude number 0.05: torque
-   heap      10,000 spheres at rest at steps of 1 ms: sweeps, time of a step, of a contact and sweep
+   heap      1,000, 10,000 and 100,000 spheres at rest, steps of 1 ms: sweeps, time of a step, of a contact and sweep
    sweeps    2,000 spheres: what is left after 30 to 1000 sweeps, cold, by each solver of convex cones
 
    Errors are relative differences from the springs of the largest modulus (the reference). Their bars are standard
@@ -354,27 +354,29 @@ static dem_world *heap_make(dem_world_desc desc, int count) {
                      count, 1);
     return world;
 }
-static void heap_part(void) {
+static void heap_measure(int count) {
     const way rigid = {"", 0, 1e-3};
-    dem_world *world = heap_make(desc_of(&rigid), 10000);
+    dem_world *world = heap_make(desc_of(&rigid), count);
+    const int steps = count > 10000 ? 20 : 100;
     double times[5], clock, swept = 0, all = 0;
     int turn, k;
-    enum { STEPS = 100 };
     if (dem_world_run(world, 0.6, 0, 0) != DEM_OK || dem_world_dt_set(world, DEM_R(1e-3)) != DEM_OK ||
         dem_world_step(world, 300) != DEM_OK) { refused(world); return; }
     for (turn = 0; turn < 5; turn++) {
         clock = study_clock();
-        for (k = 0; k < STEPS; k++) {
+        for (k = 0; k < steps; k++) {
             if (dem_world_step(world, 1) != DEM_OK) { refused(world); return; }
             swept += dem_counters_get(world).sweeps;
         }
-        times[turn] = (study_clock() - clock)/STEPS;
-        all += times[turn]*STEPS;
+        times[turn] = (study_clock() - clock)/steps;
+        all += times[turn]*steps;
     }
-    study_result("heap.step", 1e3*bench_median(times, 5), "ms");
-    study_result("heap.sweeps", swept/(5*STEPS), "");
-    study_result("heap.meetings", world->solver.count, "");
-    study_result("heap.seconds", 1e3*bench_median(times, 5), "s per simulated second");
+    snprintf(study.prefix, sizeof study.prefix, "heap%d.", count);
+    study_result("step", 1e3*bench_median(times, 5), "ms");
+    study_result("sweeps", swept/(5*steps), "");
+    study_result("meetings", world->solver.count, "");
+    study_result("unsolved", (double)dem_counters_get(world).unsolved, "solves");
+    study_result("seconds", 1e3*bench_median(times, 5), "s per simulated second");
     /* sweeps alone: as many as asked, of the same contacts */
     for (turn = 0; turn < 5; turn++) {
         demi_solved z;
@@ -383,12 +385,18 @@ static void heap_part(void) {
         z = demi_solve_seidel(world, 100);
         times[turn] = 1e9*(study_clock() - clock)/z.sweeps/world->solver.count;
     }
-    study_result("heap.contact_and_sweep", bench_median(times, 5), "ns");
-    if (page) fprintf(page, "\nA heap of 10,000 spheres at rest, steps of 1 ms:\n\n| contacts within the range | sweeps in a "
-                      "step | time of a step, ms | sweeps alone: time per sweep and contact, ns |\n|---|---|---|---|\n"
-                      "| %d | %.1f | %.1f | %.1f |\n", world->solver.count, swept/(5*STEPS), 1e3*all/(5*STEPS),
-                      bench_median(times, 5));
+    study_result("contact_and_sweep", bench_median(times, 5), "ns");
+    study.prefix[0] = 0;
+    if (page) fprintf(page, "| %d | %d | %.1f | %.1f | %.1f |\n", count, world->solver.count, swept/(5*steps),
+                      1e3*all/(5*steps), bench_median(times, 5));
     dem_world_destroy(world);
+}
+static void heap_part(void) {
+    if (page) fprintf(page, "\nHeaps at rest, steps of 1 ms:\n\n| spheres | contacts within the range | sweeps in a step | time of "
+                      "a step, ms | sweeps alone: time per sweep and contact, ns |\n|---|---|---|---|---|\n");
+    heap_measure(1000);
+    heap_measure(10000);
+    heap_measure(100000);
 }
 /* States of a heap that has begun to lie, then one step of each solver from them, cold. */
 static void sweeps_part(void) {
