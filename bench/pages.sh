@@ -220,7 +220,7 @@ for what in "$@"; do
     clusters)
         rm -f $at/parallel/*.svg
         build/parallel --threads ${THREADS:-8} && build/parallel --model || exit 1
-        for s in speedup speedup_tables scaling searches; do
+        for s in speedup speedup_shapes speedup_tables scaling searches; do
             [ -f $at/parallel/$s.svg ] && picture $at/parallel/$s.svg parallel_$s.png $at/parallel/page.md
         done
         measured "make bench-pages PAGES=clusters" >> $at/parallel/page.md

@@ -26,7 +26,7 @@
                       says of the scene is kept: planar, alike along the width, cut into slices, 1e-5 s. What it
                       does not say is ours: the discs of its Fig 2.16 at rest in a box twice as wide as the
                       layer is high, periodic sideways
-     shapes           clusters of four spheres, ellipsoids as a gas, cubes, and spheres with impulses, which slabs refuse
+     shapes           clusters of four spheres, ellipsoids as a gas, cubes, and spheres with impulses (threads only)
      searches         Fig 2.17: discs of three sizes in a round tank (Fig 2.16), 720 N/m, e = 0.2, 1e-5 s, five
                       groups of growing number. Ours: fifths; tank of 4 m; discs of glass, 0.5 mm thick (at
                       720 N/m the weight of balls would press them through each other); no friction
@@ -831,8 +831,9 @@ static void searches_part(void) {
 
 /* ---- other bodies, and the other response ---- */
 
-/* Bodies that fall onto a floor, in a box that is periodic along x and y; or a gas without gravity and floor. */
-typedef struct heap { const char *name; int count, gas, impulses; double radius, fraction, fall; } heap; /* m; of the box; s */
+/* Bodies that fall onto a floor, in a box that is periodic along x and y; or a gas without gravity and floor. The box has the
+   volume of `count` spheres of `radius` (m) over `fraction`; of ellipsoids, that of the ellipsoids. fall: s. */
+typedef struct heap { const char *name; int count, gas, impulses; double radius, fraction, fall; } heap;
 static const heap heaps[] = {
     {"clusters", 4096, 0, 0, 2e-3, 0.12, 0.15},                  /* of four spheres */
     {"ellipsoid_gas", 4096, 1, 0, 2e-3, 0.058, 0.01},            /* 1 : 1 : 2, solid fraction of [RUB15] */
@@ -864,7 +865,7 @@ static dem_shape heap_shape(const heap *h, dem_world *world) {
 static dem_world *heap_begin(const heap *h, int threads, dem_material *material, dem_shape *shape, dem_box *box) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc stuff = DEM_MATERIAL_DESC;
-    const double volume = (h->gas ? 8.38 : 4.19)*pow(h->radius, 3)*h->count/h->fraction, side = pow(h->gas ? volume : volume/2, 1.0/3);
+    const double volume = (h->gas ? 2 : 1)*4*PI/3*pow(h->radius, 3)*h->count/h->fraction, side = cbrt(h->gas ? volume : volume/2);
     dem_world *world;
     int ok;
     *box = dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)(h->gas ? side : 2*side));
@@ -1087,9 +1088,18 @@ static void scaling_part(void) {
     study_figure_write(&f, "scaling.svg");
 }
 
-/* ---- pictures of the speedups: the discs of the tables beside what was printed, and all other scenes ---- */
+/* ---- pictures of the speedups ---- */
 
-static void speedups_draw(int tables) {
+enum { SCENES, TABLES, SHAPES, PICTURES };
+/* The picture that has a scene. */
+static int picture_of(const char *scene) {
+    int i;
+    for (i = 0; i < HEAPS; i++) if (!strcmp(heaps[i].name, scene)) return SHAPES;
+    return !strncmp(scene, "discs", 5) ? TABLES : SCENES;
+}
+/* TABLES: the discs beside what [ALK07] printed. */
+static void speedups_draw(int picture) {
+    const int tables = picture == TABLES;
     static double x[STUDY_CURVES][64], y[STUDY_CURVES][64], ideal[2][2] = {{1, 25}, {1, 25}};
     static char names[STUDY_CURVES][40];
     study_figure f;
@@ -1105,7 +1115,7 @@ static void speedups_draw(int tables) {
     f.y1 = tables ? log10(300) : 1;
     study_curve(&f, "as many times faster", STUDY_FAINT, 2, ideal[0], ideal[1]);
     for (w = 0; w < WAYS; w++) {
-        while (w && f.curve_count%6 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0); /* so that colours agree */
+        while (w && f.curve_count%10 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0); /* so that colours agree */
         for (i = 0; i < point_count && f.curve_count + 4 < STUDY_CURVES;) {
             double *px = x[f.curve_count], *py = y[f.curve_count];
             const point *p = &points[i];
@@ -1114,13 +1124,13 @@ static void speedups_draw(int tables) {
                 px[n] = points[i].workers;
                 py[n] = points[i].speedup;
             }
-            if (p->how != &ways[w] || tables != !strncmp(p->scene, "discs", 5)) continue;
+            if (p->how != &ways[w] || picture_of(p->scene) != picture) continue;
             snprintf(names[f.curve_count], sizeof *names, "%s, %ss", p->scene, p->how->worker);
             study_curve(&f, names[f.curve_count], w ? STUDY_DOTS : STUDY_LINE, n, px, py);
         }
     }
     if (f.curve_count < 2) return;
-    while (tables && f.curve_count%6 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0);
+    while (tables && f.curve_count%10 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0);
     for (k = 0; k < sizeof printed_serial/sizeof *printed_serial && tables; k++) {
         double *px = x[f.curve_count], *py = y[f.curve_count];
         px[0] = py[0] = 1;
@@ -1132,7 +1142,7 @@ static void speedups_draw(int tables) {
         snprintf(names[f.curve_count], sizeof *names, "[ALK07], %d", printed_serial[k].count);
         study_curve(&f, names[f.curve_count], STUDY_DASHED, n, px, py);
     }
-    study_figure_write(&f, tables ? "speedup_tables.svg" : "speedup.svg");
+    study_figure_write(&f, tables ? "speedup_tables.svg" : picture == SHAPES ? "speedup_shapes.svg" : "speedup.svg");
 }
 
 /* ---- the model of a cluster ---- */
@@ -1258,6 +1268,7 @@ int main(int argc, char **argv) {
         {"out", STUDY_TEXT, &out_folder, 0, 0, "", "folder of results"},
     };
     const double load = bench_load();
+    int k;
     study_options(argc, argv, "What threads and slabs gain, how cost grows with the number of grains, how the searches compare.",
                   choices, (int)(sizeof choices/sizeof *choices));
     if (short_form && full_form) { study_fail("--short or --full, not both"); return 2; }
@@ -1279,8 +1290,7 @@ int main(int argc, char **argv) {
         csv = 0;
         page_speedups();
         tell_page_sent();
-        speedups_draw(0);
-        speedups_draw(1);
+        for (k = 0; k < PICTURES; k++) speedups_draw(k);
         if (wanted("searches")) searches_part();
         if (wanted("scaling")) scaling_part();
     }

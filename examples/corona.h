@@ -121,7 +121,8 @@ static inline double corona_image(double charge, double distance) {
 }
 typedef enum corona_drag { CORONA_DRAG_NONE, CORONA_DRAG_STOKES, CORONA_DRAG_SCHILLER, CORONA_DRAG_HOLZER } corona_drag;
 /* Returns drag over relative speed (N s/m) at this relative speed (m/s). [CRI14] uses Stokes's law. At 0.5 mm and 1 m/s Re is
-   67, and the law of Schiller and Naumann (up to Re = 1000; above, a coefficient of 0.44) gives 3.7 times that. */
+   67, and the law of Schiller and Naumann (up to Re = 1000; above, a coefficient of 0.44) gives 3.7 times that. It is also what
+   this function returns for CORONA_DRAG_HOLZER, which needs a shape: see corona_air. */
 static inline double corona_drag_over_speed(corona_drag law, double radius, double speed, double density,
                                             double viscosity) {
     const double stokes = 6*CORONA_PI*viscosity*radius, re = 2*radius*speed*density/viscosity;
@@ -129,7 +130,7 @@ static inline double corona_drag_over_speed(corona_drag law, double radius, doub
     if (law == CORONA_DRAG_STOKES || !(re > 0)) return stokes;
     return stokes*(re < 1000 ? 1 + 0.15*pow(re, 0.687) : 0.44*re/24);
 }
-/* An ellipsoid in a stream of air, over the sphere of equal volume. */
+/* The form of an ellipsoid, relative to the sphere of equal volume. */
 typedef struct corona_outline {
     double axes[3];                          /* semi-axes over the sphere's radius */
     double sphericity;                       /* surface of the sphere over its surface */
@@ -150,9 +151,10 @@ static inline double corona_outline_area(const corona_outline *o, const double *
     const double x = n[0]*a[1]*a[2], y = n[1]*a[0]*a[2], z = n[2]*a[0]*a[1];
     return sqrt(x*x + y*y + z*z);
 }
-/* Returns the drag coefficient [HS08, eq 9] of an ellipsoid in a stream along the unit vector n in its axes, for the cross
-   section and the Reynolds number of the sphere of equal volume. The mean area seen from the sides is that of four sides.
-   In the last term 0.42 and 10 are two factors; some programs read them as the one number 0.4210. */
+/* Returns the drag coefficient [HS08, eq 9] of an ellipsoid in a stream along the unit vector n in its axes. It refers to the
+   cross section and the Reynolds number of the sphere of equal volume. With areas in units of that cross section, the
+   lengthwise sphericity is 1/(half the surface - mean area seen from the sides); the mean is over four directions, 45 degrees
+   apart. In the last term 0.42 and 10 are two factors; some programs read them as the one number 0.4210. */
 static inline double corona_drag_coefficient(const corona_outline *o, const double *n, double re) {
     const int least = fabs(n[0]) < fabs(n[1]) ? fabs(n[0]) < fabs(n[2]) ? 0 : 2 : fabs(n[1]) < fabs(n[2]) ? 1 : 2;
     const double phi = o->sphericity, length = sqrt(1 - n[least]*n[least]);
@@ -164,8 +166,7 @@ static inline double corona_drag_coefficient(const corona_outline *o, const doub
         for (k = 0; k < 3; k++) m[k] = cos(i*CORONA_PI/4)*u[k] + sin(i*CORONA_PI/4)*v[k];
         side += corona_outline_area(o, m)/4;
     }
-    along = 1/(2/phi - side);                                /* lengthwise sphericity; half the surface of the sphere is 2 of
-                                                                its cross sections */
+    along = 1/(2/phi - side);
     return 8/(re*sqrt(along)) + 16/(re*sqrt(phi)) + 3/(sqrt(re)*pow(phi, 0.75)) +
         0.42*pow(10, 0.4*pow(-log10(phi), 0.2))*corona_outline_area(o, n);
 }
@@ -186,7 +187,7 @@ typedef struct corona_shape {
     dem_real radius;
     dem_vec3 centre;
     dem_quat frame;                          /* of its principal axes, as in dem_shape_info */
-    corona_outline outline;                  /* of the ellipsoid with its moments of inertia, for the drag */
+    corona_outline outline;                  /* of the ellipsoid with its moments of inertia: the drag */
 } corona_shape;
 /* A window: angles (rad) clockwise from the top of the rotor, up to `depth` (m) above it. */
 typedef struct corona_window { double begin, end, depth; } corona_window;
@@ -327,8 +328,9 @@ static inline void corona_near_force(const corona *c, const dem_body_state *body
         corona_coulomb(-charge, image, least, force);
     }
 }
-/* Returns drag over relative speed (N s/m) for air that streams past the grain with w (m/s). The law [HS08] sees the ellipsoid
-   with the moments of the shape, in its present orientation; its force is along w, without lift and torque. */
+/* Returns drag over relative speed (N s/m) for air that streams past the grain with w (m/s). The law [HS08] takes an
+   ellipsoid of the grain's volume, with the proportions of the one that has the grain's moments of inertia, in the present
+   orientation. Its force is along w, without lift and torque. */
 static inline double corona_air(const corona *c, const dem_body_state *body, double radius, const double *w) {
     static const corona_outline round = {{1, 1, 1}, 1};
     const double speed = sqrt(w[0]*w[0] + w[1]*w[1] + w[2]*w[2]), re = 2*radius*speed*c->air_density/c->air_viscosity;

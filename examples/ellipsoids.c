@@ -86,7 +86,7 @@ static struct gas_options {
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
-    {"values", STUDY_TEXT, &options.values, 0, 0, "", "elongations instead of 1,1.5,2,3"},
+    {"values", STUDY_TEXT, &options.values, 0, 0, "", "elongations, such as 1.2,2.4, instead of those of --xi or --all"},
     {"restitution", STUDY_REAL, &options.restitution, 0, 1, "", "0: 0.9"},
     {"fraction", STUDY_REAL, &options.fraction, 0.001, 0.1, "of the volume", "taken up by bodies"},
     {"count", STUDY_INT, &options.count, 27, 262144, "", "of bodies, made a cube"},
@@ -1347,6 +1347,8 @@ int main(int argc, char **argv) {
         options.repeats = 1;
     }
     study_begin(options.out);
+    if (options.theory || options.speeds || options.contact || options.integrators || options.sizes)
+        study_values_unused(options.values, "a run with --theory, --speeds, --contact, --integrators or --sizes");
     if (options.theory) theory_tell();
     else if (options.direct) direct_run();
     else if (options.speeds) speeds_run();

@@ -88,7 +88,7 @@ static const study_option table[] = {
     {"aspect", STUDY_REAL, &options.aspect, 1, 3, "", "length over width of a pair (at most 1.9) or rod"},
     {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the places at the start"},
     {"repeats", STUDY_INT, &options.repeats, 0, 20, "",
-        "runs of each, with the seeds that follow; sheet: drops; 0: 3, of speeds and friction 1"},
+        "runs of each case, with consecutive seeds (sheet: drops); 0: 3, or 1 for speeds and friction"},
     {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
     {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume",
         "charge, at a solid fraction of 0.6"},
@@ -130,7 +130,7 @@ static const study_option table[] = {
         "such a file, of a run with the same options"},
     {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|rebound|sheet|overlap|speeds|friction|control|fields|backup",
         "what to run"},
-    {"values", STUDY_TEXT, &options.values, 0, 0, "", "of speeds or friction instead of their own, such as 0.5,0.6"},
+    {"values", STUDY_TEXT, &options.values, 0, 0, "", "values for --study speeds or friction, such as 0.5,0.6"},
     {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "",
         "write the lifters' profile to a file, and stop"},
 };
@@ -1015,6 +1015,12 @@ static int study_several(int friction) {
     int i, k, n, count;
     for (i = 0; i < 3; i++) value[i] = friction ? 0.42 + 0.02*i : 0.6 + 0.1*i;
     count = study_values_take(options.values, 0, value, 3, MOST);
+    for (i = 0; i < count; i++) {
+        struct mill_options o = options;
+        *(friction ? &o.friction : &o.speed) = value[i];
+        o.seed += runs - 1;
+        if (!study_within(table, OPTIONS, &options, &o)) return 1;
+    }
     for (k = 0; k < 2*MEASURED; k++) columns[1 + k] = column[k];
     for (i = 0; i < count; i++) {
         double mean[MEASURED] = {0, 0, 0, 0, 0}, square[MEASURED] = {0, 0, 0, 0, 0};
@@ -1027,7 +1033,6 @@ static int study_several(int friction) {
             m.o.seed += n;
             m.o.speed = friction ? 0.5 : value[i];
             if (friction) { m.o.wall = "grains"; m.o.friction = value[i]; }
-            if (!study_within(table, OPTIONS, &options, &m.o)) return 1;
             snprintf(part, sizeof part, runs > 1 ? "%s_%.4g_seed%d" : "%s_%.4g", friction ? "friction" : "speed",
                      100*value[i], m.o.seed);
             study_part(part);
@@ -1540,6 +1545,7 @@ int main(int argc, char **argv) {
     study_begin(options.out);
     memset(&m, 0, sizeof m);
     m.o = options;
+    if (!is(options.study, "speeds") && !is(options.study, "friction")) study_values_unused(options.values, "this study");
     if (is(options.study, "mill")) mill_run(&m);
     if (is(options.study, "drop")) study_drop();
     if (is(options.study, "rebound")) study_rebound();

@@ -870,6 +870,10 @@ static void sweep_run(const sweep *w, const struct screener_options *base, const
         struct screener_options o = *base;
         w->set(&o, asked[i]);
         if (!study_within(table, OPTIONS, &options, &o)) return;
+    }
+    for (i = 0; i < cases; i++) {
+        struct screener_options o = *base;
+        w->set(&o, asked[i]);
         r.value[r.count] = asked[i];
         if (w->words[0]) snprintf(r.name[r.count], sizeof r.name[0], "%s", w->words[(int)asked[i]]);
         else snprintf(r.name[r.count], sizeof r.name[0], "%s%g", w->name, asked[i]);
@@ -959,6 +963,8 @@ int main(int argc, char **argv) {
         options.seconds = 1.2;
     }
     study_begin(options.out);
+    if (is(options.study, "run") || is(options.study, "choices") || is(options.study, "hour") || is(options.study, "check"))
+        study_values_unused(options.values, "this study");
     o = options;
     if (is(o.study, "run")) {
         static screener s;

@@ -47,7 +47,7 @@ static struct separator_options {
     double dt, tolerance, range, young, mixed, air_density, air_viscosity, feeder_length, feeder_edge, near_interval,
         touch;
     double roughness, at_contact, in_flight, field_share, image_permittivity;
-    const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *values, *out;
+    const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *values, *resume, *out;
     int sweeps, cold, threads, seed, repeats, image, pull, in_front, quick, brief, replay, check;
 } options = {
     30, 44.8, 0.160, 0.019, 0.267, 30, 0.03, 0.182, 5000, 6, 2,
@@ -57,7 +57,7 @@ static struct separator_options {
     270, 19.3, 0.3, 10, 0, 0, 0, -0.5, 0.2,
     0, 0, 0, 5e6, 0, 1.204, 1.81e-5, 0.07, -0.015, 1, 2,
     0.8, 0.832, 1, 1, 1,
-    "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "", "build/out/separator",
+    "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "", "", "build/out/separator",
     0, -1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
@@ -156,6 +156,7 @@ static const study_option table[] = {
     {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|drag|settings|solvers|steps|choices|papers|load",
         "what to run"},
     {"values", STUDY_TEXT, &options.values, 0, 0, "", STUDY_VALUES},
+    {"resume", STUDY_TEXT, &options.resume, 0, 0, "", "load: the file load.dem of an earlier run, whose stream is not run again"},
 };
 enum { OPTIONS = sizeof table/sizeof *table };
 
@@ -955,18 +956,21 @@ static void sweep_run(const sweep *w, const struct separator_options *base) {
     cases = study_values_take(base->values, w->words[0] != 0, asked, w->count, VALUES);
     for (i = 0; i < cases; i++) {
         struct separator_options o = *base;
-        char name[32];
         w->set(&o, asked[i]);
         if (!study_within(table, OPTIONS, &options, &o)) return;
+    }
+    for (i = 0; i < cases; i++) {
+        struct separator_options o = *base;
+        char name[32];
+        w->set(&o, asked[i]);
         if (w->words[0]) snprintf(name, sizeof name, "%s", w->words[(int)asked[i]]);
         else snprintf(name, sizeof name, "%s%g", w->name, asked[i]);
         value[count] = asked[i];
         if (!value_run(&o, name, &kept[count])) count++;
     }
-    if (count < 2) return;
-    sweep_means_draw(w, value, count);
-    sweep_curves_draw(w, base, count);
-    sweep_table_write(w, value, count);
+    if (count > 1) sweep_means_draw(w, value, count);
+    if (count) sweep_curves_draw(w, base, count);
+    if (count) sweep_table_write(w, value, count);
 }
 
 /* ---- equal bits ---- */
@@ -1026,25 +1030,25 @@ static void check_run(const struct separator_options *base) {
 
 typedef struct cost { double step, sweeps, residual, overlap; int unsolved, steps, threads; } cost;
 
-/* Continues the saved stream for so many milliseconds with the contacts of the options, and times the steps after the first
-   millisecond. Returns 0 on success. */
-static int cost_measure(const struct separator_options *o, int milliseconds, cost *c) {
+/* Continues the saved stream with the contacts of the options: for a millisecond, then for `span` (s), whose steps are timed.
+   Returns 0 on success. */
+static int cost_measure(const struct separator_options *o, const char *state, double span, cost *c) {
     static separator s;
     separator_desc d;
     dem_result result;
-    double begun = 0;
-    int i, bad = 1;
+    double begun = 0, from = 0;
+    int bad = 1;
     memset(c, 0, sizeof *c);
     if (!desc_of(&d, o)) return 1;
     result = separator_create(&s, &d);
     if (result == DEM_OK) {
-        result = separator_refused(&s, dem_checkpoint_read_changed(s.world, study_path("load.dem"),
-                                   "dt sweeps tolerance cold_start cone solver"));
+        result = separator_refused(&s, dem_checkpoint_read_changed(s.world, state, "dt sweeps tolerance cold_start cone solver"));
         if (result == DEM_OK) result = separator_restored(&s);
     }
-    for (i = 0; i <= milliseconds && result == DEM_OK; i++) {
+    while (result == DEM_OK && !(from > 0 && dem_world_time_get(s.world) > from + span)) {
         result = separator_step(&s);
-        if (i) continue;
+        if (from > 0) continue;
+        from = dem_world_time_get(s.world);
         c->unsolved = -(int)dem_counters_get(s.world).unsolved;
         s.sweeps = s.residual_max = 0;
         s.steps = 0;
@@ -1065,36 +1069,42 @@ static int cost_measure(const struct separator_options *o, int milliseconds, cos
     separator_end(&s);
     return bad;
 }
-static void cost_tell(const char *name, const cost *c, const cost *few, const cost *many) {
-    const double more = many->sweeps - few->sweeps, one = more > 1 ? (many->step - few->step)/more : nan("");
+/* few, many: the same with a fixed number of sweeps in each step; the difference is the time of a sweep. A thin stream needs
+   less than that number, and then has no such time. */
+static void cost_tell(const char *name, const cost *c, const cost *few, const cost *many, int papers) {
+    const double more = many->sweeps - few->sweeps, one = more > 1 ? (many->step - few->step)/more : 0;
     snprintf(study.prefix, sizeof study.prefix, "%s.", name);
     study_result("steps", c->steps, "");
-    study_result("unsolved_steps", c->unsolved, "");
+    if (!papers) study_result("unsolved", c->unsolved, "solves");        /* the papers take all their sweeps */
     study_result("sweeps_mean", c->sweeps, "");
     study_result("residual_max", c->residual, "m/s");
     study_result("overlap_max", c->overlap, "");
     study_result("step", c->step, "ms");
-    study_result("sweep", one, "ms");                        /* nan: so few contacts that they need fewer sweeps */
-    study_result("sweeps_share", 100*c->sweeps*one/c->step, "%");
+    if (more > 1) {
+        study_result("sweep", one, "ms");
+        study_result("sweeps_share", 100*c->sweeps*one/c->step, "%");
+    }
     study.prefix[0] = 0;
 }
-/* Runs the stream until --seconds and saves it. From this state, for three ways to solve contacts and on one and on all
-   threads: the time of a step, and that of a sweep, from the difference between 60 and 20 sweeps in each step. */
+/* Runs the stream until --seconds and saves it. Continues from there in three ways: with our setting, with that of the papers,
+   and with that of the papers and the spectral solver; each on one thread and on all. */
 static void load_run(struct separator_options *base) {
-    static const char *const names[3] = {"ours", "seeds_seidel", "seeds_spectral"};
+    static const char *const names[3] = {"ours", "papers_seidel", "papers_spectral"};
     static separator s;
     static outcome r;
-    const int milliseconds = base->brief ? 2 : 20;
+    const double span = base->brief ? 2e-3 : 0.02;
+    char state[1024];
     int way, all, bad;
+    snprintf(state, sizeof state, "%s", *base->resume ? base->resume : study_path("load.dem"));
     base->drain = -1;                          /* the feed lasts longer than the run */
     base->seconds += 1;
-    bad = separator_run(&s, base, "load", &r, 0);
-    if (!bad) {
+    bad = *base->resume ? 0 : separator_run(&s, base, "load", &r, 0);
+    if (!bad && !*base->resume) {
         study_result("grains", dem_bodies_get(s.world).count, "");
-        study_result("candidates", dem_counters_get(s.world).candidates, "");
-        study_result("unknowns_max", 3.0*s.loaded_max, "");
+        study_result("candidates", dem_counters_get(s.world).candidates, "pairs");
+        study_result("unknowns_max", 3.0*s.loaded_max, "components of impulses, in the step with most of them");
         outcome_tell(&r, 0);
-        if (dem_checkpoint_write(s.world, study_path("load.dem")) != DEM_OK) study_fail("%s", dem_world_error_get(s.world));
+        if (dem_checkpoint_write(s.world, state) != DEM_OK) study_fail("%s", dem_world_error_get(s.world));
     }
     separator_end(&s);
     for (way = 0; way < 3 && !bad; way++)
@@ -1105,17 +1115,16 @@ static void load_run(struct separator_options *base) {
             o.setting = way ? "seeds" : "ours";
             o.solver = way == 2 ? "spectral" : "seidel";
             o.threads = all ? 0 : 1;
-            if (cost_measure(&o, milliseconds, &whole)) return;
+            if (cost_measure(&o, state, span, &whole)) return;
             if (all && whole.threads == 1) continue;
             o.tolerance = 1e-30;
             o.sweeps = 20;
-            if (cost_measure(&o, milliseconds/2, &few)) return;
+            if (cost_measure(&o, state, span/2, &few)) return;
             o.sweeps = 60;
-            if (cost_measure(&o, milliseconds/2, &many)) return;
+            if (cost_measure(&o, state, span/2, &many)) return;
             snprintf(name, sizeof name, "%s.threads%d", names[way], whole.threads);
-            cost_tell(name, &whole, &few, &many);
+            cost_tell(name, &whole, &few, &many, way);
         }
-    remove(study_path("load.dem"));
 }
 
 static void one_run(const struct separator_options *o) {
@@ -1150,6 +1159,8 @@ int main(int argc, char **argv) {
     }
     if (options.check) options.study = "check";
     study_begin(options.out);
+    if (is(options.study, "run") || is(options.study, "check") || is(options.study, "load"))
+        study_values_unused(options.values, "this study");
     if (is(options.study, "run")) one_run(&options);
     else if (is(options.study, "check")) check_run(&options);
     else if (is(options.study, "load")) load_run(&options);

@@ -74,7 +74,7 @@ typedef struct separator {
     uint32_t *seen, seen_count;              /* generation that has been counted, by slot */
     uint64_t binned[SEPARATOR_CLASSES];
     double sweeps, residual_max;             /* sum over steps; m/s */
-    int loaded_max;                          /* contacts that carry an impulse or a force, in the step with most of them */
+    int loaded_max;                          /* largest number of contacts with an impulse or force in a step */
     uint64_t steps, unbalanced;
     int near_steps;
     char error[600];

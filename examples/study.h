@@ -98,8 +98,9 @@ typedef struct study_option {
     const char *help;
 } study_option;
 
+/* Help text of the option --values of sweeps. */
+#define STUDY_VALUES "values for the sweep, such as 20,25,30; for a sweep over named cases their numbers, from 0"
 /* Help text of the flag --short. Every study accepts it together with all its other options; tests/studies.sh uses it. */
-#define STUDY_VALUES "of a sweep instead of its own: 20,25,30, or numbers of its cases, from 0"
 #define STUDY_SHORT "for tests: all runs that were asked for, in seconds, whatever else is said of their length"
 
 STUDY_FN void study_help(const char *about, const study_option *table, int count) {
@@ -176,7 +177,7 @@ STUDY_FN int study_values(const char *name, const char *text, double *value, int
             return 0;
         }
         if (count == most) {
-            study_fail("--%s has more than %d values, the limit; leave some out", name, most);
+            study_fail("--%s has more than %d values; give at most %d", name, most, most);
             return 0;
         }
         value[count++] = number;
@@ -184,7 +185,7 @@ STUDY_FN int study_values(const char *name, const char *text, double *value, int
     }
 }
 /* Returns 1 if the numbers of `copy` that differ from those at `base` are within the limits of the table; 0 after a message.
-   base: the structure in which the table has its variables; copy: another one of this kind. */
+   base: the structure in which the table has its variables; copy: another one of this kind, which a sweep has changed. */
 STUDY_FN int study_within(const study_option *table, int count, const void *base, const void *copy) {
     int i;
     for (i = 0; i < count; i++) {
@@ -195,23 +196,33 @@ STUDY_FN int study_within(const study_option *table, int count, const void *base
         number = o->kind == STUDY_INT ? *(const int *)at : *(const double *)at;
         before = o->kind == STUDY_INT ? *(const int *)o->value : *(const double *)o->value;
         if ((number >= o->lo && number <= o->hi) || !(number < before || number > before)) continue;
-        study_fail("--values sets --%s to %g, must be from %g to %g%s%s", o->name, number, o->lo, o->hi, *o->unit ? " " : "",
-                   o->unit);
+        study_fail("a run of this sweep would have --%s %g, must be from %g to %g%s%s; give other --values", o->name, number,
+                   o->lo, o->hi, *o->unit ? " " : "", o->unit);
         return 0;
     }
     return 1;
 }
-/* Replaces the values of a sweep, `count` of at most `most`, by those of --values. words: the sweep numbers its cases from 0
-   to count - 1. Returns how many there are then; 0 after a message. */
+/* Replaces the values of a sweep, `count` of at most `most`, by those of --values in rising order. text: that of the option;
+   words: the sweep has names for its cases, which are numbered from 0. Returns the new count; 0 after a message. */
 STUDY_FN int study_values_take(const char *text, int words, double *value, int count, int most) {
     const int given = *text ? study_values("values", text, value, most) : count;
-    int i;
+    int i, k;
     for (i = 0; i < given && words && *text; i++)
         if (!(value[i] >= 0 && value[i] < count && floor(value[i]) == value[i])) {
             study_fail("--values has %g, but the cases of this sweep are numbered from 0 to %d", value[i], count - 1);
             return 0;
         }
+    for (i = 1; i < given && *text; i++)
+        for (k = i; k > 0 && value[k] < value[k - 1]; k--) {
+            const double larger = value[k - 1];
+            value[k - 1] = value[k];
+            value[k] = larger;
+        }
     return given;
+}
+/* Fails if --values is given and `what` has no use for it. */
+STUDY_FN void study_values_unused(const char *text, const char *what) {
+    if (*text) study_fail("--values is '%s', but %s has no values to replace; leave it out", text, what);
 }
 
 /* ---- folders, files, results ---- */
@@ -565,7 +576,7 @@ typedef struct study_series {
 
 /* A figure: curves over a map (value), over arrows (u, v) or over discs (disc_*). Set all to zero, then
    fill it in. */
-#define STUDY_CURVES 20
+#define STUDY_CURVES 40
 typedef struct study_figure {
     const char *title, *x_label, *y_label;
     double size;                  /* width of the plot; 0: 620 */

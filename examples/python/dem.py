@@ -2902,8 +2902,8 @@ class Counters(Struct):
          'last step; compare desc.tolerance'),
         ('residual_rms', Real, ""),
         ('unsolved', ctypes.c_uint64,
-         'impulses: steps whose sweeps did not reach the tolerance. Before a step that follows a change of the'
-         " scene, such as a feed's new grain, dem.h solves once more; that counts, too"),
+         'impulses: solves whose sweeps did not reach the tolerance. dem.h solves once per step, and once more'
+         ' after the scene has changed, for instance when a feed has added a grain'),
         ('memory', ctypes.c_size_t, 'bytes allocated by the world'),
     ]
 

@@ -187,8 +187,8 @@ typedef struct dem_counters {
     /* impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of
        the last step; compare desc.tolerance */
     dem_real residual, residual_rms;
-    /* impulses: steps whose sweeps did not reach the tolerance. Before a step that follows a change
-       of the scene, such as a feed's new grain, dem.h solves once more; that counts, too */
+    /* impulses: solves whose sweeps did not reach the tolerance. dem.h solves once per step, and
+       once more after the scene has changed, for instance when a feed has added a grain */
     uint64_t unsolved;
     size_t memory;              /* bytes allocated by the world */
 } dem_counters;

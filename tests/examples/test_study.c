@@ -103,7 +103,8 @@ int main(int argc, char **argv) {
         CHECK_EQ(study_values_take("20,2.5e1", 0, value, 4, 4), 2);
         CHECK_NEAR(value[0], 20, 0);
         CHECK_NEAR(value[1], 25, 0);
-        CHECK_EQ(study_values_take("3,0", 1, value, 4, 4), 2);       /* cases by their numbers */
+        CHECK_EQ(study_values_take("3,0,1", 1, value, 4, 4), 3);     /* cases by their numbers, in rising order */
+        CHECK(value[0] < 0.5 && value[1] < 1.5 && value[2] > 2.5);
         CHECK_EQ(study.failures, failures);
         CHECK_EQ(study_values_take("4", 1, value, 4, 4), 0);
         CHECK_EQ(study_values_take("0.5", 1, value, 4, 4), 0);
