@@ -38171,7 +38171,7 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
     for (i = 0; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
         double after = 0;
-        dem_vec3 v, u;
+        dem_vec3 v = {0, 0, 0}, u = {0, 0, 0};
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_USER) continue;
         for (k = differs = 0; k < 8 && !differs; k++, after = after > 0 ? 10*after : d)
             differs = demi_motion_differs(wall, w->clock.time + after, d, &v, &u);
