@@ -191,9 +191,9 @@ if [ "$1" != short ]; then
     turn=1
     # as they are written they take two hours: make studies-check LONG=1
     try "every documented command of the studies, in its short form" \
-        "mkdir -p \$bin/build && ln -s \$PWD/docs \$PWD/README.md \$PWD/examples \$bin && cc -O2 -c dem.c -o \$bin/dem.o &&" \
-        "for p in mill screener ellipsoids separator; do cc -O2 examples/\$p.c \$bin/dem.o -o \$bin/build/\$p -lm || exit 1; done &&" \
-        "top=\$PWD && cd \$bin && JOBS=1 sh \$top/tests/studies.sh"
+        "mkdir -p \$bin/build && for f in Makefile README.md bench dem.h docs examples src tests; do ln -s \$PWD/\$f \$bin; done &&" \
+        "cc -O2 -c dem.c -o \$bin/dem.o && for p in \$(sed -n 's/^programs=\"\(.*\)\"/\1/p' tests/studies.sh); do" \
+        "cc -O2 examples/\$p.c \$bin/dem.o -o \$bin/build/\$p -lm || exit 1; done && cd \$bin && JOBS=1 sh tests/studies.sh"
     turn=2
     try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
     if found node && { found wasm-ld || found wasm-ld-14; }; then
