@@ -193,7 +193,7 @@ if [ "$1" != short ]; then
     try "every documented command of the studies, in its short form" \
         "mkdir -p \$bin/build && for f in Makefile README.md bench dem.h docs examples src tests; do ln -s \$PWD/\$f \$bin; done &&" \
         "cc -O2 -c dem.c -o \$bin/dem.o && for p in \$(sed -n 's/^programs=\"\(.*\)\"/\1/p' tests/studies.sh); do" \
-        "cc -O2 examples/\$p.c \$bin/dem.o -o \$bin/build/\$p -lm || exit 1; done && cd \$bin && JOBS=1 sh tests/studies.sh"
+        "cc -O2 -I. examples/\$p.c \$bin/dem.o -o \$bin/build/\$p -lm || exit 1; done && cd \$bin && JOBS=1 sh tests/studies.sh"
     turn=2
     try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
     if found node && { found wasm-ld || found wasm-ld-14; }; then
