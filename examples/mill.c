@@ -61,6 +61,7 @@
 #define GRAVITY 9.81
 #define CELLS 256          /* of the finest map; the others are sums of its cells */
 #define REPLAY_FRAMES 120
+#define REPEATS 20         /* at most */
 #define SAMPLES 240        /* of torque and energy, per revolution */
 
 static struct mill_options {
@@ -87,7 +88,7 @@ static const study_option table[] = {
         "shape: 1, 2, 3 or 4 spheres, of the volume of the bead"},
     {"aspect", STUDY_REAL, &options.aspect, 1, 3, "", "length over width of a pair (at most 1.9) or rod"},
     {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the places at the start"},
-    {"repeats", STUDY_INT, &options.repeats, 0, 20, "",
+    {"repeats", STUDY_INT, &options.repeats, 0, REPEATS, "",
         "runs of each case, with consecutive seeds (sheet: drops); 0: 3, or 1 for speeds and friction"},
     {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
     {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume",
@@ -1003,6 +1004,14 @@ static int mill_run(mill *m) {
     return bad;
 }
 
+/* Reports a mean over runs and, of several, its standard error. */
+static void mean_tell(const char *name, const double *value, int runs, const char *unit) {
+    char text[80];
+    double error;
+    study_result(name, study_mean(value, runs, 1, &error), unit);
+    snprintf(text, sizeof text, "%s_error", name);
+    if (runs > 1) study_result(text, error, unit);
+}
 /* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth drum lined with beads at
    50 % (Fig 6.13); or other values. Means over --repeats seeds, with standard errors. */
 static int study_several(int friction) {
@@ -1023,10 +1032,9 @@ static int study_several(int friction) {
     }
     for (k = 0; k < 2*MEASURED; k++) columns[1 + k] = column[k];
     for (i = 0; i < count; i++) {
-        double mean[MEASURED] = {0, 0, 0, 0, 0}, square[MEASURED] = {0, 0, 0, 0, 0};
+        double found[MEASURED][REPEATS];
         char part[48];
         for (n = 0; n < runs; n++) {
-            double found[MEASURED];
             mill m;
             memset(&m, 0, sizeof m);
             m.o = options;
@@ -1037,22 +1045,14 @@ static int study_several(int friction) {
                      100*value[i], m.o.seed);
             study_part(part);
             if (mill_run(&m)) return 1;
-            found[0] = m.torque; found[1] = m.power; found[2] = m.toe; found[3] = m.shoulder; found[4] = m.solidicity;
-            for (k = 0; k < MEASURED; k++) {
-                const double before = mean[k];
-                mean[k] += (found[k] - before)/(n + 1);
-                square[k] += (found[k] - before)*(found[k] - mean[k]);
-            }
+            found[0][n] = m.torque; found[1][n] = m.power; found[2][n] = m.toe; found[3][n] = m.shoulder;
+            found[4][n] = m.solidicity;
         }
         study_part("");
         for (k = 0; k < MEASURED; k++) {
-            column[2*k][i] = mean[k];
-            column[2*k + 1][i] = runs > 1 ? sqrt(square[k]/(runs - 1)/runs) : nan("");
-            if (runs < 2) continue;
             snprintf(part, sizeof part, "%s_%.4g.%s", friction ? "friction" : "speed", 100*value[i], names[k]);
-            study_result(part, mean[k], units[k]);
-            snprintf(part, sizeof part, "%s_%.4g.%s_error", friction ? "friction" : "speed", 100*value[i], names[k]);
-            study_result(part, column[2*k + 1][i], units[k]);
+            column[2*k][i] = study_mean(found[k], runs, 1, &column[2*k + 1][i]);
+            if (runs > 1) mean_tell(part, found[k], runs, units[k]);
         }
     }
     if (count)
@@ -1079,10 +1079,9 @@ static int study_control(void) {
     size_t i;
     int k, n;
     for (i = 0; i < sizeof cases/sizeof *cases; i++) {
-        double mean[4] = {0, 0, 0, 0}, square[4] = {0, 0, 0, 0};
+        double found[4][REPEATS];
         char text[64];
         for (n = 0; n < runs; n++) {
-            double found[4];
             mill m;
             memset(&m, 0, sizeof m);
             m.o = options;
@@ -1092,19 +1091,12 @@ static int study_control(void) {
             snprintf(text, sizeof text, "%s_seed%d", cases[i].name, m.o.seed);
             study_part(text);
             if (mill_run(&m)) return 1;
-            found[0] = m.bend; found[1] = m.torque; found[2] = m.shoulder; found[3] = m.toe;
-            for (k = 0; k < 4; k++) {
-                const double before = mean[k];
-                mean[k] += (found[k] - before)/(n + 1);
-                square[k] += (found[k] - before)*(found[k] - mean[k]);
-            }
+            found[0][n] = m.bend; found[1][n] = m.torque; found[2][n] = m.shoulder; found[3][n] = m.toe;
         }
         study_part("");
         for (k = 0; k < 4; k++) {
             snprintf(text, sizeof text, "%s.%s", cases[i].name, names[k].name);
-            study_result(text, mean[k], names[k].unit);
-            snprintf(text, sizeof text, "%s.%s_error", cases[i].name, names[k].name);
-            if (runs > 1) study_result(text, sqrt(square[k]/(runs - 1)/runs), names[k].unit);
+            mean_tell(text, found[k], runs, names[k].unit);
         }
     }
     return 0;

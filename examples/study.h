@@ -220,9 +220,11 @@ STUDY_FN int study_values_take(const char *text, int words, double *value, int c
         }
     return given;
 }
-/* Fails if --values is given and `what` has no use for it. */
+/* Ends the program if --values is given and `what` has no use for it. */
 STUDY_FN void study_values_unused(const char *text, const char *what) {
-    if (*text) study_fail("--values is '%s', but %s has no values to replace; leave it out", text, what);
+    if (!*text) return;
+    study_fail("--values is '%s', but %s has no values to replace; leave it out", text, what);
+    exit(2);
 }
 
 /* ---- folders, files, results ---- */
