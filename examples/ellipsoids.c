@@ -1107,7 +1107,6 @@ static double quartic_contact(const dem_ellipsoid *a, const dem_ellipsoid *b, do
     unit3(n);
     return lo;
 }
-static void mean_tell(const char *name, const double *value, int count, const char *unit);
 
 /* Times both on the same pairs, which overlap by up to 1 % of their size, as in the gas. */
 static void contact_run(void) {
@@ -1165,23 +1164,13 @@ static void contact_run(void) {
             }
             time[kind][n] = 1e9*spent/rounds/PAIRS;
         }
-    for (kind = 0; kind < 4; kind++) mean_tell(names[kind], time[kind], options.repeats, "ns");
+    for (kind = 0; kind < 4; kind++) study_mean_tell(names[kind], time[kind], options.repeats, "ns");
     study_result("contact.iterations", iterations, "");
     study_result("contact.scale_difference", worst[0], "");
     study_result("contact.normal_difference", sqrt(2*worst[1]), "rad");
     if (!(sum > 0) || worst[0] > 1e-5) study_fail("the quartic and the contact function differ by %g", worst[0]);
 }
 
-static void mean_tell(const char *name, const double *value, int count, const char *unit) {
-    double mean = 0, spread = 0;
-    char text[96];
-    int i;
-    for (i = 0; i < count; i++) mean += value[i]/count;
-    for (i = 0; i < count; i++) spread += pow(value[i] - mean, 2);
-    study_result(name, mean, unit);
-    snprintf(text, sizeof text, "%s_error", name);
-    if (count > 1) study_result(text, sqrt(spread/(count - 1)/count), unit);
-}
 /* Runs the same case with each scheme (or of each spread of sizes) and all seeds; means and standard errors. */
 static void schemes_run(void) {
     static const char *const schemes[5][2] = {{"verlet", "spiral"}, {"verlet", "fincham"}, {"leapfrog", "fincham"},
@@ -1218,7 +1207,7 @@ static void schemes_run(void) {
         for (i = 0; i < (options.spread > 0 ? 5 : 4); i++) {
             static const char *const names[5] = {"run_in_drift", "T_ratio", "zeta_star", "kurtosis", "heavy_ratio"};
             snprintf(name, sizeof name, "%s.%s", start, names[i]);
-            mean_tell(name, found[i], options.repeats, "");
+            study_mean_tell(name, found[i], options.repeats, "");
         }
     }
 }

@@ -39,6 +39,7 @@
      toe, shoulder        the two angles at which the solid fraction falls below half of the bulk's,
                           on a ring at 0.84 to 0.92 of the shell's radius (inside the lifters). In
                           degrees from straight down, positive in the direction of rotation
+     splash               share of the charge in dilute flow at the toe (map_splash)
      bend                 amplitude of the S of the free surface, over its length from toe to shoulder (map_bend)
      steady_after         revolutions after which the torque, averaged over half a turn, stays
                           within 5 % of its mean
@@ -732,6 +733,21 @@ static double map_shell_speed(const mill *m, const map *a) {
     return momentum/mass/(m->omega*m->shell);
 }
 
+/* Returns the share of the charge that flies or bounces at the toe: the mass in cells whose solid fraction is below half of the
+   bulk's, within 45 degrees of the toe, from half the radius of the shell to three bead radii inside it. */
+static double map_splash(const mill *m, const map *a) {
+    double mass = 0, all = 0;
+    int i;
+    for (i = 0; i < a->n*a->n; i++) {
+        double x = ((2*(i%a->n) + 1.0)/a->n - 1)*m->o.diameter/2;
+        double y = ((2*(i/a->n) + 1.0)/a->n - 1)*m->o.diameter/2, r = hypot(x, y);
+        all += a->mass[i];
+        if (!(a->mass[i] > 0) || a->solid[i] > m->solidicity/2 || r < m->shell/2 || r > m->shell - 3*m->o.radius) continue;
+        if (fabs(remainder(atan2(x, -y)*180/PI - m->toe, 360)) < 45) mass += a->mass[i];
+    }
+    return mass/all;
+}
+
 /* The mill, end on. */
 static study_figure section_figure(const mill *m, const char *title, const char *bar_label) {
     study_figure f;
@@ -765,6 +781,7 @@ static void maps_write(mill *m) {
     study_result("bend", m->bend, "");
     study_result("toe", m->toe, "degrees");
     study_result("shoulder", m->shoulder, "degrees");
+    study_result("splash", map_splash(m, &maps[1]), "");
     for (i = 0; i <= 360; i++) { circle[0][i] = R*sin(i*PI/180); circle[1][i] = R*cos(i*PI/180); }
     for (k = 0; k < 4; k++) { /* short lines to the shell at toe and shoulder */
         double angle = (k/2 ? m->shoulder : m->toe)*PI/180, r = k%2 ? R : 0.84*m->shell;
@@ -1004,14 +1021,6 @@ static int mill_run(mill *m) {
     return bad;
 }
 
-/* Reports a mean over runs and, of several, its standard error. */
-static void mean_tell(const char *name, const double *value, int runs, const char *unit) {
-    char text[80];
-    double error;
-    study_result(name, study_mean(value, runs, 1, &error), unit);
-    snprintf(text, sizeof text, "%s_error", name);
-    if (runs > 1) study_result(text, error, unit);
-}
 /* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth drum lined with beads at
    50 % (Fig 6.13); or other values. Means over --repeats seeds, with standard errors. */
 static int study_several(int friction) {
@@ -1052,7 +1061,7 @@ static int study_several(int friction) {
         for (k = 0; k < MEASURED; k++) {
             snprintf(part, sizeof part, "%s_%.4g.%s", friction ? "friction" : "speed", 100*value[i], names[k]);
             column[2*k][i] = study_mean(found[k], runs, 1, &column[2*k + 1][i]);
-            if (runs > 1) mean_tell(part, found[k], runs, units[k]);
+            if (runs > 1) study_mean_tell(part, found[k], runs, units[k]);
         }
     }
     if (count)
@@ -1096,7 +1105,7 @@ static int study_control(void) {
         study_part("");
         for (k = 0; k < 4; k++) {
             snprintf(text, sizeof text, "%s.%s", cases[i].name, names[k].name);
-            mean_tell(text, found[k], runs, names[k].unit);
+            study_mean_tell(text, found[k], runs, names[k].unit);
         }
     }
     return 0;
@@ -1528,6 +1537,7 @@ int main(int argc, char **argv) {
     if (options.brief) {
         options.replay_from = 0;
         options.diameter = options.first ? 0.24 : 0.12; /* as many beads in either */
+        options.length = fmin(options.length, 0.03);
         options.soften = 1000;
         options.settle = options.revolutions = 0.05;
         options.frames = 0;

@@ -772,11 +772,9 @@ static const sweep sweeps[] = {
 };
 typedef struct spread { double mean, error; } spread;
 static spread spread_of(const double *value, int count) {
-    spread s = {0, 0};
-    int i;
-    for (i = 0; i < count; i++) s.mean += value[i]/count;
-    for (i = 0; i < count; i++) s.error += (value[i] - s.mean)*(value[i] - s.mean);
-    s.error = count > 1 ? sqrt(s.error/(count - 1)/count) : 0;
+    spread s;
+    s.mean = study_mean(value, count, 1, &s.error);
+    if (count < 2) s.error = 0;
     return s;
 }
 static void spread_tell(const char *group, const char *what, spread s, const char *unit) {

@@ -563,6 +563,14 @@ STUDY_FN double study_mean(const double *value, int count, int step, double *err
     if (error) *error = n > 1 ? sqrt(square/(n - 1)/n) : (double)NAN;
     return n ? sum/n : (double)NAN;
 }
+/* Prints the mean of a result over `count` runs and, of several, its standard error. */
+STUDY_FN void study_mean_tell(const char *name, const double *value, int count, const char *unit) {
+    char text[96];
+    double error;
+    study_result(name, study_mean(value, count, 1, &error), unit);
+    snprintf(text, sizeof text, "%s_error", name);
+    if (count > 1) study_result(text, error, unit);
+}
 
 /* ---- pictures ---- */
 
