@@ -210,7 +210,6 @@ typedef struct corona {
     double field_share;                      /* factor on the field of the electrode: 1 */
     double image_permittivity;               /* er of eq 12, which divides the image force: 1 */
     int image, pull;                         /* 1: image force; 1: force Q E on the charge of ions, not in [CRI14] */
-    int gyroscopic;                          /* 0: no gyroscopic torque, as in [CRI14]: a free grain keeps its spin */
     corona_drag drag;
     double air_density, air_viscosity;       /* kg/m3, Pa s */
     double wind[2], swirl;                   /* m/s; share of the rotor's surface speed, falls with 1/r */
@@ -232,7 +231,7 @@ static inline corona corona_make(void) {
     c.touch = 2e-6;
     c.at_contact = 0.832;
     c.in_flight = c.field_share = c.image_permittivity = 1;
-    c.image = c.pull = c.gyroscopic = 1;
+    c.image = c.pull = 1;
     c.drag = CORONA_DRAG_SCHILLER;
     c.air_density = 1.204;
     c.air_viscosity = 1.81e-5;
@@ -347,13 +346,6 @@ static inline double corona_air(const corona *c, const dem_body_state *body, dou
     }
     return corona_drag_coefficient(o, n, re)*c->air_density*CORONA_PI*radius*radius*speed/2;
 }
-/* Returns the torque (N m) that cancels the gyroscopic term spin x (I spin) of a grain's equation of motion. */
-static inline dem_vec3 corona_gyroscopic(const corona *c, const dem_body_state *body) {
-    const corona_shape *s = body->shape.id > 0 && body->shape.id < CORONA_SHAPES ? &c->shapes[body->shape.id] : 0;
-    const dem_quat frame = s ? dem_quat_multiply(body->orientation, s->frame) : body->orientation;
-    const dem_vec3 w = dem_quat_unrotate(frame, body->spin), I = body->moments;
-    return dem_quat_rotate(frame, dem_vec3_make((I.z - I.y)*w.y*w.z, (I.x - I.z)*w.z*w.x, (I.y - I.x)*w.x*w.y));
-}
 /* Computes the force on one grain: a dem_body_force_fn; user is the corona.
    0.832 Q E lifts a conductor while it touches, and Q E attracts it in flight (eq 10 keeps the factor there). Its image and
    Q E hold the charge of ions on the rotor; [CRI14] omits this Q E, although it is as large as the image force. */
@@ -369,7 +361,7 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
                          c->wind[1] - air*g.out[0] - (double)body->velocity.y, -(double)body->velocity.z};
     const double drag = corona_air(c, body, g.radius, w);
     double F[3];
-    if (!c->gyroscopic && body->shape.id) *torque = corona_gyroscopic(c, body);
+    (void)torque;
     F[0] = charge*g.E[0] - held*g.out[0] + drag*w[0];
     F[1] = charge*g.E[1] - held*g.out[1] + drag*w[1];
     F[2] = drag*w[2];

@@ -48,7 +48,7 @@ static struct separator_options {
         touch;
     double roughness, at_contact, in_flight, field_share, image_permittivity;
     const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *values, *resume, *out;
-    int sweeps, cold, threads, seed, repeats, image, pull, in_front, gyroscopic, quick, brief, replay, check;
+    int sweeps, cold, threads, seed, repeats, image, pull, in_front, quick, brief, replay, check;
 } options = {
     30, 44.8, 0.160, 0.019, 0.267, 30, 0.03, 0.182, 5000, 6, 2,
     0.72, 20, 1, 2, 4, 1.5, 0.5, 0, 0.5,
@@ -58,7 +58,7 @@ static struct separator_options {
     0, 0, 0, 5e6, 0, 1.204, 1.81e-5, 0.07, -0.015, 1, 2,
     0.8, 0.832, 1, 1, 1,
     "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "", "", "build/out/separator",
-    0, -1, 1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0};
+    0, -1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"voltage", STUDY_REAL, &options.voltage, -100, 100, "kV", "of the electrode; its sign is that of the ions"},
@@ -127,7 +127,6 @@ static const study_option table[] = {
     {"image", STUDY_INT, &options.image, 0, 1, "", "1: image force"},
     {"pull", STUDY_INT, &options.pull, 0, 1, "", "1: the field pulls ions' charge; 0: as [CRI14] has it"},
     {"drag", STUDY_CHOICE, &options.drag, 0, 0, "none|stokes|schiller|holzer", "of the air; holzer: depends on shape and attitude"},
-    {"gyroscopic", STUDY_INT, &options.gyroscopic, 0, 1, "", "0: no gyroscopic torque on grains, as in the papers"},
     {"air-density", STUDY_REAL, &options.air_density, 0, 100, "kg/m3", ""},
     {"air-viscosity", STUDY_REAL, &options.air_viscosity, 1e-9, 1, "Pa s", ""},
     {"wind-x", STUDY_REAL, &options.wind_x, -30, 30, "m/s", "of the air"},
@@ -154,7 +153,7 @@ static const study_option table[] = {
     {"check", STUDY_FLAG, &options.check, 0, 0, "", "equal bits for 1, 2, 3, 4, 8 threads and after a restart"},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "write replay.html, which a browser plays"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|drag|gyroscopic|settings|solvers|steps|choices|papers|load",
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|crowd|speed|voltage|distance|angle|middlings|mixture|sizes|shape|drag|settings|solvers|steps|choices|papers|load",
         "what to run"},
     {"values", STUDY_TEXT, &options.values, 0, 0, "", STUDY_VALUES},
     {"resume", STUDY_TEXT, &options.resume, 0, 0, "", "load: the file load.dem of an earlier run, whose stream is not run again"},
@@ -232,7 +231,6 @@ static void charging_set(separator_desc *d, const struct separator_options *o) {
     c->air_density = o->air_density; c->air_viscosity = o->air_viscosity;
     c->drag = is(o->drag, "none") ? CORONA_DRAG_NONE : is(o->drag, "stokes") ? CORONA_DRAG_STOKES
         : is(o->drag, "holzer") ? CORONA_DRAG_HOLZER : CORONA_DRAG_SCHILLER;
-    c->gyroscopic = o->gyroscopic;
     c->wind[0] = o->wind_x; c->wind[1] = o->wind_y; c->swirl = o->swirl;
     d->ions_begin = o->ions_begin*degree; d->ions_end = o->ions_end*degree;
     d->brush_middle = o->brush_middle*degree; d->brush_half = o->brush_half*degree;
@@ -694,11 +692,6 @@ static void set_drag(struct separator_options *o, double value) {
     o->metal_form = o->plastic_form = form_names[(int)value/2];
     o->drag = (int)value%2 ? "holzer" : "schiller";
 }
-/* Flakes and shavings, with and without the gyroscopic torque. */
-static void set_gyroscopic(struct separator_options *o, double value) {
-    o->metal_form = o->plastic_form = form_names[1 + (int)value/2];
-    o->gyroscopic = (int)value%2 == 0;
-}
 static void set_form(struct separator_options *o, double v) { o->metal_form = o->plastic_form = form_names[(int)v]; }
 static void set_setting(struct separator_options *o, double v) {
     static const char *const words[3] = {"ours", "seeds", "springs"};
@@ -758,8 +751,6 @@ static const sweep sweeps[] = {
         {"sphere", "flake", "shaving", "fragment"}, set_form},
     {"drag", "Drag by shape", "0 sphere, 2 flake, 4 shaving; + 1: drag depends on shape", 6, {0, 1, 2, 3, 4, 5},
         {"sphere.schiller", "sphere.holzer", "flake.schiller", "flake.holzer", "shaving.schiller", "shaving.holzer"}, set_drag},
-    {"gyroscopic", "Gyroscopic torque", "0 flake, 2 shaving; + 1: without the gyroscopic torque", 4, {0, 1, 2, 3},
-        {"flake", "flake.without", "shaving", "shaving.without"}, set_gyroscopic},
     {"settings", "Contacts", "0 ours, 1 seeds, 2 springs", 3, {0, 1, 2}, {"ours", "seeds", "springs"}, set_setting},
     {"solvers", "Solvers", "0 Gauss-Seidel, 1 Jacobi, 2 accelerated, 3 spectral", 4, {0, 1, 2, 3},
         {"seidel", "jacobi", "apgd", "spectral"}, set_solver},

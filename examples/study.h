@@ -122,6 +122,16 @@ STUDY_FN void study_help(const char *about, const study_option *table, int count
     printf("  %-20s this text\n", "--help");
 }
 
+/* Returns 1 if `word` is one of the words of `list`, which are separated by |. */
+STUDY_FN int study_one_of(const char *list, const char *word) {
+    const size_t length = strlen(word);
+    if (strchr(word, '|')) return 0;
+    for (; list; list = strchr(list, '|')) {
+        list += *list == '|';
+        if (!strncmp(list, word, length) && (list[length] == '|' || !list[length])) return 1;
+    }
+    return 0;
+}
 /* Reads --name value, --name=value and --flag into the variables of the table. --help prints the table
    and exits with 0. A wrong option prints a message and exits with 2. */
 STUDY_FN void study_options(int argc, char **argv, const char *about, const study_option *table,
@@ -135,7 +145,7 @@ STUDY_FN void study_options(int argc, char **argv, const char *about, const stud
         const char *word = argv[i], *equal = strchr(word, '='), *value;
         size_t length = equal ? (size_t)(equal - word) : strlen(word);
         const study_option *o = 0;
-        char *end = 0, list[128], sought[128];
+        char *end = 0;
         double number;
         for (k = 0; k < count && !o; k++)
             if (length > 2 && !strncmp(word, "--", 2) && strlen(table[k].name) + 2 == length &&
@@ -143,15 +153,13 @@ STUDY_FN void study_options(int argc, char **argv, const char *about, const stud
         if (!o) { study_fail("unknown option %s; --help lists those there are", word); exit(2); }
         if (o->kind == STUDY_FLAG && !equal) { *(int *)o->value = 1; continue; }
         value = equal ? equal + 1 : i + 1 < argc ? argv[++i] : 0;
-        snprintf(list, sizeof list, "|%s|", o->unit);
-        snprintf(sought, sizeof sought, "|%s|", value ? value : "");
         number = o->kind == STUDY_INT || o->kind == STUDY_REAL ? strtod(value ? value : "", &end)
                                                                : 0;
         bad = end && (end == value || *end || !(number >= o->lo && number <= o->hi) ||
                       (o->kind == STUDY_INT && floor(number) != number));
         if (o->kind == STUDY_FLAG) study_fail("--%s takes no value", o->name);
         else if (!value) study_fail("--%s needs a value", o->name);
-        else if (o->kind == STUDY_CHOICE && !strstr(list, sought))
+        else if (o->kind == STUDY_CHOICE && !study_one_of(o->unit, value))
             study_fail("--%s is one of %s, not '%s'", o->name, o->unit, value);
         else if (bad)
             study_fail("--%s needs a %s from %g to %g%s%s, not '%s'", o->name,

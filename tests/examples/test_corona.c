@@ -479,43 +479,6 @@ int main(int argc, char **argv) {
               1.5*corona_drag_coefficient(&c.shapes[1].outline, edge, 200));
     }
 
-    TEST("a free grain keeps its spin without the gyroscopic torque, and does not with it") {
-        static const dem_real centres[9] = {0, 0, 0, DEM_R(1.6e-3), 0, 0, 0, DEM_R(1.1e-3), 0};
-        static const dem_real radii[3] = {DEM_R(1e-3), DEM_R(0.8e-3), DEM_R(0.6e-3)};
-        int without;
-        for (without = 0; without < 2; without++) {
-            dem_world_desc desc = DEM_WORLD_DESC;
-            dem_cluster_desc cluster = DEM_CLUSTER_DESC;
-            const dem_material_desc stuff = scene_stuff(1e7, 0.1, 0.5, 0);
-            corona c = corona_make();
-            dem_world *w;
-            dem_body_state b;
-            dem_shape_info info;
-            dem_body id;
-            double turned;
-            c.field = corona_field_make(0.16, 0.019, 0.267, CORONA_PI/6, 0);
-            c.drag = CORONA_DRAG_NONE;
-            c.gyroscopic = !without;
-            desc.body_reals = CORONA_REALS;
-            desc.body_force = corona_force; desc.force_user = &c;
-            desc.dt = DEM_R(1e-5);
-            w = dem_world_create(&desc);
-            cluster.count = 3; cluster.positions = centres; cluster.radii = radii;
-            id = dem_body_add(w, dem_material_add(w, &stuff), dem_shape_cluster_add(w, &cluster),
-                              dem_vec3_make(0, 1, 0), dem_quat_make(1, 0, 0, 0));
-            CHECK(dem_body_get(w, id, &b) == DEM_OK && dem_shape_get(w, b.shape, &info) == DEM_OK);
-            CHECK((double)(b.moments.z - b.moments.x) > 0.3*(double)b.moments.z);
-            c.shapes[b.shape.id].frame = info.frame;
-            b.spin = dem_vec3_make(100, 40, 70);
-            dem_body_set(w, id, &b);
-            CHECK(dem_world_step(w, 2000) == DEM_OK);
-            dem_body_get(w, id, &b);
-            turned = hypot(hypot((double)b.spin.x - 100, (double)b.spin.y - 40), (double)b.spin.z - 70)/128.45;
-            if (without) CHECK_NEAR(turned, 0, 1e-3); else CHECK(turned > 0.1);
-            dem_world_destroy(w);
-        }
-    }
-
     TEST("two charged grains repel by Coulomb's law far from the rotor, less near it, and as dipoles close to it") {
         static const double height[3] = {0.5, 4e-3, 0.5e-3};
         int i;
