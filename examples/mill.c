@@ -1537,7 +1537,7 @@ int main(int argc, char **argv) {
     if (options.brief) {
         options.replay_from = 0;
         options.diameter = options.first ? 0.24 : 0.12; /* as many beads in either */
-        options.length = fmin(options.length, 0.03);
+        options.length = fmin(options.length, 0.03);    /* of the whole mill, too */
         options.soften = 1000;
         options.settle = options.revolutions = 0.05;
         options.frames = 0;
