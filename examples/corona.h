@@ -142,7 +142,8 @@ static inline corona_outline corona_outline_make(const double *axes) {
     int k;
     for (k = 0; k < 3; k++) o.axes[k] = axes[k]/r;
     o.sphericity = pow((pow(o.axes[0]*o.axes[1], p) + pow(o.axes[0]*o.axes[2], p) + pow(o.axes[1]*o.axes[2], p))/3, -1/p);
-    if (o.sphericity > 1) o.sphericity = 1;                  /* round-off of a sphere */
+    if (o.sphericity > 1 - 1e-12) o.sphericity = 1;          /* a sphere, despite round-off: the last term of [HS08] has an
+                                                                infinite slope there */
     return o;
 }
 /* Returns the area of the outline seen along a unit vector in its axes, over that of the sphere. */
