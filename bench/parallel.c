@@ -43,6 +43,76 @@ static int most_workers = 8, short_form, full_form, model_only, processors;
 static double settle_asked = 0.5, span_asked, cost_asked;
 static FILE *page, *csv;           /* of what a part measures, for docs/data */
 
+/* ---- what the processors are worth ---- */
+
+#if DEMI_OPENMP
+/* Arithmetic that no memory delays: 512 sums, each of which waits for itself only. Returns one of them. */
+static double count_up(double *sum, long rounds) {
+    long n;
+    int k;
+    for (k = 0; k < 512; k++) sum[k] = k;
+    for (n = 0; n < rounds; n++) {
+        DEMI_ONE_BY_ONE(n);                                     /* keeps the order of the loops */
+        for (k = 0; k < 512; k++) sum[k] = sum[k]*0.999 + 1;
+    }
+    return sum[63];
+}
+/* How much more arithmetic two threads do than one. Median of five turns. */
+static double two_over_one(void) {
+    double gain[5], seen = 0;
+    int turn, way;
+    for (turn = 0; turn < 5; turn++) {
+        double seconds[2];
+        for (way = 0; way < 2; way++) {
+            const double begun = study_clock();
+            int half;
+            #pragma omp parallel for num_threads(2) schedule(static, 1) reduction(+:seen)
+            for (half = 0; half <= way; half++) {
+                double sum[512];
+                seen += count_up(sum, 400000);
+            }
+            seconds[way] = study_clock() - begun;
+        }
+        gain[turn] = seen > 0 && seconds[1] > 0 ? 2*seconds[0]/seconds[1] : 0;
+    }
+    return bench_median(gain, 5);
+}
+/* s, from the moment when one thread writes a number to the moment when another one sees it: the mean of many turns. Threads
+   that share a processor get a turn only when the system changes between them, so there are not more. */
+static double handover(void) {
+    enum { TURNS = 2000 };
+    double begun = 0, ended = 0;
+    int turn = 0;
+    #pragma omp parallel num_threads(2) shared(turn, begun, ended)
+    {
+        const int me = omp_get_thread_num(), both = omp_get_num_threads() == 2;
+        int seen, k;
+        for (k = 0; k < TURNS && both; k++) {
+            do {
+                #pragma omp atomic read
+                seen = turn;
+            } while (seen%2 != me);
+            if (!me && k == 1) begun = study_clock();
+            if (!me) ended = study_clock();
+            #pragma omp atomic write
+            turn = seen + 1;
+        }
+    }
+    return turn ? (ended - begun)/(2*(TURNS - 2)) : 0;
+}
+#endif
+/* What limits threads whatever they compute: how much arithmetic two of them do, and how long a number takes from one to the
+   other. Two halves of one core (hyperthreads) do little more than one, and those of two sockets hand numbers over slowly. */
+static void processors_part(void) {
+#if DEMI_OPENMP
+    const double two = two_over_one(), one_way = handover();
+    bench_result_short("two_threads.arithmetic", two, "of one thread");
+    bench_result_short("two_threads.handover", 1e9*one_way, "ns until a thread sees what another wrote");
+    if (page) fprintf(page, "Two threads do %.2f times the arithmetic of one. One sees what the other wrote after %.0f ns.\n\n", two,
+                      1e9*one_way);
+#endif
+}
+
 /* ---- what is timed: a subject, and the ways to run it ---- */
 
 typedef struct subject {
@@ -1278,6 +1348,7 @@ int main(int argc, char **argv) {
     if (page) bench_page_machine(page, load);
     if (model_only) model_part();
     else {
+        if (processors > 1) processors_part();
         csv = bench_table_open("speedups.csv", "scene,grains,on,workers,more_workers_than_processors,M_particle_steps_per_s,speedup,"
                                "efficiency,cost,overhead,published_on_one_machine,published_on_several_machines");
         if (wanted("bed")) scene_part("bed");
