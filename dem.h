@@ -504,7 +504,7 @@
        DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits
        DEM_NO_CLONES        gcc on x86-64 Linux: no second copy of the loops for AVX2: less code,
                             slower unless compiled for AVX2, same bits
-       DEM_DOMAIN_BODIES    approximate number of bodies per work group (2048); changes the bits
+       DEM_DOMAIN_BODIES    approximate number of spheres per work group (2048); changes the bits
 
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
@@ -3853,21 +3853,29 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define DEMI_PI 3.14159265358979323846
 
-/* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. */
+/* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. Each thread gets
+   consecutive tasks: they share data, and processors pass data on slowly (0.2 us and more).
+   middle: for each task the share, 0 .. 1, of all work that is done in the middle of it, ascending;
+   null: all tasks are equal. */
 typedef void (*demi_task)(dem_world *w, int index);
-static void demi_parallel(dem_world *w, int threads, int count, demi_task task) {
+static void demi_parallel(dem_world *w, int threads, int count, const double *middle,
+                          demi_task task) {
     int i;
 #if DEMI_OPENMP
     if (threads > 1 && count > 1) {
-        /* Each thread gets about four blocks of consecutive tasks, dealt round-robin. Dense regions
-           span several consecutive domains, so this balances the load. */
-        const int run = DEMI_MAX(1, count/(4*threads));
-        #pragma omp parallel for num_threads(threads) schedule(static, run)
-        for (i = 0; i < count; i++) task(w, i);
+        #pragma omp parallel num_threads(threads) private(i)
+        {
+            const int me = omp_get_thread_num(), all = omp_get_num_threads();
+            for (i = 0; i < count; i++) {
+                const double at = middle ? middle[i] : (i + 0.5)/count;
+                if (DEMI_MIN((int)(at*all), all - 1) == me) task(w, i);
+            }
+        }
         return;
     }
 #endif
     (void)threads;
+    (void)middle;
     for (i = 0; i < count; i++) task(w, i);
 }
 /* 1: worlds use as many threads as their desc says. See >>team. */
@@ -5081,6 +5089,7 @@ struct dem_world {
     int composed;                  /* for tests: always use one stage per law, never a fused one */
     int domain_count;
     demi_domain *domains;          /* the part that builds a list writes its counts */
+    double domain_middle[DEMI_DOMAINS];    /* for demi_parallel: see demi_domains_weigh */
     /* >>search */
     dem_real image_shift[27*4];    /* m, added to b - a to reach b's nearest image */
     int32_t *cell_start;           /* first body of each cell */
@@ -5134,6 +5143,30 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
+/* Calls a task for each work group. */
+static void demi_domains_do(dem_world *w, demi_task task) {
+    demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+}
+/* Estimates the work of each work group from its bodies and lists, which may be of the step before.
+   Where some bodies lie and others fall, few groups have nearly all contacts. The estimate decides
+   which thread computes a group, never what is computed. */
+static void demi_domains_weigh(dem_world *w) {
+    double work[DEMI_DOMAINS], all = 0, before = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *o = &w->domains[d];
+        const int pairs = o->near_own + o->near_end - o->near_cross;
+        const int shaped = o->near_shaped_end - o->near_shaped;
+        /* a pair with a body that is not a sphere costs about as much as four pairs of spheres, its
+           contact four times that */
+        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + 16.0*o->kept;
+        all += work[d];
+    }
+    for (d = 0; d < w->domain_count; d++) {
+        w->domain_middle[d] = (before + work[d]/2)/all;
+        before += work[d];
+    }
+}
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
    index. So indices are reused, and the id of a removed wall stays invalid. */
 enum { DEMI_WALLS_MOST = 1 << 18 };
@@ -10381,7 +10414,7 @@ static void demi_domain_finish(dem_world *w, int d) {
    time. */
 static void demi_finish(dem_world *w) {
     if (w->stage.synced) return;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_finish);
+    demi_domains_do(w, demi_domain_finish);
     w->stage.synced = 1;
 }
 
@@ -15816,7 +15849,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     do {                                        /* until the pairs of every group fit */
         again = 0;
         if (demi_near_reserve(w, &w->near, w->domain_count, stride)) {
-            demi_parallel(w, w->crew.now, w->domain_count, demi_domain_near);
+            demi_domains_do(w, demi_domain_near);
             for (d = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 8;
             stride = stride/4*5/DEMI_LANES*DEMI_LANES + 4*DEMI_LANES;
             continue;
@@ -15830,9 +15863,10 @@ static int demi_near_make(dem_world *w, int fresh) {
         w->near = swap;
         return 0;
     }
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_adopt);
+    demi_domains_do(w, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
+        demi_domains_do(w, demi_domain_quiet);
+    demi_domains_weigh(w);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */
@@ -15996,11 +16030,14 @@ static int demi_spins(const dem_world *w) {
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
-   numbers of threads. It depends only on the number of bodies, so bits do not depend on threads. */
-static int demi_domains_for(int count) {
+   numbers of threads. It depends only on the numbers of bodies, so bits do not depend on threads.
+   shaped: those that are not spheres. Each costs about as much as eight spheres, so a few thousand
+   need several groups for each thread: where bodies fall, all contacts may be in the lowest one. */
+static int demi_domains_for(int count, int shaped) {
+    const int work = count + 7*shaped;
     int n = 1;
-    while (n < 8 && n*DEM_DOMAIN_BODIES < count) n *= 2;
-    return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
+    while (n < 8 && n*DEM_DOMAIN_BODIES < work) n *= 2;
+    return n < 8 ? n : DEMI_MIN(DEMI_MAX(work/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
 /* Clears a work group that is out of use, because old counts must not influence later choices. Its
@@ -16221,12 +16258,13 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->bodies.count);
+    w->domain_count = demi_domains_for(w->bodies.count, w->bodies.shaped);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);
         w->domains[d].overflow = 0;
     }
+    demi_domains_weigh(w);
 }
 /* Returns which of the lists in `lists` (bits 1 own, 2 cross, 4 walls) were too short in some work
    group. */
@@ -16246,7 +16284,7 @@ static int demi_pairs_find(dem_world *w) {
         !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return 0;
     do {
-        demi_parallel(w, w->crew.now, n, demi_domain_search);
+        demi_domains_do(w, demi_domain_search);
         over = demi_lists_overflow(w, 3);
         if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
             (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
@@ -16260,7 +16298,7 @@ static int demi_walls_find(dem_world *w) {
     int room = DEMI_MAX(w->wall_stride, 64);
     do {
         if (!demi_wall_lists_reserve(w, room)) return 0;
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_walls);
+        demi_domains_do(w, demi_domain_walls);
         room = w->wall_stride/2*3 + 64;
     } while (demi_lists_overflow(w, 4));
     return demi_walled_note(w);
@@ -16324,7 +16362,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
+        demi_domains_do(w, demi_domain_quiet);
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
@@ -22331,7 +22369,7 @@ static int demi_touch(dem_world *w) {
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     demi_surfaces_follow(w);
     do {
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_kept_touch);
+        demi_domains_do(w, demi_domain_kept_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
         if (again && !demi_kept_widen(w)) return 0;
     } while (again);
@@ -25089,7 +25127,7 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, task);
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, 0, task);
         s->run += runs;
     }
 }
@@ -25099,7 +25137,7 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
     s->last = s->count;
-    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
+    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
 /* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
@@ -25740,11 +25778,11 @@ static void demi_impulses(dem_world *w) {
     double farthest = 0;
     int i;
     s->dt = w->clock.dt;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_movers_lay);
+    demi_domains_do(w, demi_movers_lay);
     demi_joints_lay(w);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_meet);
+    demi_domains_do(w, demi_impulses_meet);
     demi_impulses_colour(w);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_lay);
+    demi_domains_do(w, demi_impulses_lay);
     if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
         demi_joints_warm(w);
@@ -25759,8 +25797,8 @@ static void demi_impulses(dem_world *w) {
         w->booked.unsolved++;
         s->limited = demi_solver_limited(s);
     }
-    demi_parallel(w, w->crew.now, w->domain_count, demi_movers_force);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_tell);
+    demi_domains_do(w, demi_movers_force);
+    demi_domains_do(w, demi_impulses_tell);
     demi_impulses_fixed(w);
     demi_joints_tell(w);
     w->booked.due[0] = demi_sum_energy(w, DEMI_E_DASHPOT);
@@ -25820,7 +25858,7 @@ static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, demi_some_ahead);
+    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -25837,7 +25875,7 @@ static void demi_ahead(dem_world *w) {
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, demi_some_back);
+    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 /* Adds the work of walls, joints and motors in the coming step to the energies due. */
@@ -30910,9 +30948,9 @@ static int demi_forces(dem_world *w) {
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
         if (w->cell.on) memset(w->domains[d].cell, 0, sizeof w->domains[d].cell);
     }
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_respond);
+    demi_domains_do(w, demi_domain_respond);
     if (response->solve) response->solve(w);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gather);
+    demi_domains_do(w, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
@@ -31081,7 +31119,7 @@ static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
+    demi_domains_do(w, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_rails_move(w);
     if (w->cell.on) demi_cell_move(w);
@@ -31169,7 +31207,7 @@ static void demi_domain_gain(dem_world *w, int d) {
 static void demi_reals_gain(dem_world *w) {
     int i, k;
     if (!w->bodies.real_count) return;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gain);
+    demi_domains_do(w, demi_domain_gain);
     for (i = 0; i < w->wall_count; i++)
         for (k = 0; k < w->bodies.real_count; k++)
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
@@ -36736,7 +36774,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of bodies or slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
         (t->stage.list_valid && (!t->domain_count ||
-                           t->domain_count > demi_domains_for(4*t->bodies.count + 16))) ||
+                           t->domain_count > demi_domains_for(4*t->bodies.count + 16,
+                                                                      4*t->bodies.count))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
@@ -37213,6 +37252,7 @@ static int demi_twin_follow(dem_world *t) {
     if (!demi_merging_reserve(t)) return 0;
     t->touching_valid = 0;
     demi_cross_index(t);
+    demi_domains_weigh(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
     return 1;
 }
@@ -40365,7 +40405,7 @@ static void demi_slab_task(dem_world *w, int k) {
 /* Runs a phase for all slabs of this process, in parallel. */
 static void demi_slabs_phase(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
     s->phase = phase;
-    demi_parallel(&s->head, s->head.desc.threads, s->local, demi_slab_task);
+    demi_parallel(&s->head, s->head.desc.threads, s->local, 0, demi_slab_task);
 }
 
 /* True if there is a slab above (side 1) or below (side 0). */

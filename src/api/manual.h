@@ -375,7 +375,7 @@
        DEM_NO_SPECIALIZE    no fused loops for frequent sets of laws: less code, slower, same bits
        DEM_NO_CLONES        gcc on x86-64 Linux: no second copy of the loops for AVX2: less code,
                             slower unless compiled for AVX2, same bits
-       DEM_DOMAIN_BODIES    approximate number of bodies per work group (2048); changes the bits
+       DEM_DOMAIN_BODIES    approximate number of spheres per work group (2048); changes the bits
 
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh

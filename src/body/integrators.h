@@ -572,6 +572,6 @@ static void demi_domain_finish(dem_world *w, int d) {
    time. */
 static void demi_finish(dem_world *w) {
     if (w->stage.synced) return;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_finish);
+    demi_domains_do(w, demi_domain_finish);
     w->stage.synced = 1;
 }

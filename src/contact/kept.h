@@ -871,7 +871,7 @@ static int demi_touch(dem_world *w) {
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     demi_surfaces_follow(w);
     do {
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_kept_touch);
+        demi_domains_do(w, demi_domain_kept_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
         if (again && !demi_kept_widen(w)) return 0;
     } while (again);

@@ -434,6 +434,7 @@ struct dem_world {
     int composed;                  /* for tests: always use one stage per law, never a fused one */
     int domain_count;
     demi_domain *domains;          /* the part that builds a list writes its counts */
+    double domain_middle[DEMI_DOMAINS];    /* for demi_parallel: see demi_domains_weigh */
     /* >>search */
     dem_real image_shift[27*4];    /* m, added to b - a to reach b's nearest image */
     int32_t *cell_start;           /* first body of each cell */
@@ -487,6 +488,30 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
+/* Calls a task for each work group. */
+static void demi_domains_do(dem_world *w, demi_task task) {
+    demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+}
+/* Estimates the work of each work group from its bodies and lists, which may be of the step before.
+   Where some bodies lie and others fall, few groups have nearly all contacts. The estimate decides
+   which thread computes a group, never what is computed. */
+static void demi_domains_weigh(dem_world *w) {
+    double work[DEMI_DOMAINS], all = 0, before = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *o = &w->domains[d];
+        const int pairs = o->near_own + o->near_end - o->near_cross;
+        const int shaped = o->near_shaped_end - o->near_shaped;
+        /* a pair with a body that is not a sphere costs about as much as four pairs of spheres, its
+           contact four times that */
+        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + 16.0*o->kept;
+        all += work[d];
+    }
+    for (d = 0; d < w->domain_count; d++) {
+        w->domain_middle[d] = (before + work[d]/2)/all;
+        before += work[d];
+    }
+}
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
    index. So indices are reused, and the id of a removed wall stays invalid. */
 enum { DEMI_WALLS_MOST = 1 << 18 };

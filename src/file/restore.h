@@ -127,7 +127,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of bodies or slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
         (t->stage.list_valid && (!t->domain_count ||
-                           t->domain_count > demi_domains_for(4*t->bodies.count + 16))) ||
+                           t->domain_count > demi_domains_for(4*t->bodies.count + 16,
+                                                                      4*t->bodies.count))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
@@ -604,6 +605,7 @@ static int demi_twin_follow(dem_world *t) {
     if (!demi_merging_reserve(t)) return 0;
     t->touching_valid = 0;
     demi_cross_index(t);
+    demi_domains_weigh(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
     return 1;
 }

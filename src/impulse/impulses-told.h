@@ -252,11 +252,11 @@ static void demi_impulses(dem_world *w) {
     double farthest = 0;
     int i;
     s->dt = w->clock.dt;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_movers_lay);
+    demi_domains_do(w, demi_movers_lay);
     demi_joints_lay(w);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_meet);
+    demi_domains_do(w, demi_impulses_meet);
     demi_impulses_colour(w);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_lay);
+    demi_domains_do(w, demi_impulses_lay);
     if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
         demi_joints_warm(w);
@@ -271,8 +271,8 @@ static void demi_impulses(dem_world *w) {
         w->booked.unsolved++;
         s->limited = demi_solver_limited(s);
     }
-    demi_parallel(w, w->crew.now, w->domain_count, demi_movers_force);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_impulses_tell);
+    demi_domains_do(w, demi_movers_force);
+    demi_domains_do(w, demi_impulses_tell);
     demi_impulses_fixed(w);
     demi_joints_tell(w);
     w->booked.due[0] = demi_sum_energy(w, DEMI_E_DASHPOT);
@@ -332,7 +332,7 @@ static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, demi_some_ahead);
+    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -349,7 +349,7 @@ static void demi_ahead(dem_world *w) {
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, demi_some_back);
+    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 /* Adds the work of walls, joints and motors in the coming step to the energies due. */

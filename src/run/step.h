@@ -247,9 +247,9 @@ static int demi_forces(dem_world *w) {
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
         if (w->cell.on) memset(w->domains[d].cell, 0, sizeof w->domains[d].cell);
     }
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_respond);
+    demi_domains_do(w, demi_domain_respond);
     if (response->solve) response->solve(w);
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gather);
+    demi_domains_do(w, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
@@ -418,7 +418,7 @@ static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_move);
+    demi_domains_do(w, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
     demi_rails_move(w);
     if (w->cell.on) demi_cell_move(w);
@@ -506,7 +506,7 @@ static void demi_domain_gain(dem_world *w, int d) {
 static void demi_reals_gain(dem_world *w) {
     int i, k;
     if (!w->bodies.real_count) return;
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_gain);
+    demi_domains_do(w, demi_domain_gain);
     for (i = 0; i < w->wall_count; i++)
         for (k = 0; k < w->bodies.real_count; k++)
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;

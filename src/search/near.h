@@ -694,7 +694,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     do {                                        /* until the pairs of every group fit */
         again = 0;
         if (demi_near_reserve(w, &w->near, w->domain_count, stride)) {
-            demi_parallel(w, w->crew.now, w->domain_count, demi_domain_near);
+            demi_domains_do(w, demi_domain_near);
             for (d = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 8;
             stride = stride/4*5/DEMI_LANES*DEMI_LANES + 4*DEMI_LANES;
             continue;
@@ -708,9 +708,10 @@ static int demi_near_make(dem_world *w, int fresh) {
         w->near = swap;
         return 0;
     }
-    demi_parallel(w, w->crew.now, w->domain_count, demi_domain_adopt);
+    demi_domains_do(w, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
+        demi_domains_do(w, demi_domain_quiet);
+    demi_domains_weigh(w);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */

@@ -154,11 +154,14 @@ static int demi_spins(const dem_world *w) {
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
-   numbers of threads. It depends only on the number of bodies, so bits do not depend on threads. */
-static int demi_domains_for(int count) {
+   numbers of threads. It depends only on the numbers of bodies, so bits do not depend on threads.
+   shaped: those that are not spheres. Each costs about as much as eight spheres, so a few thousand
+   need several groups for each thread: where bodies fall, all contacts may be in the lowest one. */
+static int demi_domains_for(int count, int shaped) {
+    const int work = count + 7*shaped;
     int n = 1;
-    while (n < 8 && n*DEM_DOMAIN_BODIES < count) n *= 2;
-    return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
+    while (n < 8 && n*DEM_DOMAIN_BODIES < work) n *= 2;
+    return n < 8 ? n : DEMI_MIN(DEMI_MAX(work/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
 /* Clears a work group that is out of use, because old counts must not influence later choices. Its
@@ -379,12 +382,13 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->bodies.count);
+    w->domain_count = demi_domains_for(w->bodies.count, w->bodies.shaped);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);
         w->domains[d].overflow = 0;
     }
+    demi_domains_weigh(w);
 }
 /* Returns which of the lists in `lists` (bits 1 own, 2 cross, 4 walls) were too short in some work
    group. */
@@ -404,7 +408,7 @@ static int demi_pairs_find(dem_world *w) {
         !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return 0;
     do {
-        demi_parallel(w, w->crew.now, n, demi_domain_search);
+        demi_domains_do(w, demi_domain_search);
         over = demi_lists_overflow(w, 3);
         if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
             (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
@@ -418,7 +422,7 @@ static int demi_walls_find(dem_world *w) {
     int room = DEMI_MAX(w->wall_stride, 64);
     do {
         if (!demi_wall_lists_reserve(w, room)) return 0;
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_walls);
+        demi_domains_do(w, demi_domain_walls);
         room = w->wall_stride/2*3 + 64;
     } while (demi_lists_overflow(w, 4));
     return demi_walled_note(w);
@@ -482,7 +486,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
-        demi_parallel(w, w->crew.now, w->domain_count, demi_domain_quiet);
+        demi_domains_do(w, demi_domain_quiet);
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;

@@ -16,7 +16,7 @@ static void demi_slab_task(dem_world *w, int k) {
 /* Runs a phase for all slabs of this process, in parallel. */
 static void demi_slabs_phase(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
     s->phase = phase;
-    demi_parallel(&s->head, s->head.desc.threads, s->local, demi_slab_task);
+    demi_parallel(&s->head, s->head.desc.threads, s->local, 0, demi_slab_task);
 }
 
 /* True if there is a slab above (side 1) or below (side 0). */

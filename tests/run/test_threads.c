@@ -123,6 +123,46 @@ int main(int argc, char **argv) {
             check_same(&one, &many);
         }
     }
+    TEST("where half of the bodies lie on a floor and half fall, no work group has more than a quarter of the contacts, and no thread more than 60 %") {
+        static const char *const names[2] = {"cubes", "clusters"};
+        int kind, i, d;
+        for (kind = 0; kind < 2; kind++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material stone;
+            dem_shape shape;
+            int all = 0, most = 0, first = 0;
+            desc.gravity = at(0, 0, -9.81);
+            desc.dt = DEM_R(1e-6);
+            world = dem_world_create(&desc);
+            stone = scene_material(world, 1e7, 0.7, 0.3, 0);
+            if (kind) {
+                static const dem_real two[6] = {DEM_R(-4e-4), 0, 0, DEM_R(4e-4), 0, 0};
+                dem_cluster_desc pair = DEM_CLUSTER_DESC;
+                pair.count = 2;
+                pair.positions = two;
+                pair.radius = DEM_R(6e-4);
+                shape = dem_shape_cluster_add(world, &pair);
+            } else shape = scene_box(world, 1.2e-3, 1.2e-3, 1.2e-3);
+            dem_wall_plane_add(world, stone, at(0, 0, 0), at(0, 0, 1));
+            for (i = 0; i < 2*900; i++)
+                dem_body_add(world, stone, shape, at(3e-3*(i%30), 3e-3*(i/30%30), i < 900 ? 5.99e-4 : 4e-3),
+                             dem_quat_make(1, 0, 0, 0));
+            CHECK_EQ(scene_step(world, 2), DEM_OK);
+            CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
+            for (d = 0; d < world->domain_count; d++) {
+                const int here = world->domains[d].kept_walls;
+                all += here;
+                if (world->domain_middle[d] < 0.5) first += here;
+                if (here > most) most = here;
+            }
+            CHECK(all >= 900);
+            if (4*most > all) printf("    %s: %d of %d\n", names[kind], most, all);
+            CHECK(4*most <= all);
+            CHECK_NEAR(1.0*first/all, 0.5, 0.1);           /* the first of two threads */
+            dem_world_destroy(world);
+        }
+    }
     TEST("threads, an intermediate checkpoint and a second world give one hash") {
         static const int threads[] = {1, 2, 3, 4, 8};
         static const char path[] = "build/tmp/threads.ckpt";
