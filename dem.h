@@ -482,9 +482,10 @@
    Laws, force fields and body_reals_fn are called from several threads.
 
    The same program and input give the same bits for any number of threads: bodies are divided into
-   work groups by their number only, and every sum has a fixed order. Compile with -ffp-contract=off
-   to get the same bits from other compilers, systems and processors. Slabs (dem_slabs_create)
-   distribute a scene to threads, or to processes over MPI or any other transport: docs/parallel.md.
+   work groups by their numbers only, and every sum has a fixed order. Compile with
+   -ffp-contract=off to get the same bits from other compilers, systems and processors. Slabs
+   (dem_slabs_create) distribute a scene to threads, or to processes over MPI or any other
+   transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
    read one world by functions that take it as const, while none changes it. Exceptions, which write
@@ -541,7 +542,8 @@
        sweep               one pass of the iterative solver over all contacts
        weight              factor on the force of a contact point, so that several points of one
                            surface or cluster act as one contact
-       work group          some 2000 neighbouring bodies, which one thread computes at a time
+       work group          some 2000 neighbouring spheres, or fewer bodies of other shapes, which
+                           one thread computes at a time
 
    --- 16. References, by the keys used in this file ---
 
@@ -3854,9 +3856,9 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_PI 3.14159265358979323846
 
 /* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. Each thread gets
-   consecutive tasks, because neighbours share data, and it takes up to some 0.3 us until a thread
-   sees what another one wrote. middle: for each task the share, 0 .. 1, of all work that is done
-   once half of this task is, ascending; null: all tasks are equal. */
+   consecutive tasks, because neighbours share data, and it takes some tenths of a microsecond until
+   a thread sees what another one wrote. middle: for each task the share, 0 .. 1, of all work that
+   is done once half of this task is, ascending; null: all tasks are equal. */
 typedef void (*demi_task)(dem_world *w, int index);
 static void demi_parallel(dem_world *w, int threads, int count, const double *middle,
                           demi_task task) {
@@ -4342,12 +4344,13 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
 
 /* A domain is a work group: a range of consecutive bodies, which are neighbours in space because
    bodies are sorted by cell. One thread computes a whole group. The number of groups and their
-   boundaries depend only on the number of bodies. A contact belongs to the group of its body with
-   the lower index. A force on a body of a later group is stored in cross_force, and that group adds
-   it in the order of the list. So the number of threads changes who computes, but never the order
-   of a sum, and results have the same bits for any number of threads. Each list is one array in
-   which every group has its own segment, so threads never wait for each other to allocate. A group
-   whose segment is too short sets `overflow`, and the list is built again with more room. */
+   boundaries depend only on the numbers of bodies and of those that are not spheres. A contact
+   belongs to the group of its body with the lower index. A force on a body of a later group is
+   stored in cross_force, and that group adds it in the order of the list. So the number of threads
+   changes who computes, but never the order of a sum, and results have the same bits for any number
+   of threads. Each list is one array in which every group has its own segment, so threads never
+   wait for each other to allocate. A group whose segment is too short sets `overflow`, and the list
+   is built again with more room. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside the group, pairs with a body of a
@@ -5147,19 +5150,20 @@ struct dem_world {
 static void demi_domains_do(dem_world *w, demi_task task) {
     demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
 }
-/* Estimates the work of each work group from its bodies and lists, which may be of the step before.
-   Where some bodies lie and others fall, few groups have nearly all contacts. The estimate decides
-   which thread computes a group, never what is computed. */
+/* Estimates the work of each work group from its bodies, pairs and persistent contacts. Where some
+   bodies lie and others fall, few groups have nearly all contacts. The estimate decides which
+   thread computes a group, never what is computed. */
 static void demi_domains_weigh(dem_world *w) {
+    /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
+       body of another shape too, and the contact of such a body more */
+    const double kept = w->bodies.shaped ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *o = &w->domains[d];
         const int pairs = o->near_own + o->near_end - o->near_cross;
         const int shaped = o->near_shaped_end - o->near_shaped;
-        /* a pair with a body that is not a sphere costs about as much as four pairs of spheres, its
-           contact four times that */
-        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + 16.0*o->kept;
+        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + kept*o->kept;
         all += work[d];
     }
     for (d = 0; d < w->domain_count; d++) {
@@ -13863,10 +13867,10 @@ static int demi_tessellation_beyond(const dem_world *w, const demi_wall *surface
    rebuild. These are all pairs with distance < Ra + Rb + skin (+ range of the law). There are
    several search methods. Each stores pairs in the same canonical order (a ascending, then b), so
    every method gives the same list and the same bits. A rebuild sorts bodies by cell, divides them
-   into work groups of about 2000, and lists for each group the pairs inside it and the pairs with
-   later groups. Then it moves the contact histories to the new lists and lists the wall elements
-   near each grain (>>lists, >>rebuild). This part writes the cells, levels, bins and the linked
-   linear list of dem_world, the order of bodies, and the candidate pairs.
+   into work groups (of about 2000 spheres), and lists for each group the pairs inside it and the
+   pairs with later groups. Then it moves the contact histories to the new lists and lists the wall
+   elements near each grain (>>lists, >>rebuild). This part writes the cells, levels, bins and the
+   linked linear list of dem_world, the order of bodies, and the candidate pairs.
    --------------------------------------------------------------------------------------------- */
 
 /* Row of a body in an array of four reals per body. An unsigned index saves a sign extension. */
@@ -15866,7 +15870,6 @@ static int demi_near_make(dem_world *w, int fresh) {
     demi_domains_do(w, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
         demi_domains_do(w, demi_domain_quiet);
-    demi_domains_weigh(w);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */
@@ -30954,6 +30957,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
+    if (w->crew.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
@@ -36774,8 +36778,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of bodies or slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
         (t->stage.list_valid && (!t->domain_count ||
-                           t->domain_count > demi_domains_for(4*t->bodies.count + 16,
-                                                                      4*t->bodies.count))) ||
+                               t->domain_count > demi_domains_for(4*t->bodies.count + 16,
+                                                                  4*t->bodies.count))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)

@@ -353,9 +353,10 @@
    Laws, force fields and body_reals_fn are called from several threads.
 
    The same program and input give the same bits for any number of threads: bodies are divided into
-   work groups by their number only, and every sum has a fixed order. Compile with -ffp-contract=off
-   to get the same bits from other compilers, systems and processors. Slabs (dem_slabs_create)
-   distribute a scene to threads, or to processes over MPI or any other transport: docs/parallel.md.
+   work groups by their numbers only, and every sum has a fixed order. Compile with
+   -ffp-contract=off to get the same bits from other compilers, systems and processors. Slabs
+   (dem_slabs_create) distribute a scene to threads, or to processes over MPI or any other
+   transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
    read one world by functions that take it as const, while none changes it. Exceptions, which write
@@ -412,7 +413,8 @@
        sweep               one pass of the iterative solver over all contacts
        weight              factor on the force of a contact point, so that several points of one
                            surface or cluster act as one contact
-       work group          some 2000 neighbouring bodies, which one thread computes at a time
+       work group          some 2000 neighbouring spheres, or fewer bodies of other shapes, which
+                           one thread computes at a time
 
    --- 16. References, by the keys used in this file ---
 

@@ -216,12 +216,13 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
 
 /* A domain is a work group: a range of consecutive bodies, which are neighbours in space because
    bodies are sorted by cell. One thread computes a whole group. The number of groups and their
-   boundaries depend only on the number of bodies. A contact belongs to the group of its body with
-   the lower index. A force on a body of a later group is stored in cross_force, and that group adds
-   it in the order of the list. So the number of threads changes who computes, but never the order
-   of a sum, and results have the same bits for any number of threads. Each list is one array in
-   which every group has its own segment, so threads never wait for each other to allocate. A group
-   whose segment is too short sets `overflow`, and the list is built again with more room. */
+   boundaries depend only on the numbers of bodies and of those that are not spheres. A contact
+   belongs to the group of its body with the lower index. A force on a body of a later group is
+   stored in cross_force, and that group adds it in the order of the list. So the number of threads
+   changes who computes, but never the order of a sum, and results have the same bits for any number
+   of threads. Each list is one array in which every group has its own segment, so threads never
+   wait for each other to allocate. A group whose segment is too short sets `overflow`, and the list
+   is built again with more room. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside the group, pairs with a body of a

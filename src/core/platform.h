@@ -71,9 +71,9 @@
 #define DEMI_PI 3.14159265358979323846
 
 /* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. Each thread gets
-   consecutive tasks, because neighbours share data, and it takes up to some 0.3 us until a thread
-   sees what another one wrote. middle: for each task the share, 0 .. 1, of all work that is done
-   once half of this task is, ascending; null: all tasks are equal. */
+   consecutive tasks, because neighbours share data, and it takes some tenths of a microsecond until
+   a thread sees what another one wrote. middle: for each task the share, 0 .. 1, of all work that
+   is done once half of this task is, ascending; null: all tasks are equal. */
 typedef void (*demi_task)(dem_world *w, int index);
 static void demi_parallel(dem_world *w, int threads, int count, const double *middle,
                           demi_task task) {

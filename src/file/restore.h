@@ -127,8 +127,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of bodies or slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
         (t->stage.list_valid && (!t->domain_count ||
-                           t->domain_count > demi_domains_for(4*t->bodies.count + 16,
-                                                                      4*t->bodies.count))) ||
+                               t->domain_count > demi_domains_for(4*t->bodies.count + 16,
+                                                                  4*t->bodies.count))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)

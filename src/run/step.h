@@ -253,6 +253,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
+    if (w->crew.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;

@@ -711,7 +711,6 @@ static int demi_near_make(dem_world *w, int fresh) {
     demi_domains_do(w, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
         demi_domains_do(w, demi_domain_quiet);
-    demi_domains_weigh(w);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */

@@ -4,10 +4,10 @@
    rebuild. These are all pairs with distance < Ra + Rb + skin (+ range of the law). There are
    several search methods. Each stores pairs in the same canonical order (a ascending, then b), so
    every method gives the same list and the same bits. A rebuild sorts bodies by cell, divides them
-   into work groups of about 2000, and lists for each group the pairs inside it and the pairs with
-   later groups. Then it moves the contact histories to the new lists and lists the wall elements
-   near each grain (>>lists, >>rebuild). This part writes the cells, levels, bins and the linked
-   linear list of dem_world, the order of bodies, and the candidate pairs.
+   into work groups (of about 2000 spheres), and lists for each group the pairs inside it and the
+   pairs with later groups. Then it moves the contact histories to the new lists and lists the wall
+   elements near each grain (>>lists, >>rebuild). This part writes the cells, levels, bins and the
+   linked linear list of dem_world, the order of bodies, and the candidate pairs.
    --------------------------------------------------------------------------------------------- */
 
 /* Row of a body in an array of four reals per body. An unsigned index saves a sign extension. */
