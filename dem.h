@@ -5150,27 +5150,6 @@ struct dem_world {
 static void demi_domains_do(dem_world *w, demi_task task) {
     demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
 }
-/* Estimates the work of each work group from its bodies, pairs and persistent contacts. Where some
-   bodies lie and others fall, few groups have nearly all contacts. The estimate decides which
-   thread computes a group, never what is computed. */
-static void demi_domains_weigh(dem_world *w) {
-    /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
-       body of another shape too, and the contact of such a body more */
-    const double kept = w->bodies.shaped ? 16 : 4;
-    double work[DEMI_DOMAINS], all = 0, before = 0;
-    int d;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *o = &w->domains[d];
-        const int pairs = o->near_own + o->near_end - o->near_cross;
-        const int shaped = o->near_shaped_end - o->near_shaped;
-        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + kept*o->kept;
-        all += work[d];
-    }
-    for (d = 0; d < w->domain_count; d++) {
-        w->domain_middle[d] = (before + work[d]/2)/all;
-        before += work[d];
-    }
-}
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
    index. So indices are reused, and the id of a removed wall stays invalid. */
 enum { DEMI_WALLS_MOST = 1 << 18 };
@@ -16256,6 +16235,27 @@ static int demi_periods_refuse(dem_world *w) {
             return 1;
         }
     return 0;
+}
+/* Estimates the work of each work group from its bodies, pairs and persistent contacts. Where some
+   bodies lie and others fall, few groups have nearly all contacts. The estimate decides which
+   thread computes a group, never what is computed. */
+static void demi_domains_weigh(dem_world *w) {
+    /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
+       body of another shape too, and the contact of such a body more */
+    const double kept = w->bodies.shaped ? 16 : 4;
+    double work[DEMI_DOMAINS], all = 0, before = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *o = &w->domains[d];
+        const int pairs = o->near_own + o->near_end - o->near_cross;
+        const int shaped = o->near_shaped_end - o->near_shaped;
+        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + kept*o->kept;
+        all += work[d];
+    }
+    for (d = 0; d < w->domain_count; d++) {
+        w->domain_middle[d] = (before + work[d]/2)/all;
+        before += work[d];
+    }
 }
 /* Divides the sorted bodies among the work groups. */
 static void demi_domains_deal(dem_world *w) {

@@ -104,7 +104,7 @@ static double handover(void) {
 }
 #endif
 /* What limits threads whatever they compute: how much arithmetic two of them do, and how long a number takes from one to the
-   other. Two halves of one core (hyperthreads) do little more than one, and those of two sockets hand numbers over slowly. */
+   other. */
 static void processors_part(void) {
 #if DEMI_OPENMP
     const double two = two_over_one(), one_way = handover();
