@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install python python-check rooms test hard law lessons web examples shows studies studies-check mpi check bench bench-compile bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help all run new install python python-check rooms test hard law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -149,6 +149,9 @@ bench-compile: build/flags ## measure the processor time of compiling dem.h, for
 
 bench-effects: build/bench ## measure the cost of each effect, present and absent
 	@build/bench --scene effects --threads 1
+
+bench-instructions: ## count the instructions of each part of dem.h per body and step, by valgrind
+	@sh bench/instructions.sh
 
 bench-parallel: build/parallel ## measure threads, sizes and searches beside published figures, in minutes
 	@$(BIND) build/parallel

@@ -5,6 +5,7 @@
    build/bench --scene effects   what effects, laws, searches and integrators cost, present and absent; --effect NAME
    build/bench --scene walls     cost of a contact with a wall, relative to one of two beads and over facets per grain
    build/bench --scene sizes     cost of a grain among much larger ones, by levels and on one grid
+   build/bench --count NAME      takes a few steps of one scene for bench/instructions.sh, which counts their instructions
    build/bench --settle bed      computes a start state again (minutes): build/out/bench/bed_20k.txt
 
    The program measures the wall time of loops of steps after 100 untimed ones. Variants run in turns, A B A B. It prints
@@ -43,7 +44,7 @@ DEM_INLINE void bench_law(const dem_contact *c, dem_real *memory, dem_contact_fo
 #endif
 enum { WARM_UP = 100, MOST_LOOPS = BENCH_MOST_LOOPS };
 
-static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "", *effect_asked = "";
+static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "", *effect_asked = "", *counted = "";
 static int steps_asked, repeat_asked, threads_asked = 2, quick, full, cpu, raw, brief;
 static double skin_asked;
 static int cuts_asked;
@@ -387,14 +388,16 @@ static dem_world *walls_world(walls_kind kind, int n) {
     dem_world_destroy(world);
     return 0;
 }
+typedef struct walls_row { const char *name; walls_kind kind; int n; } walls_row;
+static const walls_row walls_rows[] = {
+    {"pair", WALLS_PAIR, 0}, {"plane", WALLS_PLANE, 0}, {"cylinder", WALLS_CYLINDER, 0}, {"mesh_242", WALLS_MESH, 11},
+    {"mesh_5000", WALLS_MESH, 50}, {"mesh_50000", WALLS_MESH, 158}, {"mesh_500000", WALLS_MESH, 500}};
 static void walls(void) {
-    static const struct { const char *name; walls_kind kind; int n; } rows[] = {
-        {"pair", WALLS_PAIR, 0}, {"plane", WALLS_PLANE, 0}, {"cylinder", WALLS_CYLINDER, 0}, {"mesh_242", WALLS_MESH, 11},
-        {"mesh_5000", WALLS_MESH, 50}, {"mesh_50000", WALLS_MESH, 158}, {"mesh_500000", WALLS_MESH, 500}};
     const int steps = steps_asked ? steps_asked : full ? 1000 : 100;
+    const walls_row *rows = walls_rows;
     double pair = 0;
     size_t i;
-    for (i = 0; i < sizeof rows/sizeof *rows; i++) {
+    for (i = 0; i < sizeof walls_rows/sizeof *walls_rows; i++) {
         dem_world *air = walls_world(WALLS_NONE, 0), *floor = air ? walls_world(rows[i].kind, rows[i].n) : 0;
         double ta[MOST_LOOPS], tb[MOST_LOOPS], each[MOST_LOOPS];
         int r, turns = floor ? take_turns("walls", air, floor, steps, ta, tb) : 0;
@@ -668,6 +671,37 @@ static void write_for_codes(const char *folder, const char *name) {
     if (bench_is(&s, "drum")) bench_drum_stl(path, BENCH_DRUM_ANGLE);
 }
 
+/* ---- steps whose instructions callgrind counts: it looks at counted_steps alone ---- */
+
+DEMI_APART static int counted_steps(dem_world *world, int steps) { return dem_world_step(world, steps) == DEM_OK; }
+/* `name`: a kind of walls (walls.plane), an effect, or "bed". Prints steps, bodies and contacts. */
+static void count(const char *name) {
+    enum { BEFORE = 20 };
+    const int steps = steps_asked ? steps_asked : 10;
+    const bench_choice none = BENCH_CHOICE;
+    const bench_choice *choice = !strcmp(name, "bed") ? &none : 0;
+    dem_world *world = 0;
+    dem_counters c;
+    size_t i;
+    for (i = 0; i < sizeof walls_rows/sizeof *walls_rows; i++)
+        if (!strncmp(name, "walls.", 6) && !strcmp(name + 6, walls_rows[i].name))
+            world = walls_world(walls_rows[i].kind, walls_rows[i].n);
+    for (i = 0; i < sizeof effect_rows/sizeof *effect_rows; i++)
+        if (!strcmp(name, effect_rows[i].name) && !strcmp(effect_rows[i].scene, "bed")) choice = &effect_rows[i].with;
+    if (choice) {
+        bench_scene s = bench_scene_read(data_folder, "bed");
+        world = bench_world(&s, choice);
+        bench_scene_free(&s);
+        if (world && dem_world_step(world, BEFORE) != DEM_OK) study_fail("%s: %s", name, dem_world_error_get(world));
+    }
+    if (!world) { study_fail("--count %s is neither bed, an effect on the bed nor walls.KIND", name); return; }
+    if (!counted_steps(world, steps)) study_fail("%s: %s", name, dem_world_error_get(world));
+    c = dem_counters_get(world);
+    printf("counted %d steps, %d bodies, %d contacts\n", steps, !choice ? WALLS_BEADS : (int)dem_body_counts_get(world).present,
+           c.contacts + c.wall_contacts);
+    dem_world_destroy(world);
+}
+
 /* One line: seconds of the loop, contacts per bead and kinetic energy (J) at its end, bytes a bead. */
 static void measure_raw(const bench_scene *s) {
     bench_choice choice = BENCH_CHOICE;
@@ -691,6 +725,7 @@ int main(int argc, char **argv) {
     static const study_option table[] = {
         {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|effects|sizes|walls", "what to measure"},
         {"effect", STUDY_TEXT, &effect_asked, 0, 0, "", "of the effects only those whose names contain this"},
+        {"count", STUDY_TEXT, &counted, 0, 0, "", "take steps of this scene, for bench/instructions.sh: bed|EFFECT|walls.KIND"},
         {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "steps of one timed loop, 0: by scene"},
         {"repeat", STUDY_INT, &repeat_asked, 0, MOST_LOOPS, "", "timed loops, 0: 5, or 9 in full"},
         {"threads", STUDY_INT, &threads_asked, 1, 64, "", "threads to compare one thread with"},
@@ -719,6 +754,10 @@ int main(int argc, char **argv) {
                 measure_raw(&s);
                 bench_scene_free(&s);
             }
+        return study.failures ? 1 : 0;
+    }
+    if (*counted) {
+        count(counted);
         return study.failures ? 1 : 0;
     }
     if (*codes) {

@@ -1,5 +1,5 @@
 # sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [peers_two] [blocks] [responses] [ellipsoids]
-#                   [lessons] [heap] [files]
+#                   [instructions] [lessons] [heap] [files]
 # Measures again and replaces tables and pictures in docs/ (without arguments: effects, accuracy, roofline, clusters).
 #   effects     what effects cost, in accuracy.md and README.md
 #   screener    times of the screener, in screener.md
@@ -8,6 +8,7 @@
 #   blocks      beds of blocks beside other codes, in shapes.md
 #   responses   springs beside impulses, in impulses.md
 #   ellipsoids  Table 2 in ellipsoids.md, and the theory in docs/data
+#   instructions  instructions of each part of dem.h, in roofline.md; needs no quiet machine
 #   lessons     what the twelve lessons print, in teaching.md
 #   heap        what the program in README.md prints
 #   files       the files that web.md lets readers copy
@@ -217,6 +218,10 @@ for what in "$@"; do
         numbers $at/roofline/roofline_counts.csv
         for s in bed drum gas; do picture $at/roofline/roofline_$s.svg roofline_$s.png $at/roofline/page.md; done
         splice roofline.md roofline $at/roofline/page.md ;;
+    instructions)
+        rm -f $at/instructions/page.md
+        sh bench/instructions.sh || exit 1
+        if [ -f $at/instructions/page.md ]; then splice roofline.md instructions $at/instructions/page.md || exit 1; fi ;;
     clusters)
         rm -f $at/parallel/*.svg
         build/parallel --threads ${THREADS:-8} && build/parallel --model || exit 1
@@ -278,6 +283,6 @@ for what in "$@"; do
         grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
         { blocks build/blocks.out; measured "ROUNDS=${ROUNDS:-5} make bench-pages PAGES=blocks"; } > build/blocks.md
         splice shapes.md blocks build/blocks.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=blocks" || exit 1 ;;
-    *) echo "no page $what: effects, accuracy, roofline, clusters, shapes, screener, responses, ellipsoids, peers, peers_two, blocks, lessons, heap or files"; exit 1 ;;
+    *) echo "no page $what: effects, accuracy, roofline, instructions, clusters, shapes, screener, responses, ellipsoids, peers, peers_two, blocks, lessons, heap or files"; exit 1 ;;
     esac
 done

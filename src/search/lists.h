@@ -199,7 +199,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->balls,
-                             w->bodies.shaped && !w->effects.clustered ? n : 0) &&
+                             !w->effects.clustered && demi_unlike_spheres(w) ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
                     DEMI_GROW(w, near->hit, n))) &&

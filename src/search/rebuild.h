@@ -64,11 +64,11 @@ static double demi_reach_of(const dem_world *w, double radius) {
     }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
-/* True with springs if the scene has a cluster of spheres, whether or not a body has that shape:
-   all slabs must answer the same. */
+/* True with springs if the scene has a cluster of several spheres or of one off its centre, whether
+   or not a body has that shape: all slabs must answer the same. */
 static int demi_clustered(const dem_world *w) {
     int k, any = 0;
-    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count > 0;
+    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count && !w->shapes[k].lone;
     return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
@@ -384,7 +384,7 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_weigh(dem_world *w) {
     /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
        body of another shape too, and the contact of such a body more */
-    const double kept = w->bodies.shaped ? 16 : 4;
+    const double kept = demi_unlike_spheres(w) ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
@@ -403,7 +403,7 @@ static void demi_domains_weigh(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->bodies.count, w->bodies.shaped);
+    w->domain_count = demi_domains_for(w->bodies.count, demi_unlike_spheres(w));
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);

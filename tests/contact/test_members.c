@@ -80,6 +80,31 @@ static double sums_apart(dem_world *w) {
         }
     return worst/most;
 }
+/* A bed in which every fourth body is an ellipsoid (kind 0) or a cluster of two (kind 1). The others are spheres, or
+   clusters of one sphere (lone 1). */
+static dem_world *mixed_bed(int kind, int lone, int threads) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *w;
+    dem_material m;
+    dem_shape one = {0}, more;
+    uint64_t seed = 4;
+    int i;
+    desc.dt = DEM_R(4e-6);
+    desc.gravity = at(0, 0, -9.81);
+    desc.threads = threads;
+    w = dem_world_create(&desc);
+    m = scene_material(w, 2e6, 0.5, 0.4, 0.1);
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    more = kind ? row(w, 2, 8e-4, 6e-4) : dem_shape_ellipsoid_add(w, at(1e-3, 8e-4, 9e-4));
+    if (lone) one = row(w, 1, 1e-3, 0);
+    for (i = 0; i < 125; i++) {
+        const dem_vec3 x = demi_scale(at(i%5 + 0.1*(i/25), i/5%5, 0.6 + i/25), DEM_R(2.05e-3));
+        const dem_quat q = scene_turn(&seed);
+        if (i%4 == 0 || lone) dem_body_add(w, m, i%4 ? one : more, x, q);
+        else dem_sphere_add(w, m, DEM_R(1e-3), x);
+    }
+    return w;
+}
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
@@ -117,6 +142,28 @@ int main(int argc, char **argv) {
             }
             CHECK_NEAR(most, 0, wide ? 1e-9 : 1e-4);
             for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
+        }
+    }
+    TEST("clusters of one sphere move as spheres among ellipsoids or larger clusters, and continue from a checkpoint") {
+        int other, k, i;
+        for (other = 0; other < 2; other++) {
+            dem_world *w[3];
+            double most = 0;
+            for (k = 0; k < 3; k++) w[k] = mixed_bed(other, k > 0, 1 + k/2);
+            for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 2500), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(w[1], "build/tmp/members.dem"), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(w[2], "build/tmp/members.dem"), DEM_OK);
+            remove("build/tmp/members.dem");
+            for (k = 0; k < 3; k++) CHECK_EQ(scene_step(w[k], 500), DEM_OK);
+            CHECK(dem_counters_get(w[0]).contacts > 20);
+            CHECK_EQ(dem_world_hash_get(w[1]), dem_world_hash_get(w[2]));
+            for (i = 0; i < 125; i++) {
+                const dem_vec3 x = demi_at(w[0]->bodies.pos + 4*w[0]->bodies.slot_index[i]);
+                const dem_vec3 y = demi_at(w[1]->bodies.pos + 4*w[1]->bodies.slot_index[i]);
+                most = DEMI_MAX(most, (double)demi_length(demi_sub(x, y)));
+            }
+            CHECK_NEAR(most, 0, wide ? 1e-9 : 1e-4);
+            for (k = 0; k < 3; k++) dem_world_destroy(w[k]);
         }
     }
     TEST("two clusters that collide off centre part with the restitution of their material at the contact") {
