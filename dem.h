@@ -4203,7 +4203,8 @@ typedef struct demi_near {
     unsigned char *image;          /* as in demi_list */
     unsigned char *on;             /* likewise: 1: may have a contact history */
     int32_t *hit;                  /* likewise: entries of the group that touch, ascending */
-    demi_near_balls *balls;        /* null if all bodies are spheres, or effects.clustered */
+    demi_near_balls *balls;        /* null if pairs see all bodies as lone spheres, or
+                                      effects.clustered */
     dem_real *memory;              /* contact history of two spheres: w->memory_stride columns, 0
                                       while the pair does not touch */
     int32_t *row;                  /* row of species_coef; unused if all bodies are alike or there
@@ -4345,21 +4346,21 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
 
 /* A domain is a work group: a range of consecutive bodies, which are neighbours in space because
    bodies are sorted by cell. One thread computes a whole group. The number of groups and their
-   boundaries depend only on the numbers of bodies and of those that are not spheres. A contact
-   belongs to the group of its body with the lower index. A force on a body of a later group is
-   stored in cross_force, and that group adds it in the order of the list. So the number of threads
-   changes who computes, but never the order of a sum, and results have the same bits for any number
-   of threads. Each list is one array in which every group has its own segment, so threads never
-   wait for each other to allocate. A group whose segment is too short sets `overflow`, and the list
-   is built again with more room. */
+   boundaries depend only on the numbers of bodies and of those that pairs do not see as lone
+   spheres (demi_lone). A contact belongs to the group of its body with the lower index. A force on
+   a body of a later group is stored in cross_force, and that group adds it in the order of the
+   list. So the number of threads changes who computes, but never the order of a sum, and results
+   have the same bits for any number of threads. Each list is one array in which every group has its
+   own segment, so threads never wait for each other to allocate. A group whose segment is too short
+   sets `overflow`, and the list is built again with more room. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside the group, pairs with a body of a
                                       later group, wall elements */
     int near_own, near_cross, near_end;    /* pruned list: end of pairs inside; begin and end of
                                       pairs with later groups; */
-    int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
-                                      a body that is not a sphere */
+    int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for all other
+                                      pairs of bodies: >>kept finds their contacts */
     int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
                                       first among the pairs inside, and among those with later
                                       groups; 0 unless effects.clustered */
@@ -4723,6 +4724,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int twisting;                  /* springs, and a pair has spinning friction */
     int uniform;                   /* one radius, one mass, one material, no fixed body */
     int fixed_count;
+    int unlike;                    /* number of bodies that pairs do not see as lone spheres */
     int tight;                     /* some body is so long that candidates are tested by more than
                                       bounding spheres */
     int ignoring;                  /* 1: some pair of materials is ignored (dem_pair) */
@@ -7061,12 +7063,6 @@ DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || (shape->lone && demi_response_is(w, DEMI_PRESSING));
 }
-/* Returns the number of bodies with a shape; 0 if pairs see all of these as lone spheres. */
-static int demi_unlike_spheres(const dem_world *w) {
-    int k, any = 0;
-    for (k = 0; k < w->shape_count; k++) any |= !w->shapes[k].lone;
-    return any || !demi_response_is(w, DEMI_PRESSING) ? w->bodies.shaped : 0;
-}
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
 }
@@ -7322,10 +7318,11 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-/* The half axes of an ellipsoid or a sphere, m, which has three equal ones; and its matrix. */
+/* Half axes of an ellipsoid, m; those of a sphere are equal. */
 DEM_INLINE dem_vec3 demi_part_axes(const demi_part *p) {
     return p->kind == DEMI_BALL ? demi_v(p->radius, p->radius, p->radius) : p->axes;
 }
+/* Q of an ellipsoid or a sphere, m2. */
 static demi_sym demi_part_matrix(const demi_part *p) {
     return demi_ellipsoid_matrix(p->q, demi_part_axes(p));
 }
@@ -14940,7 +14937,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->balls,
-                             !w->effects.clustered && demi_unlike_spheres(w) ? n : 0) &&
+                             !w->effects.clustered && w->effects.unlike ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
                     DEMI_GROW(w, near->hit, n))) &&
@@ -15069,7 +15066,7 @@ static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int 
         n = DEMI_MAX(n, crowd[d]);
         n += n ? n/4 + 16 : 0;
         if (d < listed && w->bodies.ghost) n = DEMI_MAX(n, demi_places_most(w, d));
-        if (d < listed && w->bodies.shaped) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
+        if (d < listed && w->effects.unlike) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
         first[d + 1] = first[d] + n;
     }
 }
@@ -15329,9 +15326,9 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
     old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
     for (e = 0; e < used; e++) m[e*stride] = old[e*last_stride];
 }
-/* Selects the pairs of spheres of the pruned list from a group's candidates, without a branch.
-   Writes them from entry p on and returns their end, or -1 if there is no room. mixed: 1 if there
-   are also other bodies, whose pairs are left out. */
+/* Selects the pairs of lone spheres of the pruned list from a group's candidates. Writes them from
+   entry p on and returns their end, or -1 if there is no room. mixed: 1 if there are also other
+   bodies, whose pairs are left out. */
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
@@ -15350,7 +15347,7 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
         const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
         out[p] = k;
         p += (dx*dx + dy*dy + dz*dz < cut*cut) &
-            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]) ||
+            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]) ||      /* often: no lookup */
              (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])));
     }
     return k < end ? -1 : p;
@@ -15447,7 +15444,7 @@ static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, 
 }
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
     if (w->effects.clustered) return demi_near_pick_balls(w, list, begin, end, d, p);
-    return demi_unlike_spheres(w) ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+    return w->effects.unlike ? demi_near_pick_as(w, list, begin, end, d, p, 1)
         : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
 /* As demi_near_pick for all other pairs: tests the gap of their surfaces. */
@@ -15708,7 +15705,7 @@ static void demi_domain_near(dem_world *w, int d) {
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
         const int first = p;
         if (l) domain->near_next_shaped_cross = p;
-        if (demi_unlike_spheres(w)) p = demi_near_pick_shaped(w, list, begin, end, d, p);
+        if (w->effects.unlike) p = demi_near_pick_shaped(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
         p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
@@ -15784,7 +15781,7 @@ static void demi_near_choose(dem_world *w) {
             touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
             candidates += domain->own + domain->cross;
         }
-        if (demi_unlike_spheres(w)) candidates *= 6;   /* support points, some gaps */
+        if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */
         longer = sqrt((0.15*candidates + near)*dt/
                       (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
@@ -15953,9 +15950,10 @@ static void demi_effects(dem_world *w) {
         w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
         w->effects.uniform &= w->bodies.material[i] == w->bodies.material[0];
     }
-    w->effects.tight = 0;
+    w->effects.tight = w->effects.unlike = 0;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const demi_shape *shape = demi_shape_of(w, i);
+        w->effects.unlike += !demi_lone(w, i);
         w->effects.uniform &= w->bodies.shape[i] == w->bodies.shape[0];
         w->effects.tight |= shape && shape->radius > 2*shape->equal;
     }
@@ -16013,9 +16011,10 @@ static int demi_spins(const dem_world *w) {
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
-   numbers of threads. It depends only on the numbers of bodies, so bits do not depend on threads.
-   shaped: those that are not spheres. Each costs about as much as eight spheres, so a few thousand
-   need several groups for each thread: where bodies fall, all contacts may be in the lowest one. */
+   numbers of threads. It depends only on the scene, so bits do not depend on threads. shaped: the
+   number of bodies that pairs do not see as lone spheres. Such a body costs about as much as eight
+   spheres, so a few thousand need several groups for each thread: where bodies fall, all contacts
+   may be in the lowest one. */
 static int demi_domains_for(int count, int shaped) {
     const int work = count + 7*shaped;
     int n = 1;
@@ -16243,7 +16242,7 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_weigh(dem_world *w) {
     /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
        body of another shape too, and the contact of such a body more */
-    const double kept = demi_unlike_spheres(w) ? 16 : 4;
+    const double kept = w->effects.unlike ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
@@ -16262,7 +16261,7 @@ static void demi_domains_weigh(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->bodies.count, demi_unlike_spheres(w));
+    w->domain_count = demi_domains_for(w->bodies.count, w->effects.unlike);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);
@@ -21195,8 +21194,9 @@ static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(D
    Contact points of ellipsoids with ellipsoids and spheres ("eggs" in names), a tile of pairs at a
    time. >>kept asks for pairs in the order of its list. A tile is filled with the next pairs whose
    bounding spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all
-   of them in vectors. From the parameter of the step before, one is nearly always enough; the
-   others are solved individually from the start. Owns nothing; the tile belongs to the caller.
+   of them in vectors. With the parameter of the step before as its start, one iteration is nearly
+   always enough; the other pairs are solved individually. Owns nothing; the tile belongs to the
+   caller.
    --------------------------------------------------------------------------------------------- */
 
 /* True if a body is an ellipsoid or a sphere. */
@@ -21214,28 +21214,33 @@ static int demi_eggs_exist(const dem_world *w) {
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
     return any;
 }
-/* Returns its radius of equal volume, m. */
+/* Returns the radius of the sphere with the volume of such a body, m. */
 DEM_INLINE double demi_egg_equal(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return (double)(shape ? shape->equal*demi_scale_of(w, body, shape)
                           : w->bodies.pos[4*body + 3]);
 }
-enum { DEMI_EGGS = 2*DEMI_LANES };             /* pairs of a tile */
-/* What one iteration has found. */
-enum { DEMI_EGGS_APART, DEMI_EGGS_KNOWN, DEMI_EGGS_UNFINISHED };
+/* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
+   prefetched. */
+enum { DEMI_EGGS = 16, DEMI_EGGS_AHEAD = 6 };
+/* What one iteration has found: no contact, a contact, or that more iterations are needed. */
+enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
 /* A tile of pairs, as a structure of arrays. Sides: 0 body a, 1 body b. */
 typedef struct demi_egg_tile {
     dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
     double r[3][DEMI_EGGS];        /* m, from a to b */
     double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
-    double range[DEMI_EGGS], far[DEMI_EGGS];   /* m, of the law; times the distance, m2 */
+    double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
     double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
-    double found[DEMI_EGGS];       /* DEMI_EGGS_...; the rest as in demi_meet and demi_eggs_set */
+    /* results. found: DEMI_EGGS_..., a double, so that all columns have one width; the others as in
+       demi_meet and demi_eggs_keep */
+    double found[DEMI_EGGS];
     double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
     double s[3][DEMI_EGGS], v[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
     int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
-    const demi_kept *old;          /* old contacts before it are of earlier bodies */
+    const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
+                                      the last match */
 } demi_egg_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -21267,15 +21272,15 @@ DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet 
     demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
     demi_eggs_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
 }
-/* One iteration for row q, as in demi_meet_solve. Without a start value, the plane normal to the
-   line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights along that line, so
-   if the plane separates the two, they are apart. */
+/* One iteration for row q. It ends as the first of demi_meet_solve does. Without a start value, the
+   plane normal to the line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights
+   along that line, so if the plane separates the two, they are apart. */
 DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
     const demi_sym A = demi_egg_matrix(t, 0, q), B = demi_egg_matrix(t, 1, q);
     const demi_d3 r = demi_eggs_at(t->r, q);
     const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
     const int fresh = !(t->l[q] > 0);
-    const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->far[q]);
+    const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->range[q]*t->d[q]);
     demi_meet m, n;
     int out, still;
     m.l = fresh ? demi_meet_start(ha, hb) : t->l[q];
@@ -21287,7 +21292,8 @@ DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
     still = !out & (m.fa + m.fb > 0) & (fabs(m.u) < DEMI_MEET_NEAR);
     if (still) m = n;
     demi_eggs_keep(t, q, m);
-    t->found[q] = apart ? 0.0 : still | out ? 1.0 : 2.0;       /* DEMI_EGGS_... */
+    t->found[q] = apart ? (double)DEMI_EGGS_APART
+        : still | out ? (double)DEMI_EGGS_FOUND : (double)DEMI_EGGS_OPEN;
 }
 DEMI_CLONES static void demi_eggs_solve(demi_egg_tile *DEMI_RESTRICT t, int full) {
     DEMI_ROWS(full) demi_eggs_solve_one(t, q); DEMI_ROWS_END
@@ -21303,8 +21309,8 @@ DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, 
     t->axes[side][0][k] = axes.x; t->axes[side][1][k] = axes.y; t->axes[side][2][k] = axes.z;
     return DEMI_MIN(axes.x, DEMI_MIN(axes.y, axes.z));
 }
-/* Puts the rest into row k. gap: m, from a to b; lambda: of the step before, 0: unknown; range: m,
-   of the law; thin: sum of the least half axes, m. */
+/* Puts all but the two bodies into row k. gap: m, from a to b; lambda: of the step before, 0:
+   unknown; range: m, of the law; thin: sum of the least half axes, m. */
 DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lambda, double range,
                               dem_real thin) {
     const double most = range > 0 ? 1 + range/(double)thin : 1;
@@ -21313,7 +21319,7 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
     t->l[k] = lambda;
     t->most[k] = most*most;
     t->range[k] = range;
-    t->far[k] = range > 0 ? range*demi_d3_length(demi_d3_of(gap)) : 0;
+    t->d[k] = range > 0 ? demi_d3_length(demi_d3_of(gap)) : 0;
 }
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
 DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
@@ -21324,6 +21330,17 @@ DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int 
         return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
     return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
                         demi_scale(shape->axes, radius/shape->radius));
+}
+/* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
+DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
+    const demi_kept *o;
+    while (t->old < last && t->old->a < a) t->after = ++t->old;
+    for (o = t->after; o < last && o->a == a && o->b != b;) o++;
+    if (o == last || o->a != a)                 /* then those before that */
+        for (o = t->old; o < t->after && o->b != b;) o++;
+    if (o == last || o->a != a || o->b != b) return 0;
+    t->after = o + 1;
+    return o;
 }
 /* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
    d, and does one iteration for all of them. */
@@ -21338,18 +21355,15 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
         const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
         const dem_real far = radii + (dem_real)w->margin.reach;
         dem_real thin;
-        if (p + 6 < end) {
-            const int next = w->near.b[base + p + 6];
+        if (p + DEMI_EGGS_AHEAD < end) {
+            const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
             DEMI_FETCH(w->bodies.pos + 4*next);
             DEMI_FETCH(w->bodies.orient + 4*next);
         }
         if (!(demi_dot(r, r) < far*far) || !demi_eggs_are(w, a, b)) continue;
         k = t->count++;
-        for (o = t->old; o < last && o->a < a;) o++;
-        t->old = o;
-        DEMI_FETCH(o + 6);
-        while (o < last && o->a == a && o->b != b) o++;
-        if (o == last || o->a != a) o = 0;
+        o = demi_eggs_old(t, last, a, b);
+        if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
         t->entry[k] = p;
         t->from[k] = o ? (int32_t)(o - now) : -1;
         thin = demi_egg_body_put(w, t, k, 0, a);
@@ -21371,14 +21385,13 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
 static int demi_eggs_meet(demi_egg_tile *t, int k) {
     demi_meet m;
     if (!(t->found[k] > DEMI_EGGS_APART)) return 0;
-    if (t->found[k] > DEMI_EGGS_KNOWN) {
+    if (t->found[k] > DEMI_EGGS_FOUND) {
         m.l = t->l[k];
         demi_meet_solve(demi_egg_matrix(t, 0, k), demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k),
                         t->most[k], DEMI_MEET_NEAR, &m);
         demi_eggs_keep(t, k, m);
     }
-    return t->f[k] < 1 || (t->range[k] > 0 && t->far[k] - t->far[k]/t->w0[k] <
-                                               t->range[k]*t->range[k]);
+    return t->f[k] < 1 || (t->range[k] > 0 && t->d[k]*(1 - 1/t->w0[k]) < t->range[k]);
 }
 /* Returns the overlap of [RUB15] 3.2 for row k, m. */
 static double demi_eggs_chord(demi_egg_tile *t, int k) {
@@ -21426,11 +21439,12 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* Writes the contact of two ellipsoids, row k of a tile, to c; one of them may be a sphere. ra, rb:
-   m, radii of equal volume. p, q: the two, read unless the overlap is the conservative one. */
+/* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
+   be a sphere. ra, rb: m, radii of spheres of equal volume. p, q: the two; not read if the overlap
+   is the conservative one. */
 DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, double ra, double rb,
                               const demi_part *p, const demi_part *q, demi_kept *c) {
-    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];     /* h_A + h_B */
+    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];
     c->lambda = l;
     c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
     c->deep = (dem_real)(left/DEMI_MIN(l, 1 - l));
@@ -21444,9 +21458,6 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, doubl
             ? demi_eggs_chord(t, k) : left*both);
     }
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
-    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
-    /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_d3_real(demi_eggs_at(t->r, k)));
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
@@ -21459,7 +21470,8 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     demi_eggs_solve_one(&t, 0);
     if (!demi_eggs_meet(&t, 0)) return 0;
     demi_eggs_set(w, &t, 0, demi_part_equal(p), demi_part_equal(q), p, q, c);
-    c->arm_a = demi_add(p->centre, c->arm_a);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
@@ -22157,6 +22169,9 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         q = demi_part_now(w, c->b, 0);
     }
     demi_eggs_set(w, t, k, demi_egg_equal(w, c->a), demi_egg_equal(w, c->b), &p, &q, c);
+    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
 }
 /* Finds the contacts of one candidate pair, then merges them and passes grip on. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
@@ -22457,7 +22472,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     demi_egg_tile own, cross;
     own.end = cross.end = eggs ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
-    own.old = cross.old = old;
+    own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
@@ -36202,7 +36217,7 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 21 };
+enum { DEMI_CHECKPOINT_VERSION = 22 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -36968,7 +36983,8 @@ static int demi_numbers_check(const demi_reader *r) {
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
              (t->effects.twisting & ~1) || (t->effects.twisting && t->desc.law) ||
              t->effects.clustered < 0 || t->effects.clustered > 1 ||
-             (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
+             /* 0 although there are clusters: their shapes were added after the last rebuild */
+             (t->stage.list_valid && t->effects.clustered > demi_clustered(t)) ||
              t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "laws in force", -1);
@@ -37067,7 +37083,7 @@ static dem_real demi_quat_size2(const dem_real *q) {
 static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
     const int lost = demi_body_lost(t);
-    int i, k, shaped = 0;
+    int i, k, shaped = 0, unlike = 0;
     if (lost >= 0) return demi_lie(r, "state of body", lost);
     for (i = 0; i < t->bodies.count; i++) {
         if (!(t->bodies.pos[4*i + 3] > 0) ||
@@ -37085,10 +37101,12 @@ static int demi_bodies_sane(const demi_reader *r) {
             return demi_lie(r, "orientation of body", i);
         if (!t->bodies.shape[i]) continue;
         shaped++;
+        unlike += !demi_lone(t, i);
         for (k = 0; k < 3; k++)
             if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "inertia of body", i);
     }
-    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
+    return shaped == t->bodies.shaped && (!t->stage.list_valid || unlike == t->effects.unlike)
+        ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
 /* True if the spheres of entry `at` of the pruned list belong to its bodies. */
 static int demi_balls_own(const dem_world *t, int at) {
@@ -39528,7 +39546,9 @@ static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
     if (!w->bodies.shaped) return demi_look_off(e, "all bodies are spheres");
-    return demi_say(e, 1, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
+    return demi_say(e, 1, w->effects.unlike ? "%d of %d bodies are not spheres"
+                    : "%d of %d bodies are clusters of one sphere, computed as spheres",
+                    w->bodies.shaped, w->bodies.count);
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
     if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
@@ -40108,7 +40128,10 @@ static void demi_options_report(const dem_world *w, FILE *out) {
    any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
-    if (w->bodies.shaped)
+    if (w->bodies.shaped && !w->effects.unlike)
+        fprintf(out, "           %d bodies are clusters of one sphere, computed as spheres: "
+                "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
+    else if (w->bodies.shaped)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],

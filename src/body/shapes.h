@@ -517,12 +517,6 @@ DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return !shape || (shape->lone && demi_response_is(w, DEMI_PRESSING));
 }
-/* Returns the number of bodies with a shape; 0 if pairs see all of these as lone spheres. */
-static int demi_unlike_spheres(const dem_world *w) {
-    int k, any = 0;
-    for (k = 0; k < w->shape_count; k++) any |= !w->shapes[k].lone;
-    return any || !demi_response_is(w, DEMI_PRESSING) ? w->bodies.shaped : 0;
-}
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
 }
@@ -778,10 +772,11 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-/* The half axes of an ellipsoid or a sphere, m, which has three equal ones; and its matrix. */
+/* Half axes of an ellipsoid, m; those of a sphere are equal. */
 DEM_INLINE dem_vec3 demi_part_axes(const demi_part *p) {
     return p->kind == DEMI_BALL ? demi_v(p->radius, p->radius, p->radius) : p->axes;
 }
+/* Q of an ellipsoid or a sphere, m2. */
 static demi_sym demi_part_matrix(const demi_part *p) {
     return demi_ellipsoid_matrix(p->q, demi_part_axes(p));
 }

@@ -3,8 +3,9 @@
    Contact points of ellipsoids with ellipsoids and spheres ("eggs" in names), a tile of pairs at a
    time. >>kept asks for pairs in the order of its list. A tile is filled with the next pairs whose
    bounding spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all
-   of them in vectors. From the parameter of the step before, one is nearly always enough; the
-   others are solved individually from the start. Owns nothing; the tile belongs to the caller.
+   of them in vectors. With the parameter of the step before as its start, one iteration is nearly
+   always enough; the other pairs are solved individually. Owns nothing; the tile belongs to the
+   caller.
    --------------------------------------------------------------------------------------------- */
 
 /* True if a body is an ellipsoid or a sphere. */
@@ -22,28 +23,33 @@ static int demi_eggs_exist(const dem_world *w) {
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
     return any;
 }
-/* Returns its radius of equal volume, m. */
+/* Returns the radius of the sphere with the volume of such a body, m. */
 DEM_INLINE double demi_egg_equal(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return (double)(shape ? shape->equal*demi_scale_of(w, body, shape)
                           : w->bodies.pos[4*body + 3]);
 }
-enum { DEMI_EGGS = 2*DEMI_LANES };             /* pairs of a tile */
-/* What one iteration has found. */
-enum { DEMI_EGGS_APART, DEMI_EGGS_KNOWN, DEMI_EGGS_UNFINISHED };
+/* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
+   prefetched. */
+enum { DEMI_EGGS = 16, DEMI_EGGS_AHEAD = 6 };
+/* What one iteration has found: no contact, a contact, or that more iterations are needed. */
+enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
 /* A tile of pairs, as a structure of arrays. Sides: 0 body a, 1 body b. */
 typedef struct demi_egg_tile {
     dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
     double r[3][DEMI_EGGS];        /* m, from a to b */
     double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
-    double range[DEMI_EGGS], far[DEMI_EGGS];   /* m, of the law; times the distance, m2 */
+    double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
     double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
-    double found[DEMI_EGGS];       /* DEMI_EGGS_...; the rest as in demi_meet and demi_eggs_set */
+    /* results. found: DEMI_EGGS_..., a double, so that all columns have one width; the others as in
+       demi_meet and demi_eggs_keep */
+    double found[DEMI_EGGS];
     double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
     double s[3][DEMI_EGGS], v[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
     int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
-    const demi_kept *old;          /* old contacts before it are of earlier bodies */
+    const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
+                                      the last match */
 } demi_egg_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -75,15 +81,15 @@ DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet 
     demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
     demi_eggs_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
 }
-/* One iteration for row q, as in demi_meet_solve. Without a start value, the plane normal to the
-   line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights along that line, so
-   if the plane separates the two, they are apart. */
+/* One iteration for row q. It ends as the first of demi_meet_solve does. Without a start value, the
+   plane normal to the line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights
+   along that line, so if the plane separates the two, they are apart. */
 DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
     const demi_sym A = demi_egg_matrix(t, 0, q), B = demi_egg_matrix(t, 1, q);
     const demi_d3 r = demi_eggs_at(t->r, q);
     const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
     const int fresh = !(t->l[q] > 0);
-    const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->far[q]);
+    const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->range[q]*t->d[q]);
     demi_meet m, n;
     int out, still;
     m.l = fresh ? demi_meet_start(ha, hb) : t->l[q];
@@ -95,7 +101,8 @@ DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
     still = !out & (m.fa + m.fb > 0) & (fabs(m.u) < DEMI_MEET_NEAR);
     if (still) m = n;
     demi_eggs_keep(t, q, m);
-    t->found[q] = apart ? 0.0 : still | out ? 1.0 : 2.0;       /* DEMI_EGGS_... */
+    t->found[q] = apart ? (double)DEMI_EGGS_APART
+        : still | out ? (double)DEMI_EGGS_FOUND : (double)DEMI_EGGS_OPEN;
 }
 DEMI_CLONES static void demi_eggs_solve(demi_egg_tile *DEMI_RESTRICT t, int full) {
     DEMI_ROWS(full) demi_eggs_solve_one(t, q); DEMI_ROWS_END
@@ -111,8 +118,8 @@ DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, 
     t->axes[side][0][k] = axes.x; t->axes[side][1][k] = axes.y; t->axes[side][2][k] = axes.z;
     return DEMI_MIN(axes.x, DEMI_MIN(axes.y, axes.z));
 }
-/* Puts the rest into row k. gap: m, from a to b; lambda: of the step before, 0: unknown; range: m,
-   of the law; thin: sum of the least half axes, m. */
+/* Puts all but the two bodies into row k. gap: m, from a to b; lambda: of the step before, 0:
+   unknown; range: m, of the law; thin: sum of the least half axes, m. */
 DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lambda, double range,
                               dem_real thin) {
     const double most = range > 0 ? 1 + range/(double)thin : 1;
@@ -121,7 +128,7 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
     t->l[k] = lambda;
     t->most[k] = most*most;
     t->range[k] = range;
-    t->far[k] = range > 0 ? range*demi_d3_length(demi_d3_of(gap)) : 0;
+    t->d[k] = range > 0 ? demi_d3_length(demi_d3_of(gap)) : 0;
 }
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
 DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
@@ -132,6 +139,17 @@ DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int 
         return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
     return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
                         demi_scale(shape->axes, radius/shape->radius));
+}
+/* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
+DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
+    const demi_kept *o;
+    while (t->old < last && t->old->a < a) t->after = ++t->old;
+    for (o = t->after; o < last && o->a == a && o->b != b;) o++;
+    if (o == last || o->a != a)                 /* then those before that */
+        for (o = t->old; o < t->after && o->b != b;) o++;
+    if (o == last || o->a != a || o->b != b) return 0;
+    t->after = o + 1;
+    return o;
 }
 /* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
    d, and does one iteration for all of them. */
@@ -146,18 +164,15 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
         const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
         const dem_real far = radii + (dem_real)w->margin.reach;
         dem_real thin;
-        if (p + 6 < end) {
-            const int next = w->near.b[base + p + 6];
+        if (p + DEMI_EGGS_AHEAD < end) {
+            const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
             DEMI_FETCH(w->bodies.pos + 4*next);
             DEMI_FETCH(w->bodies.orient + 4*next);
         }
         if (!(demi_dot(r, r) < far*far) || !demi_eggs_are(w, a, b)) continue;
         k = t->count++;
-        for (o = t->old; o < last && o->a < a;) o++;
-        t->old = o;
-        DEMI_FETCH(o + 6);
-        while (o < last && o->a == a && o->b != b) o++;
-        if (o == last || o->a != a) o = 0;
+        o = demi_eggs_old(t, last, a, b);
+        if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
         t->entry[k] = p;
         t->from[k] = o ? (int32_t)(o - now) : -1;
         thin = demi_egg_body_put(w, t, k, 0, a);
@@ -179,14 +194,13 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
 static int demi_eggs_meet(demi_egg_tile *t, int k) {
     demi_meet m;
     if (!(t->found[k] > DEMI_EGGS_APART)) return 0;
-    if (t->found[k] > DEMI_EGGS_KNOWN) {
+    if (t->found[k] > DEMI_EGGS_FOUND) {
         m.l = t->l[k];
         demi_meet_solve(demi_egg_matrix(t, 0, k), demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k),
                         t->most[k], DEMI_MEET_NEAR, &m);
         demi_eggs_keep(t, k, m);
     }
-    return t->f[k] < 1 || (t->range[k] > 0 && t->far[k] - t->far[k]/t->w0[k] <
-                                               t->range[k]*t->range[k]);
+    return t->f[k] < 1 || (t->range[k] > 0 && t->d[k]*(1 - 1/t->w0[k]) < t->range[k]);
 }
 /* Returns the overlap of [RUB15] 3.2 for row k, m. */
 static double demi_eggs_chord(demi_egg_tile *t, int k) {

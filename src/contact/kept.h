@@ -499,6 +499,9 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         q = demi_part_now(w, c->b, 0);
     }
     demi_eggs_set(w, t, k, demi_egg_equal(w, c->a), demi_egg_equal(w, c->b), &p, &q, c);
+    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
 }
 /* Finds the contacts of one candidate pair, then merges them and passes grip on. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
@@ -799,7 +802,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     demi_egg_tile own, cross;
     own.end = cross.end = eggs ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
-    own.old = cross.old = old;
+    own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);

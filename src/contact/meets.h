@@ -34,11 +34,12 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* Writes the contact of two ellipsoids, row k of a tile, to c; one of them may be a sphere. ra, rb:
-   m, radii of equal volume. p, q: the two, read unless the overlap is the conservative one. */
+/* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
+   be a sphere. ra, rb: m, radii of spheres of equal volume. p, q: the two; not read if the overlap
+   is the conservative one. */
 DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, double ra, double rb,
                               const demi_part *p, const demi_part *q, demi_kept *c) {
-    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];     /* h_A + h_B */
+    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];
     c->lambda = l;
     c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
     c->deep = (dem_real)(left/DEMI_MIN(l, 1 - l));
@@ -52,9 +53,6 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, doubl
             ? demi_eggs_chord(t, k) : left*both);
     }
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
-    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
-    /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_d3_real(demi_eggs_at(t->r, k)));
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
@@ -67,7 +65,8 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     demi_eggs_solve_one(&t, 0);
     if (!demi_eggs_meet(&t, 0)) return 0;
     demi_eggs_set(w, &t, 0, demi_part_equal(p), demi_part_equal(q), p, q, c);
-    c->arm_a = demi_add(p->centre, c->arm_a);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }

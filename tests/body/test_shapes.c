@@ -440,7 +440,7 @@ static void meeting_tests(void) {
         }
     }
 
-    TEST("each contact of a world of ellipsoids is that of the two alone, after sudden turns too") {
+    TEST("each contact of a world of ellipsoids is that of the two alone, also after sudden rotations") {
         enum { PAIRS = 70 };
         int kind, k, round;
         for (kind = 0; kind < 3; kind++) {
@@ -464,6 +464,9 @@ static void meeting_tests(void) {
                 body[k] = k%7 ? dem_body_add(world, m, dem_shape_ellipsoid_add(world, e[k].semi_axes), e[k].position,
                                              e[k].orientation)
                               : dem_sphere_add(world, m, DEM_R(1e-3), e[k].position);
+                if (k%2 == 0)                   /* beside it one whose bounding sphere overlaps, but which is apart */
+                    dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(4e-4, 4e-4, 1e-3)),
+                                 at(0.01*(k/2) + 1.9e-3, 0, 0), upright());
             }
             for (round = 0; round < 3; round++) {
                 int count;
