@@ -1,6 +1,8 @@
 # sh bench/instructions.sh [SCENE...]: instructions per body and step in each part of dem.h, counted by callgrind (make
-# bench-instructions). Writes the table to build/out/instructions/page.md. Scenes are those of build/bench --count. They are
-# compiled for x86-64 processors since 2013 (haswell), because valgrind does not know the instructions of all later ones.
+# bench-instructions). SCENE is a name that build/bench --count accepts: bed, an effect on the bed, or walls.KIND. Writes the
+# table to build/out/instructions/page.md. The program is compiled for Haswell (AVX2, 2013), because valgrind does not know
+# all instructions that -march=native may use. Ten steps are counted. An inlined function counts for the part that calls
+# it; parts below 2 % in each column are summed as "other"; in walls.* the counts are divided by the sliding beads.
 if ! command -v valgrind > /dev/null 2>&1; then echo "SKIP: valgrind not found (Debian package valgrind)"; exit 0; fi
 dir=build/out/instructions
 mkdir -p $dir
