@@ -34,6 +34,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import types
 import warnings
 import weakref
 try:
@@ -694,9 +695,8 @@ class Handle:
 
     def close(self):
         """Ends it and frees its memory; further calls raise an error. Leaving a `with` block does the same."""
-        at, self._at = self._at, None
-        if at is not None:
-            return self._free(at)
+        if self._at is not None:
+            self._free()
 
     def __enter__(self):
         return self
@@ -711,25 +711,46 @@ class Handle:
             pass
 
 
+class _Film:
+    """An open replay of the library; at: None when it is closed."""
+
+    def __init__(self, at):
+        self.at = at
+
+
 class _Memory:
-    """Destroys a world when neither the World nor a view of its arrays is left."""
+    """A world of the library, with its open replays. When neither the World nor a view of its arrays is left, completes
+    the replays and destroys the world. The garbage collector ends the objects of a cycle in any order, so a World and a
+    Replay read here whether they are open."""
 
     def __init__(self, at, context):
-        self.at, self.context = at, context
+        self.at, self.context, self.films = at, context, set()
+
+    def complete(self, film):
+        at, film.at = film.at, None
+        self.films.discard(film)
+        return _lib.dem_replay_close(at)
 
     def __del__(self):
         try:
-            _lib.dem_world_destroy(self.at)
+            for film in list(self.films):
+                self.complete(film)
+            at, self.at = self.at, None
+            _lib.dem_world_destroy(at)
         except Exception:
             pass
 
 
 class WorldBase(Handle):
     """What a World has beside the functions of dem.h."""
+    _memory = None
+
+    @property
+    def _at(self):
+        return self._memory.at if self._memory else None
 
     def _create(self, desc):
         self._context = _Context(self)
-        self._open = set()                          # replays, which close() completes
         functions = {path[0] for path in desc._functions}
         if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
             desc.threads = 1                        # Python runs one function at a time
@@ -743,33 +764,44 @@ class WorldBase(Handle):
             desc._functions["body_force",] = both
         self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
         bound = self._bound(desc, "desc")
-        self._at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
-        if not self._at:
+        at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
+        if not at:
             raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
-        self._memory = _Memory(self._at, self._context)
+        self._memory = _Memory(at, self._context)
 
     @classmethod
     def _borrow(cls, pointer, context):
         """A world that belongs to the library: a copy that a function of yours sees."""
         world = cls.__new__(cls)
-        world._at, world._context, world._memory, world._open = pointer, context, None, set()
+        world._context, world._memory = context, types.SimpleNamespace(at=pointer, films=())
         return world
 
     def _text(self):
         return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
 
-    def _free(self, at):
-        for replay in list(self._open):
-            replay.close()
-        self._memory = None                         # views of arrays may hold it longer
+    def _free(self):
+        try:
+            for film in list(self._memory.films):
+                result = self._memory.complete(film)
+                if result:
+                    self._raise(_ERRORS[result])
+        finally:
+            self._memory = None                     # views of arrays may hold it longer
 
 
 class ReplayBase(Handle):
-    """What a Replay has beside the functions of dem.h."""
+    """What a Replay has beside the functions of dem.h. It is recorded until it or its world is closed."""
 
     def __init__(self, at, world, path):
-        self._at, self._world, self._context, self._memory, self.path = at, world, world._context, world._memory, path
-        world._open.add(self)
+        self._film, self._world, self._context, self._memory, self.path = _Film(at), world, world._context, world._memory, path
+        self._memory.films.add(self._film)
+
+    @property
+    def _at(self):
+        return self._film.at
+
+    def __del__(self):
+        pass                                        # the world goes on recording
 
     def _repr_html_(self):
         return Page(self.path)._repr_html_() if self._at is None else "<p>close the replay to see it</p>"
@@ -777,9 +809,8 @@ class ReplayBase(Handle):
     def _text(self):
         return self._world._text()
 
-    def _free(self, at):
-        self._world._open.discard(self)
-        result = _lib.dem_replay_close(at)
+    def _free(self):
+        result = self._memory.complete(self._film)
         if result:
             self._raise(_ERRORS[result])
 
@@ -793,7 +824,8 @@ class SlabsBase(Handle):
     def _text(self):
         return (_lib.dem_slabs_error_get(self._at) or b"").decode(errors="replace")
 
-    def _free(self, at):
+    def _free(self):
+        at, self._at = self._at, None
         _lib.dem_slabs_destroy(at)
 
 

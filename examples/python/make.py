@@ -811,6 +811,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import types
 import warnings
 import weakref
 try:

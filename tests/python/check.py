@@ -220,6 +220,31 @@ def _():
     same(os.path.getsize(path) > 1000, True, "the replay is complete")
 
 
+@test("a world, its replay, its slabs and its memory may be ended in any order, as the garbage collector does")
+def _():
+    path = os.path.join(WORK.name, "order.html")
+    code = ("import itertools, os, sys; sys.path.insert(0, %r); import dem\n"
+            "for order in itertools.permutations(range(4)):\n"
+            "    world = dem.World(gravity=(0, 0, -9.81))\n"
+            "    world.sphere(world.material(density=2500, young=1e7, restitution=0.5), 0.01, (0, 0, 1))\n"
+            "    replay = world.replay(%r, interval=0.001)\n"
+            "    world.run(0.01)\n"
+            "    parts = world, replay, world.slabs(axis=0, count=2), world._memory\n"
+            "    for part in order:\n"
+            "        parts[part].__del__()\n"
+            "    for call in (lambda: world.step(1), replay.frame_write):\n"
+            "        try:\n"
+            "            call()\n"
+            "            print('no error after', order)\n"
+            "        except dem.Error:\n"
+            "            pass\n"
+            "    with open(%r) as file:\n"
+            "        print(file.read().rstrip()[-9:])\n" % (PYTHON, path, path))
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True,
+                          env=dict(os.environ, MALLOC_PERTURB_="165"))   # memory that is freed is overwritten
+    same((done.returncode, done.stderr, set(done.stdout.split())), (0, "", {"</script>"}))
+
+
 @test("a replay that nothing refers to records the run until its world is closed")
 def _():
     sizes = []
