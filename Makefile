@@ -243,7 +243,7 @@ build/rooms/made: $(ROOMS) src/open.awk src/open.sh
 build/rooms/private.h $(FOLDERS:%=build/rooms/%.c): build/rooms/made ;
 $(ROOMS_O): build/rooms/%.o: build/rooms/%.c build/flags
 	$(COMPILE) $(LEVEL) $(OMP) -c -o $@ $<
-# two tests need several domains of few bodies
+# some tests need several domains of few bodies
 build/rooms/small_%.o: build/rooms/%.c build/flags
 	$(COMPILE) $(LEVEL) $(OMP) -DDEM_DOMAIN_BODIES=16 -DDEM_THREADS_FIXED -c -o $@ $<
 SMALL_O := $(patsubst %/search.o,%/small_search.o,$(patsubst %/file.o,%/small_file.o,$(ROOMS_O)))
@@ -256,7 +256,7 @@ build/obj/test_own_law.o: OPEN =# compiles a law into dem.h
 define TEST
 build/obj/$(2).o: $(1) $(wildcard tests/*.h) $(HEADERS) build/rooms/private.h build/flags
 	$$(COMPILE) $$(LEVEL:-O2=-O1) $$(OMP) $$(OPEN) -c -o $$@ $(1)
-build/$(2): build/obj/$(2).o $(if $(filter test_own_law,$(2)),,$(if $(filter test_api test_feed,$(2)),$(SMALL_O),$(ROOMS_O)))
+build/$(2): build/obj/$(2).o $(if $(filter test_own_law,$(2)),,$(if $(filter test_api test_feed test_members,$(2)),$(SMALL_O),$(ROOMS_O)))
 	$$(CC) -o $$@ $$^ $$(LINK)
 endef
 $(foreach t,$(TEST_C) $(wildcard tests/hard/hard_*.c),$(eval $(call TEST,$(t),$(basename $(notdir $(t))))))

@@ -68,6 +68,7 @@
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
+       >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>meets             contact geometry of two bodies, and of a body on a wall, by shape
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
@@ -4202,7 +4203,8 @@ typedef struct demi_near {
     unsigned char *image;          /* as in demi_list */
     unsigned char *on;             /* likewise: 1: may have a contact history */
     int32_t *hit;                  /* likewise: entries of the group that touch, ascending */
-    demi_near_balls *balls;        /* null if all bodies are spheres, or effects.clustered */
+    demi_near_balls *balls;        /* null if pairs see all bodies as lone spheres, or
+                                      effects.clustered */
     dem_real *memory;              /* contact history of two spheres: w->memory_stride columns, 0
                                       while the pair does not touch */
     int32_t *row;                  /* row of species_coef; unused if all bodies are alike or there
@@ -4344,21 +4346,21 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
 
 /* A domain is a work group: a range of consecutive bodies, which are neighbours in space because
    bodies are sorted by cell. One thread computes a whole group. The number of groups and their
-   boundaries depend only on the numbers of bodies and of those that are not spheres. A contact
-   belongs to the group of its body with the lower index. A force on a body of a later group is
-   stored in cross_force, and that group adds it in the order of the list. So the number of threads
-   changes who computes, but never the order of a sum, and results have the same bits for any number
-   of threads. Each list is one array in which every group has its own segment, so threads never
-   wait for each other to allocate. A group whose segment is too short sets `overflow`, and the list
-   is built again with more room. */
+   boundaries depend only on the numbers of bodies and of those that pairs do not see as lone
+   spheres (demi_lone). A contact belongs to the group of its body with the lower index. A force on
+   a body of a later group is stored in cross_force, and that group adds it in the order of the
+   list. So the number of threads changes who computes, but never the order of a sum, and results
+   have the same bits for any number of threads. Each list is one array in which every group has its
+   own segment, so threads never wait for each other to allocate. A group whose segment is too short
+   sets `overflow`, and the list is built again with more room. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside the group, pairs with a body of a
                                       later group, wall elements */
     int near_own, near_cross, near_end;    /* pruned list: end of pairs inside; begin and end of
                                       pairs with later groups; */
-    int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
-                                      a body that is not a sphere */
+    int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for all other
+                                      pairs of bodies: >>kept finds their contacts */
     int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
                                       first among the pairs inside, and among those with later
                                       groups; 0 unless effects.clustered */
@@ -4722,6 +4724,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int twisting;                  /* springs, and a pair has spinning friction */
     int uniform;                   /* one radius, one mass, one material, no fixed body */
     int fixed_count;
+    int unlike;                    /* number of bodies that pairs do not see as lone spheres */
     int tight;                     /* some body is so long that candidates are tested by more than
                                       bounding spheres */
     int ignoring;                  /* 1: some pair of materials is ignored (dem_pair) */
@@ -7054,11 +7057,11 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-/* True if contacts see a body as a lone sphere: it is a sphere, or a cluster of one sphere, which
-   differs from it only by its moments of inertia and an orientation. */
+/* True if pairs see a body as a lone sphere: it is a sphere or, with springs, a cluster of one
+   sphere, which differs from it only by its moments of inertia and an orientation. */
 DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    return !shape || shape->lone;
+    return !shape || (shape->lone && demi_response_is(w, DEMI_PRESSING));
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
@@ -7119,127 +7122,117 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
        safe. The method of [RUB15] 3.2, shrinking both by W until they separate, ends at exactly
        this point and normal; its line V2 V3 has the direction QA K^-1 QB s. Test: "quartic and
        eigenvectors of [RUB15] converge to the same contact". --- */
-typedef struct demi_meet {
-    double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
-    double s[3], a[3], b[3];       /* s, QA s, QB s */
-    double v[3];                   /* K^-1 QB s */
-    int iterations;
-} demi_meet;
-
-static void demi_sym_times(const double *Q, const double *x, double *out) {  /* xx yy zz xy xz yz */
-    out[0] = Q[0]*x[0] + Q[3]*x[1] + Q[4]*x[2];
-    out[1] = Q[3]*x[0] + Q[1]*x[1] + Q[5]*x[2];
-    out[2] = Q[4]*x[0] + Q[5]*x[1] + Q[2]*x[2];
+/* A symmetric matrix, and a product with it. */
+typedef struct demi_sym { double xx, yy, zz, xy, xz, yz; } demi_sym;
+DEM_INLINE demi_d3 demi_sym_times(demi_sym Q, demi_d3 x) {
+    return demi_d(Q.xx*x.x + Q.xy*x.y + Q.xz*x.z, Q.xy*x.x + Q.yy*x.y + Q.yz*x.z,
+                  Q.xz*x.x + Q.yz*x.y + Q.zz*x.z);
 }
-static double demi_dot3(const double *a, const double *b) {
-    return a[0]*b[0] + a[1]*b[1] + a[2]*b[2];
-}
-/* Computes Q of an ellipsoid, m2: xx yy zz xy xz yz. */
-static void demi_ellipsoid_matrix(dem_quat q, dem_vec3 axes, double *Q) {
+/* Q of an ellipsoid, m2. */
+DEM_INLINE demi_sym demi_ellipsoid_matrix(dem_quat q, dem_vec3 axes) {
     const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
     const double A = (double)axes.x*(double)axes.x, B = (double)axes.y*(double)axes.y;
     const double C = (double)axes.z*(double)axes.z;
-    const double R[9] = {1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-                         2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-                         2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)};
-    Q[0] = A*R[0]*R[0] + B*R[1]*R[1] + C*R[2]*R[2];
-    Q[1] = A*R[3]*R[3] + B*R[4]*R[4] + C*R[5]*R[5];
-    Q[2] = A*R[6]*R[6] + B*R[7]*R[7] + C*R[8]*R[8];
-    Q[3] = A*R[0]*R[3] + B*R[1]*R[4] + C*R[2]*R[5];
-    Q[4] = A*R[0]*R[6] + B*R[1]*R[7] + C*R[2]*R[8];
-    Q[5] = A*R[3]*R[6] + B*R[4]*R[7] + C*R[5]*R[8];
-}
-static void demi_ball_matrix(dem_real r, double *Q) {
-    Q[0] = Q[1] = Q[2] = (double)r*(double)r;
-    Q[3] = Q[4] = Q[5] = 0;
+    const demi_d3 R = demi_d(1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y));
+    const demi_d3 S = demi_d(2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x));
+    const demi_d3 T = demi_d(2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y));
+    demi_sym Q;
+    Q.xx = A*R.x*R.x + B*R.y*R.y + C*R.z*R.z;
+    Q.yy = A*S.x*S.x + B*S.y*S.y + C*S.z*S.z;
+    Q.zz = A*T.x*T.x + B*T.y*T.y + C*T.z*T.z;
+    Q.xy = A*R.x*S.x + B*R.y*S.y + C*R.z*S.z;
+    Q.xz = A*R.x*T.x + B*R.y*T.y + C*R.z*T.z;
+    Q.yz = A*S.x*T.x + B*S.y*T.y + C*S.z*T.z;
+    return Q;
 }
 /* Returns sqrt(r.Q r): the support height of an ellipsoid along r, times the length of r. */
-static double demi_sym_height(const double *Q, const double *r) {
-    double t[3];
-    demi_sym_times(Q, r, t);
-    return sqrt(demi_dot3(r, t));
+DEM_INLINE double demi_sym_height(demi_sym Q, demi_d3 r) {
+    return sqrt(demi_d3_dot(r, demi_sym_times(Q, r)));
 }
 /* Returns an initial lambda: exact for spheres and for equal, parallel ellipsoids. */
-static double demi_meet_start(const double *A, const double *B, const double *r) {
-    const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
+DEM_INLINE double demi_meet_start(double ha, double hb) {
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
+}
+typedef struct demi_meet {
+    double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
+    demi_d3 s, a, v;               /* s, QA s, K^-1 QB s */
+    double u, C, step;             /* (fA - fB)/(fA + fB); C; the step of l that Newton's method
+                                      takes from here */
+    int iterations;
+} demi_meet;
+/* Evaluates the function at m->l: an iteration. */
+DEM_INLINE void demi_meet_at(demi_sym A, demi_sym B, demi_d3 r, demi_meet *m) {
+    const double l = m->l;
+    demi_sym K, J;
+    demi_d3 b;
+    double per, u;
+    K.xx = (1 - l)*A.xx + l*B.xx; K.yy = (1 - l)*A.yy + l*B.yy; K.zz = (1 - l)*A.zz + l*B.zz;
+    K.xy = (1 - l)*A.xy + l*B.xy; K.xz = (1 - l)*A.xz + l*B.xz; K.yz = (1 - l)*A.yz + l*B.yz;
+    J.xx = K.yy*K.zz - K.yz*K.yz; J.xy = K.yz*K.xz - K.xy*K.zz; J.xz = K.xy*K.yz - K.xz*K.yy;
+    J.yy = K.xx*K.zz - K.xz*K.xz; J.yz = K.xy*K.xz - K.xx*K.yz; J.zz = K.xx*K.yy - K.xy*K.xy;
+    per = 1/(K.xx*J.xx + K.xy*J.xy + K.xz*J.xz);   /* K^-1 = per J, by cofactors */
+    m->s = demi_d3_scale(demi_sym_times(J, r), per);
+    m->f = l*(1 - l)*demi_d3_dot(r, m->s);
+    m->a = demi_sym_times(A, m->s);
+    b = demi_sym_times(B, m->s);
+    m->fa = (1 - l)*(1 - l)*demi_d3_dot(m->s, m->a);
+    m->fb = l*l*demi_d3_dot(m->s, b);
+    m->v = demi_d3_scale(demi_sym_times(J, b), per);
+    m->u = u = (m->fa - m->fb)/(m->fa + m->fb);
+    m->C = demi_d3_dot(m->a, m->v);
+    /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
+    m->step = u*(15 - 4*u*u)*m->fa*m->fb/
+        ((15 - 9*u*u)*m->C*((1 - l)*m->fb + l*m->fa));
 }
 /* Takes the last step without another evaluation: s follows ds/dl = K^-1 (QA - QB) s =
    (s - v)/(1 - l), v = K^-1 QB s, and f its series to second order, f' = fA - fB, f'' = -2 C. The
    error is of the order of the step squared. */
-static void demi_meet_finish(const double *A, double C, double step, demi_meet *m) {
-    const double rate = step/(1 - m->l);
-    int k;
-    m->f += ((m->fa - m->fb) - C*step)*step;
-    for (k = 0; k < 3; k++) m->s[k] += rate*(m->s[k] - m->v[k]);
-    m->l += step;
+DEM_INLINE void demi_meet_finish(demi_sym A, demi_meet *m) {
+    const double rate = m->step/(1 - m->l);
+    m->f += ((m->fa - m->fb) - m->C*m->step)*m->step;
+    m->s = demi_d3_plus(m->s, rate, demi_d3_sub(m->s, m->v));
+    m->l += m->step;
     m->fa = m->fb = m->f;
-    demi_sym_times(A, m->s, m->a);
+    m->a = demi_sym_times(A, m->s);
 }
 /* Tolerance for |fA - fB|/(fA + fB). It costs no more than a larger one. Normals are accurate to
    1e-10 at an aspect ratio of 2, and to 4e-6 at worst, at 100. */
 #define DEMI_MEET_NEAR 1e-4
 /* Finds the maximum of f from m->l on, by Newton's method on ln(fA/fB) within the bracket lo, hi,
    until fA and fB agree to `near`. Ends early once f > enough: the two are then apart. */
-static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
-                            double near, demi_meet *m) {
-    double lo = 0, hi = 1, l = m->l;
-    int k;
+static void demi_meet_solve(demi_sym A, demi_sym B, demi_d3 r, double enough, double near,
+                            demi_meet *m) {
+    double lo = 0, hi = 1;
     for (m->iterations = 1;; m->iterations++) {
-        double K[6], J[6], t, C, u, sum, step;
-        for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
-        J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
-        J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
-        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);     /* K^-1 = t J, by cofactors */
-        demi_sym_times(J, r, m->s);
-        for (k = 0; k < 3; k++) m->s[k] *= t;
-        m->l = l;
-        m->f = l*(1 - l)*demi_dot3(r, m->s);
-        demi_sym_times(A, m->s, m->a);
-        demi_sym_times(B, m->s, m->b);
-        m->fa = (1 - l)*(1 - l)*demi_dot3(m->s, m->a);
-        m->fb = l*l*demi_dot3(m->s, m->b);
-        if (m->f > enough) return;
-        demi_sym_times(J, m->b, m->v);
-        for (k = 0; k < 3; k++) m->v[k] *= t;
-        sum = m->fa + m->fb;
-        if (!(sum > 0)) return;
-        u = (m->fa - m->fb)/sum;
-        if (u > 0) lo = l; else hi = l;
-        /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
-        C = demi_dot3(m->a, m->v);
-        step = u*(15 - 4*u*u)*m->fa*m->fb/
-            ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
-        if (fabs(u) < near || m->iterations >= 100 || hi - lo < 1e-15) {
-            demi_meet_finish(A, C, step, m);
+        demi_meet_at(A, B, r, m);
+        if (m->f > enough || !(m->fa + m->fb > 0)) return;
+        if (m->u > 0) lo = m->l; else hi = m->l;
+        if (fabs(m->u) < near || m->iterations >= 100 || hi - lo < 1e-15) {
+            demi_meet_finish(A, m);
             return;
         }
-        l += step;
-        if (!(l > lo && l < hi)) l = (lo + hi)/2;
+        m->l += m->step;
+        if (!(m->l > lo && m->l < hi)) m->l = (lo + hi)/2;
     }
 }
 /* Computes the unit normal and the support heights of both ellipsoids along it, m. */
-static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double *hb) {
-    const double l = sqrt(demi_dot3(m->s, m->s));
-    int k;
-    for (k = 0; k < 3; k++) n[k] = m->s[k]/l;
+static void demi_meet_heights(const demi_meet *m, demi_d3 *n, double *ha, double *hb) {
+    const double l = demi_d3_length(m->s);
+    *n = demi_d3_over(m->s, l);
     *ha = sqrt(m->fa)/((1 - m->l)*l);
     *hb = sqrt(m->fb)/(m->l*l);
 }
 /* Returns the overlap of [RUB15] 3.2, m: the length of the line V2 V3 inside both ellipsoids. It
    leaves A at the larger root of (x + t d).QA^-1 (x + t d) = 1, and enters B at the smaller one. */
-static double demi_meet_chord(const demi_meet *m, const double *A) {
-    double d[3], u[3], ds, dv, du, out, in;
-    int k;
+static double demi_meet_chord(const demi_meet *m, demi_sym A) {
+    const demi_d3 d = demi_sym_times(A, m->v);
+    const demi_d3 u = demi_d3_over(demi_d3_sub(m->s, demi_d3_scale(m->v, m->l)), 1 - m->l);
+    const double ds = demi_d3_dot(d, m->s), dv = demi_d3_dot(d, m->v), du = demi_d3_dot(d, u);
+    double out, in;
     if (!(m->f < 1)) return 0;
-    demi_sym_times(A, m->v, d);
-    for (k = 0; k < 3; k++) u[k] = (m->s[k] - m->l*m->v[k])/(1 - m->l);
-    ds = demi_dot3(d, m->s);
-    dv = demi_dot3(d, m->v);
-    du = demi_dot3(d, u);
     out = (-(1 - m->l)*ds + sqrt((1 - m->l)*(1 - m->l)*ds*ds + dv*(1 - m->fa)))/dv;
     in = (m->l*ds - sqrt(m->l*m->l*ds*ds + du*(1 - m->fb)))/du;
-    return (out - in)*sqrt(demi_dot3(d, d));
+    return (out - in)*demi_d3_length(d);
 }
 DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
                                                          const dem_ellipsoid *b,
@@ -7250,24 +7243,24 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
     const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
     const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
     const dem_vec3 gap = demi_sub(b->position, a->position);
-    double A[6], B[6], r[3], n[3], ha, hb, w0;
+    const demi_sym A = demi_ellipsoid_matrix(qa, a->semi_axes);
+    const demi_sym B = demi_ellipsoid_matrix(qb, b->semi_axes);
+    demi_d3 r = demi_d3_of(gap), n;
+    double ha, hb, w0;
     demi_meet m;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    demi_ellipsoid_matrix(qa, a->semi_axes, A);
-    demi_ellipsoid_matrix(qb, b->semi_axes, B);
-    if (!(demi_dot3(r, r) > 0)) {               /* centres coincide: take any direction */
-        r[2] = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
+    if (!(demi_d3_square(r) > 0)) {             /* centres coincide: take any direction */
+        r.z = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
     }
-    m.l = lambda > 0 && lambda < 1 ? (double)lambda : demi_meet_start(A, B, r);
+    m.l = lambda > 0 && lambda < 1 ? (double)lambda
+        : demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
     demi_meet_solve(A, B, r, 1e300, 1e-12, &m);
-    demi_meet_heights(&m, n, &ha, &hb);
+    demi_meet_heights(&m, &n, &ha, &hb);
     w0 = sqrt(m.f);
     out.scale = (dem_real)w0;
     out.lambda = (dem_real)m.l;
     out.iterations = m.iterations;
-    out.normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    out.point = demi_add(a->position, demi_v((dem_real)((1 - m.l)*m.a[0]),
-        (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
+    out.normal = demi_d3_real(n);
+    out.point = demi_add(a->position, demi_d3_real(demi_d3_scale(m.a, 1 - m.l)));
     out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
     out.depth_chord = (dem_real)demi_meet_chord(&m, A);
     out.depth_conservative = (dem_real)((1 - w0)*
@@ -7325,9 +7318,13 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-static void demi_part_matrix(const demi_part *p, double *Q) {
-    if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
-    else demi_ellipsoid_matrix(p->q, p->axes, Q);
+/* Half axes of an ellipsoid, m; those of a sphere are equal. */
+DEM_INLINE dem_vec3 demi_part_axes(const demi_part *p) {
+    return p->kind == DEMI_BALL ? demi_v(p->radius, p->radius, p->radius) : p->axes;
+}
+/* Q of an ellipsoid or a sphere, m2. */
+static demi_sym demi_part_matrix(const demi_part *p) {
+    return demi_ellipsoid_matrix(p->q, demi_part_axes(p));
 }
 /* --- properties of spheres and ellipsoids (DEMI_SHAPES) --- */
 
@@ -7386,15 +7383,15 @@ static dem_real demi_balls_gap(const demi_part *p, const demi_part *q, dem_vec3 
 /* Returns the gap, m, of two ellipsoids, or of an ellipsoid and a sphere. */
 static dem_real demi_ellipsoids_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                     dem_real enough) {
-    double A[6], B[6], r[3], n[3], ha, hb;
+    const demi_sym A = demi_part_matrix(p), B = demi_part_matrix(q);
+    const demi_d3 r = demi_d3_of(gap);
+    double ha, hb;
+    demi_d3 n;
     demi_meet m;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     if (!(demi_length(gap) > 0)) return -enough;
-    demi_part_matrix(p, A);
-    demi_part_matrix(q, B);
-    m.l = demi_meet_start(A, B, r);
+    m.l = demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
     demi_meet_solve(A, B, r, 1e300, DEMI_MEET_NEAR, &m);
-    demi_meet_heights(&m, n, &ha, &hb);
+    demi_meet_heights(&m, &n, &ha, &hb);
     return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
 }
 /* Returns a lower bound of the distance between two parts, m; gap leads from centre to centre. May
@@ -14940,7 +14937,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->balls,
-                             w->bodies.shaped && !w->effects.clustered ? n : 0) &&
+                             !w->effects.clustered && w->effects.unlike ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
                     DEMI_GROW(w, near->hit, n))) &&
@@ -15069,7 +15066,7 @@ static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int 
         n = DEMI_MAX(n, crowd[d]);
         n += n ? n/4 + 16 : 0;
         if (d < listed && w->bodies.ghost) n = DEMI_MAX(n, demi_places_most(w, d));
-        if (d < listed && w->bodies.shaped) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
+        if (d < listed && w->effects.unlike) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
         first[d + 1] = first[d] + n;
     }
 }
@@ -15329,9 +15326,9 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
     old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
     for (e = 0; e < used; e++) m[e*stride] = old[e*last_stride];
 }
-/* Selects the pairs of spheres of the pruned list from a group's candidates, without a branch.
-   Writes them from entry p on and returns their end, or -1 if there is no room. mixed: 1 if there
-   are also other bodies, whose pairs are left out. */
+/* Selects the pairs of lone spheres of the pruned list from a group's candidates. Writes them from
+   entry p on and returns their end, or -1 if there is no room. mixed: 1 if there are also other
+   bodies, whose pairs are left out. */
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
@@ -15350,7 +15347,8 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
         const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
         out[p] = k;
         p += (dx*dx + dy*dy + dz*dz < cut*cut) &
-            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]));
+            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]) ||      /* often: no lookup */
+             (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])));
     }
     return k < end ? -1 : p;
 }
@@ -15408,7 +15406,7 @@ static int demi_has_balls(const dem_world *w, int body) {
 /* True if the pruned list holds the pairs of spheres of two bodies, instead of the two bodies. */
 static int demi_pair_of_balls(const dem_world *w, int a, int b) {
     return w->effects.clustered ? demi_has_balls(w, a) && demi_has_balls(w, b)
-        : !demi_shape_of(w, a) && !demi_shape_of(w, b);
+        : demi_lone(w, a) && demi_lone(w, b);
 }
 /* The same with clusters: selects the pairs of spheres of two bodies that may touch. */
 static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, int end, int d,
@@ -15446,7 +15444,7 @@ static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, 
 }
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
     if (w->effects.clustered) return demi_near_pick_balls(w, list, begin, end, d, p);
-    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+    return w->effects.unlike ? demi_near_pick_as(w, list, begin, end, d, p, 1)
         : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
 /* As demi_near_pick for all other pairs: tests the gap of their surfaces. */
@@ -15707,7 +15705,7 @@ static void demi_domain_near(dem_world *w, int d) {
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
         const int first = p;
         if (l) domain->near_next_shaped_cross = p;
-        if (w->bodies.shaped) p = demi_near_pick_shaped(w, list, begin, end, d, p);
+        if (w->effects.unlike) p = demi_near_pick_shaped(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
         p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
@@ -15783,7 +15781,7 @@ static void demi_near_choose(dem_world *w) {
             touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
             candidates += domain->own + domain->cross;
         }
-        if (w->bodies.shaped) candidates *= 6;   /* support points, some gaps */
+        if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */
         longer = sqrt((0.15*candidates + near)*dt/
                       (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
@@ -15922,11 +15920,11 @@ static double demi_reach_of(const dem_world *w, double radius) {
     }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
-/* True with springs if the scene has a cluster of spheres, whether or not a body has that shape:
-   all slabs must answer the same. */
+/* True with springs if the scene has a cluster of several spheres or of one off its centre, whether
+   or not a body has that shape: all slabs must answer the same. */
 static int demi_clustered(const dem_world *w) {
     int k, any = 0;
-    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count > 0;
+    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count && !w->shapes[k].lone;
     return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
@@ -15952,9 +15950,10 @@ static void demi_effects(dem_world *w) {
         w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
         w->effects.uniform &= w->bodies.material[i] == w->bodies.material[0];
     }
-    w->effects.tight = 0;
+    w->effects.tight = w->effects.unlike = 0;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const demi_shape *shape = demi_shape_of(w, i);
+        w->effects.unlike += !demi_lone(w, i);
         w->effects.uniform &= w->bodies.shape[i] == w->bodies.shape[0];
         w->effects.tight |= shape && shape->radius > 2*shape->equal;
     }
@@ -16012,9 +16011,10 @@ static int demi_spins(const dem_world *w) {
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
-   numbers of threads. It depends only on the numbers of bodies, so bits do not depend on threads.
-   shaped: those that are not spheres. Each costs about as much as eight spheres, so a few thousand
-   need several groups for each thread: where bodies fall, all contacts may be in the lowest one. */
+   numbers of threads. It depends only on the scene, so bits do not depend on threads. shaped: the
+   number of bodies that pairs do not see as lone spheres. Such a body costs about as much as eight
+   spheres, so a few thousand need several groups for each thread: where bodies fall, all contacts
+   may be in the lowest one. */
 static int demi_domains_for(int count, int shaped) {
     const int work = count + 7*shaped;
     int n = 1;
@@ -16242,7 +16242,7 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_weigh(dem_world *w) {
     /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
        body of another shape too, and the contact of such a body more */
-    const double kept = w->bodies.shaped ? 16 : 4;
+    const double kept = w->effects.unlike ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
@@ -16261,7 +16261,7 @@ static void demi_domains_weigh(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->bodies.count, w->bodies.shaped);
+    w->domain_count = demi_domains_for(w->bodies.count, w->effects.unlike);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);
@@ -19333,17 +19333,17 @@ static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_to
    farthest point) or of n.x - h (out = -1: that of the nearest), where h = sqrt(n.Q n) and n =
    (cos, sin), for the ellipse of Q's first two rows about x. n receives the direction. Newton's
    method, with steps uphill where the curvature is positive. */
-static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
+static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double angle,
                                  double *n) {
     int k;
     for (k = 0;; k++) {
         const double c = demi_cos(angle), s = demi_sin(angle);
-        const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
+        const double qn0 = Q.xx*c + Q.xy*s, qn1 = Q.xy*c + Q.yy*s;
         const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
         const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
         const double slope = -s*x + c*y + out*cross/h;
         const double bend = -(c*x + s*y) +
-            out*((Q[0] + Q[1])/h - 2*h - cross*cross/(h*h*h));
+            out*((Q.xx + Q.yy)/h - 2*h - cross*cross/(h*h*h));
         const int still = fabs(slope) < 1e-14*size;
         double step;
         n[0] = c;
@@ -19364,8 +19364,8 @@ static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm
     return h;
 }
 /* Half its width along n, in the plane across the axis, m. */
-static double demi_ellipse_height(const double *Q, const double *n) {
-    return sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
+static double demi_ellipse_height(demi_sym Q, const double *n) {
+    return sqrt(n[0]*n[0]*Q.xx + 2*n[0]*n[1]*Q.xy + n[1]*n[1]*Q.yy);
 }
 /* Returns 1 - W0, where W0 is the scale at which an ellipsoid about x just touches a cylinder of
    radius R (out = 1: from inside; -1: from outside). n: the direction of the contact point across
@@ -19373,22 +19373,21 @@ static double demi_ellipse_height(const double *Q, const double *n) {
    changes with W at the rate of the support height. If the centre has reached the wall, the result
    is that of the wall point next to it: W0 then decreases below 0 behind the wall, so that
    penetration is detected. */
-static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
+static double demi_ellipse_shrink(demi_sym Q, double x, double y, int out, double R,
                                   double far, double *n) {
     const double from_axis = sqrt(x*x + y*y);
     double W = 1;
     int k;
     for (k = 0; k < 20; k++) {
         const double step = out*(R - far)/demi_ellipse_height(Q, n);
-        double S[6];
-        int e;
+        demi_sym S = Q;
         W += step;
         if (!(W > 1e-3) && from_axis > 0) {
             n[0] = x/from_axis;
             n[1] = y/from_axis;
             return 1 - out*(R - from_axis)/demi_ellipse_height(Q, n);
         }
-        for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
+        S.xx *= W*W; S.xy *= W*W; S.yy *= W*W;
         far = demi_ellipse_far(S, x, y, out, demi_atan2(n[1], n[0]), n);
         if (fabs(step) < 1e-15) break;
     }
@@ -19418,11 +19417,11 @@ static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, cons
 static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
                                            dem_vec3 x, dem_real range, dem_vec3 *normal,
                                            dem_vec3 *point) {
-    double Q[6], n[3], far, left;
+    const demi_sym Q = demi_ellipsoid_matrix(p->q, p->axes);
+    double n[3], far, left;
     dem_vec3 arm;
-    demi_ellipsoid_matrix(p->q, p->axes, Q);
     far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
-                             ? demi_atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                             ? demi_atan2(2*Q.xy, Q.xx - Q.yy)/2 + (element ? DEMI_PI : 0)
                              : demi_atan2((double)x.y, (double)x.x), n);
     left = far - (double)wall->radius;
     if (!(wall->inside ? left > -(double)range : left < (double)range)) return DEMI_FAR_OFF;
@@ -19442,19 +19441,19 @@ static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, cons
                                         dem_vec3 *point) {
     const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
     const double most = 1 + (double)range/(double)(demi_part_thin(p) + wall->radius);
-    double Q[6], B[6], r[3], n[3], ha, hb;
+    const dem_vec3 round = demi_v(wall->radius, wall->radius, wall->radius);
+    const demi_sym A = demi_ellipsoid_matrix(p->q, p->axes);
+    const demi_sym B = demi_ellipsoid_matrix(dem_quat_make(1, 0, 0, 0), round);
+    demi_d3 r = demi_d3_of(gap), n;
+    double ha, hb;
     demi_meet m;
-    demi_ellipsoid_matrix(p->q, p->axes, Q);
-    demi_ball_matrix(wall->radius, B);
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
-    m.l = demi_meet_start(Q, B, r);
-    demi_meet_solve(Q, B, r, most*most, DEMI_MEET_NEAR, &m);
+    if (!(demi_d3_square(r) > 0)) r.z = 1e-9*(double)demi_part_thin(p);
+    m.l = demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
+    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, &m);
     if (!(m.f < most*most)) return DEMI_FAR_OFF;
-    demi_meet_heights(&m, n, &ha, &hb);
-    *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
-                                (dem_real)((1 - m.l)*m.a[2])));
+    demi_meet_heights(&m, &n, &ha, &hb);
+    *normal = demi_d3_real(n);
+    *point = demi_add(x, demi_d3_real(demi_d3_scale(m.a, 1 - m.l)));
     return (dem_real)(1 - sqrt(m.f));
 }
 /* A part as seen in a frame of axes R, such as that of a wall or a wire. */
@@ -21191,6 +21190,220 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 
 /* ---------------------------------------------------------------------------------------------
+   >>ellipsoids
+   Contact points of ellipsoids with ellipsoids and spheres ("eggs" in names), a tile of pairs at a
+   time. >>kept asks for pairs in the order of its list. A tile is filled with the next pairs whose
+   bounding spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all
+   of them in vectors. With the parameter of the step before as its start, one iteration is nearly
+   always enough; the other pairs are solved individually. Owns nothing; the tile belongs to the
+   caller.
+   --------------------------------------------------------------------------------------------- */
+
+/* True if a body is an ellipsoid or a sphere. */
+DEM_INLINE int demi_egg_is(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
+}
+/* True if contact points of a pair are found in tiles: at least one is an ellipsoid. */
+DEM_INLINE int demi_eggs_are(const dem_world *w, int a, int b) {
+    return (demi_shape_of(w, a) || demi_shape_of(w, b)) && demi_egg_is(w, a) && demi_egg_is(w, b);
+}
+/* True if the scene has ellipsoids. */
+static int demi_eggs_exist(const dem_world *w) {
+    int k, any = 0;
+    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
+    return any;
+}
+/* Returns the radius of the sphere with the volume of such a body, m. */
+DEM_INLINE double demi_egg_equal(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return (double)(shape ? shape->equal*demi_scale_of(w, body, shape)
+                          : w->bodies.pos[4*body + 3]);
+}
+/* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
+   prefetched. */
+enum { DEMI_EGGS = 16, DEMI_EGGS_AHEAD = 6 };
+/* What one iteration has found: no contact, a contact, or that more iterations are needed. */
+enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
+/* A tile of pairs, as a structure of arrays. Sides: 0 body a, 1 body b. */
+typedef struct demi_egg_tile {
+    dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
+    double r[3][DEMI_EGGS];        /* m, from a to b */
+    double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
+    double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
+    double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
+    /* results. found: DEMI_EGGS_..., a double, so that all columns have one width; the others as in
+       demi_meet and demi_eggs_keep */
+    double found[DEMI_EGGS];
+    double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
+    double s[3][DEMI_EGGS], v[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
+    int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
+    int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
+    const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
+                                      the last match */
+} demi_egg_tile;
+
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
+DEM_INLINE void demi_eggs_put(double (*rows)[DEMI_EGGS], int q, demi_d3 a) {
+    rows[0][q] = a.x; rows[1][q] = a.y; rows[2][q] = a.z;
+}
+DEM_INLINE demi_d3 demi_eggs_at(double (*rows)[DEMI_EGGS], int q) {
+    return demi_d(rows[0][q], rows[1][q], rows[2][q]);
+}
+/* The matrix of a side of row q. */
+DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
+    return demi_ellipsoid_matrix(
+        dem_quat_make(t->q[side][0][q], t->q[side][1][q], t->q[side][2][q], t->q[side][3][q]),
+        demi_v(t->axes[side][0][q], t->axes[side][1][q], t->axes[side][2][q]));
+}
+/* Stores the contact point of row q. At that point both scaled distances are W0, so the support
+   heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. */
+DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet m) {
+    const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s);
+    t->to[q] = m.l;
+    t->f[q] = m.f;
+    t->w0[q] = w0;
+    t->both[q] = w0*per/(m.l*(1 - m.l));
+    demi_eggs_put(t->s, q, m.s);
+    demi_eggs_put(t->v, q, m.v);
+    demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
+    demi_eggs_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
+}
+/* One iteration for row q. It ends as the first of demi_meet_solve does. Without a start value, the
+   plane normal to the line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights
+   along that line, so if the plane separates the two, they are apart. */
+DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
+    const demi_sym A = demi_egg_matrix(t, 0, q), B = demi_egg_matrix(t, 1, q);
+    const demi_d3 r = demi_eggs_at(t->r, q);
+    const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
+    const int fresh = !(t->l[q] > 0);
+    const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->range[q]*t->d[q]);
+    demi_meet m, n;
+    int out, still;
+    m.l = fresh ? demi_meet_start(ha, hb) : t->l[q];
+    t->l[q] = m.l;
+    demi_meet_at(A, B, r, &m);
+    n = m;
+    demi_meet_finish(A, &n);
+    out = m.f > t->most[q];
+    still = !out & (m.fa + m.fb > 0) & (fabs(m.u) < DEMI_MEET_NEAR);
+    if (still) m = n;
+    demi_eggs_keep(t, q, m);
+    t->found[q] = apart ? (double)DEMI_EGGS_APART
+        : still | out ? (double)DEMI_EGGS_FOUND : (double)DEMI_EGGS_OPEN;
+}
+DEMI_CLONES static void demi_eggs_solve(demi_egg_tile *DEMI_RESTRICT t, int full) {
+    DEMI_ROWS(full) demi_eggs_solve_one(t, q); DEMI_ROWS_END
+}
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
+
+/* Puts one side into row k of a tile. Returns its least half axis, m. */
+DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, dem_vec3 axes) {
+    t->q[side][0][k] = q.w; t->q[side][1][k] = q.x;
+    t->q[side][2][k] = q.y; t->q[side][3][k] = q.z;
+    t->axes[side][0][k] = axes.x; t->axes[side][1][k] = axes.y; t->axes[side][2][k] = axes.z;
+    return DEMI_MIN(axes.x, DEMI_MIN(axes.y, axes.z));
+}
+/* Puts all but the two bodies into row k. gap: m, from a to b; lambda: of the step before, 0:
+   unknown; range: m, of the law; thin: sum of the least half axes, m. */
+DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lambda, double range,
+                              dem_real thin) {
+    const double most = range > 0 ? 1 + range/(double)thin : 1;
+    demi_eggs_put(t->r, k, demi_d3_of(gap));
+    if (!(demi_dot(gap, gap) > 0)) t->r[2][k] = 1e-9*(double)thin;
+    t->l[k] = lambda;
+    t->most[k] = most*most;
+    t->range[k] = range;
+    t->d[k] = range > 0 ? demi_d3_length(demi_d3_of(gap)) : 0;
+}
+/* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
+DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
+                                      int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    const dem_real radius = w->bodies.pos[4*body + 3];
+    if (!shape)
+        return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
+    return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
+                        demi_scale(shape->axes, radius/shape->radius));
+}
+/* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
+DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
+    const demi_kept *o;
+    while (t->old < last && t->old->a < a) t->after = ++t->old;
+    for (o = t->after; o < last && o->a == a && o->b != b;) o++;
+    if (o == last || o->a != a)                 /* then those before that */
+        for (o = t->old; o < t->after && o->b != b;) o++;
+    if (o == last || o->a != a || o->b != b) return 0;
+    t->after = o + 1;
+    return o;
+}
+/* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
+   d, and does one iteration for all of them. */
+static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_egg_tile *t) {
+    const int base = d*w->near.stride;
+    const demi_kept *now = demi_kept_of(w, d), *last = now + w->domains[d].kept, *o;
+    int k;
+    t->count = t->next = 0;
+    for (; p < end && t->count < DEMI_EGGS; p++) {
+        const int a = w->near.a[base + p], b = w->near.b[base + p];
+        const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
+        const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+        const dem_real far = radii + (dem_real)w->margin.reach;
+        dem_real thin;
+        if (p + DEMI_EGGS_AHEAD < end) {
+            const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
+            DEMI_FETCH(w->bodies.pos + 4*next);
+            DEMI_FETCH(w->bodies.orient + 4*next);
+        }
+        if (!(demi_dot(r, r) < far*far) || !demi_eggs_are(w, a, b)) continue;
+        k = t->count++;
+        o = demi_eggs_old(t, last, a, b);
+        if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
+        t->entry[k] = p;
+        t->from[k] = o ? (int32_t)(o - now) : -1;
+        thin = demi_egg_body_put(w, t, k, 0, a);
+        thin += demi_egg_body_put(w, t, k, 1, b);
+        demi_eggs_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
+    }
+    t->end = p;
+    for (k = t->count; k%DEMI_LANES; k++) {     /* copies of two spheres pad the last group */
+        demi_egg_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        demi_egg_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        demi_eggs_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
+    }
+    if (t->count) demi_eggs_solve(t, k);
+}
+/* Returns 1 if the pair of row k touches or is within the range of the law; its contact point is
+   then complete. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the two
+   surface points that coincide when both are scaled by W0. It is never less than the true distance,
+   which the candidate lists use. */
+static int demi_eggs_meet(demi_egg_tile *t, int k) {
+    demi_meet m;
+    if (!(t->found[k] > DEMI_EGGS_APART)) return 0;
+    if (t->found[k] > DEMI_EGGS_FOUND) {
+        m.l = t->l[k];
+        demi_meet_solve(demi_egg_matrix(t, 0, k), demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k),
+                        t->most[k], DEMI_MEET_NEAR, &m);
+        demi_eggs_keep(t, k, m);
+    }
+    return t->f[k] < 1 || (t->range[k] > 0 && t->d[k]*(1 - 1/t->w0[k]) < t->range[k]);
+}
+/* Returns the overlap of [RUB15] 3.2 for row k, m. */
+static double demi_eggs_chord(demi_egg_tile *t, int k) {
+    demi_meet m;
+    m.l = t->to[k];
+    m.f = m.fa = m.fb = t->f[k];
+    m.s = demi_eggs_at(t->s, k);
+    m.v = demi_eggs_at(t->v, k);
+    return demi_meet_chord(&m, demi_egg_matrix(t, 0, k));
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>meets
    Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
@@ -21226,84 +21439,40 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* A body that is an ellipsoid or a sphere, with its matrix ("egg" in names). */
-typedef struct demi_egg { int body; demi_part part; double Q[6]; } demi_egg;
-/* True if a body is an ellipsoid or a sphere. */
-static int demi_egg_is(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
-}
-/* Computes the part and the matrix of such a body. */
-static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    egg->body = body;
-    if (shape) demi_part_single(w, body, shape, &egg->part);    /* without a copy */
-    else egg->part = demi_part_now(w, body, 0);
-    demi_part_matrix(&egg->part, egg->Q);
-}
-/* Returns 1 if two ellipsoids with matrices A and B touch or are within the range of the law; one
-   of them may be a sphere. Then *m has the contact point of Perram and Wertheim. gap and lambda: as
-   for demi_meet_fn. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the
-   two surface points that coincide when both are scaled by W0. It is never less than the true
-   distance, which the candidate lists use. Without a start value of lambda, the plane normal to the
-   line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights along that line, so
-   if the plane separates the two, they are apart. */
-static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *A,
-                          const demi_part *q, const double *B, dem_vec3 gap, double lambda,
-                          demi_meet *m) {
-    const double range = (double)demi_range(w, p->radius + q->radius);
-    double r[3], d2, most = 1;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    d2 = demi_dot3(r, r);
-    if (range > 0) most += range/(double)(demi_part_thin(p) + demi_part_thin(q));
-    if (!(d2 > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
-    m->l = lambda;
-    if (!(lambda > 0)) {
-        const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
-        if (d2 - (ha + hb) > (range > 0 ? range*sqrt(d2) : 0)) return 0;
-        m->l = ha + hb > 0 ? ha/(ha + hb) : 0.5;
-    }
-    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, m);
-    return m->f < 1 || (range > 0 && sqrt(d2)*(1 - 1/sqrt(m->f)) < range);
-}
-/* Writes the contact of two ellipsoids to c, from Perram and Wertheim's contact point m; one of
-   them may be a sphere. At that point both scaled distances are W0, so the support heights are
-   h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|). A: the matrix of p. */
-static void demi_eggs_set(const dem_world *w, const demi_part *p, const double *A,
-                          const demi_part *q, dem_vec3 gap, const demi_meet *m, demi_kept *c) {
-    const double l = m->l, w0 = sqrt(m->f), per = 1/sqrt(demi_dot3(m->s, m->s));
-    const double both = w0*per/(l*(1 - l));     /* h_A + h_B */
-    double ra = (double)p->radius, rb = (double)q->radius;
+/* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
+   be a sphere. ra, rb: m, radii of spheres of equal volume. p, q: the two; not read if the overlap
+   is the conservative one. */
+DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, double ra, double rb,
+                              const demi_part *p, const demi_part *q, demi_kept *c) {
+    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];
     c->lambda = l;
-    c->normal = demi_v((dem_real)(m->s[0]*per), (dem_real)(m->s[1]*per), (dem_real)(m->s[2]*per));
-    c->deep = (dem_real)((1 - w0)/DEMI_MIN(l, 1 - l));
+    c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
+    c->deep = (dem_real)(left/DEMI_MIN(l, 1 - l));
     if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
-        if (p->kind != DEMI_BALL) ra = demi_ellipsoid_equal(p);
-        if (q->kind != DEMI_BALL) rb = demi_ellipsoid_equal(q);
-        c->overlap = (dem_real)((1 - w0)*(ra + rb));
+        c->overlap = (dem_real)(left*(ra + rb));
         c->slope = (dem_real)((ra + rb)/both);
     } else {
         ra = demi_part_round(w, p, l*both);
         rb = demi_part_round(w, q, (1 - l)*both);
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
-            ? demi_meet_chord(m, A) : (1 - w0)*both);
+            ? demi_eggs_chord(t, k) : left*both);
     }
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
-    c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - l)*m->a[0]),
-        (dem_real)((1 - l)*m->a[1]), (dem_real)((1 - l)*m->a[2])));
-    /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
-    double A[6], B[6];
-    demi_meet m;
+    demi_egg_tile t;
+    dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
-    demi_part_matrix(p, A);
-    demi_part_matrix(q, B);
-    if (!demi_eggs_meet(w, p, A, q, B, gap, lambda, &m)) return 0;
-    demi_eggs_set(w, p, A, q, gap, &m, c);
+    thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
+    demi_eggs_solve_one(&t, 0);
+    if (!demi_eggs_meet(&t, 0)) return 0;
+    demi_eggs_set(w, &t, 0, demi_part_equal(p), demi_part_equal(q), p, q, c);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
 /* Sets overlap and arm of an ellipsoid at its normal, from left = 1 - W0: with a plane or a
@@ -21979,46 +22148,34 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
-/* As demi_kept_same for two bodies of one part each: returns the index within its work group of the
-   old contact with body b, -1 if there is none. */
-DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, int olds, int b) {
-    const int first = (int)(old - demi_kept_of(w, d));
-    int *next = &w->domains[d].kept_same, n, i = *next - first;
-    if (i < 0 || i >= olds) i = 0;
-    for (n = 0; n < olds; n++) {
-        if (old[i].b == b) return *next = first + i + 1, first + i;
-        if (++i == olds) i = 0;
-    }
-    return -1;
-}
-/* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch. one: body
-   a. It is the only contact of its pair, so all its weights are 1. */
-DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, int send,
-                               dem_vec3 r, const demi_kept *old, int olds) {
-    const int from = demi_kept_with(w, d, old, olds, b);
-    demi_egg other;
-    demi_meet m;
-    demi_kept *c = w->kept_next + w->kept_first[d] + w->domains[d].kept_next;
-    demi_kept_ahead(c, 2);
-    demi_kept_ahead(old, (size_t)olds + 3);
-    demi_egg_of(w, b, &other);
-    if (!demi_eggs_meet(w, &one->part, one->Q, &other.part, other.Q, r,
-                        from < 0 ? 0 : demi_kept_of(w, d)[from].lambda, &m)) return;
+/* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
+   tile. It is the only contact of its pair, so all its weights are 1. */
+static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int send) {
+    const int at = d*w->near.stride + t->entry[k];
+    demi_part p, q;
+    demi_kept *c;
+    if (!demi_eggs_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
-    c->a = one->body; c->b = b;
+    demi_kept_ahead(c, 2);
+    c->a = w->near.a[at]; c->b = w->near.b[at];
     c->wall = c->element = -1;
     c->send = send;
-    c->from = from;
+    c->from = t->from[k];
     c->weight = c->lift = c->grip = 1;
     c->held = -1;                               /* as demi_kept_hold for one contact */
-    demi_eggs_set(w, &one->part, one->Q, &other.part, r, &m, c);
+    if (w->desc.ellipsoid_overlap != DEM_OVERLAP_CONSERVATIVE) {
+        p = demi_part_now(w, c->a, 0);
+        q = demi_part_now(w, c->b, 0);
+    }
+    demi_eggs_set(w, t, k, demi_egg_equal(w, c->a), demi_egg_equal(w, c->b), &p, &q, c);
+    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
 }
-/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a with
-   its matrix, shared by all its pairs with later bodies; until it is needed, it may hold an earlier
-   body. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, demi_egg *one,
-                                      const demi_kept *old, int olds) {
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. */
+static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
+                                      int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
     const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
@@ -22030,17 +22187,20 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, dem
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, &na);
     y = demi_balls_of(w, b, &nb);
-    if (!(x && y) && demi_egg_is(w, a) && demi_egg_is(w, b)) {
-        if (one->body != a) demi_egg_of(w, a, one);
-        demi_kept_eggs(w, d, one, b, send, r, old, olds);
-        return;
-    }
     if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
     if (!count) return;
     demi_kept_share(w, from, count);
     demi_kept_inherit(now, from, count);
+}
+/* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
+   which is filled again, before `end`, when it is used up; those of others individually. */
+DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send, demi_egg_tile *t,
+                                const demi_kept *old, int olds) {
+    if (p >= t->end) demi_eggs_find(w, d, p, end, t);
+    if (t->next < t->count && t->entry[t->next] == p) demi_kept_eggs(w, d, t, t->next++, send);
+    else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
 /* Handles a body whose centre has passed through an open surface, which repels on both sides: from
@@ -22308,8 +22468,11 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
-    demi_egg one;
-    one.body = -1;
+    const int eggs = demi_eggs_exist(w);
+    demi_egg_tile own, cross;
+    own.end = cross.end = eggs ? 0 : INT_MAX;
+    own.next = own.count = cross.next = cross.count = 0;
+    own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
@@ -22324,10 +22487,10 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
-            demi_kept_pair(w, d, base + p, 0, &one, old, (int)(old_end - old));
+            demi_kept_entry(w, d, p, own_end, 0, &own, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], &one, old,
-                           (int)(old_end - old));
+            demi_kept_entry(w, d, q, cross_end, 1 + w->near.k[base + q], &cross, old,
+                            (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
@@ -36054,7 +36217,7 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 21 };
+enum { DEMI_CHECKPOINT_VERSION = 22 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -36820,7 +36983,8 @@ static int demi_numbers_check(const demi_reader *r) {
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
              (t->effects.twisting & ~1) || (t->effects.twisting && t->desc.law) ||
              t->effects.clustered < 0 || t->effects.clustered > 1 ||
-             (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
+             /* 0 although there are clusters: their shapes were added after the last rebuild */
+             (t->stage.list_valid && t->effects.clustered > demi_clustered(t)) ||
              t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "laws in force", -1);
@@ -36919,7 +37083,7 @@ static dem_real demi_quat_size2(const dem_real *q) {
 static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
     const int lost = demi_body_lost(t);
-    int i, k, shaped = 0;
+    int i, k, shaped = 0, unlike = 0;
     if (lost >= 0) return demi_lie(r, "state of body", lost);
     for (i = 0; i < t->bodies.count; i++) {
         if (!(t->bodies.pos[4*i + 3] > 0) ||
@@ -36937,10 +37101,12 @@ static int demi_bodies_sane(const demi_reader *r) {
             return demi_lie(r, "orientation of body", i);
         if (!t->bodies.shape[i]) continue;
         shaped++;
+        unlike += !demi_lone(t, i);
         for (k = 0; k < 3; k++)
             if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "inertia of body", i);
     }
-    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
+    return shaped == t->bodies.shaped && (!t->stage.list_valid || unlike == t->effects.unlike)
+        ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
 /* True if the spheres of entry `at` of the pruned list belong to its bodies. */
 static int demi_balls_own(const dem_world *t, int at) {
@@ -39380,7 +39546,9 @@ static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
     if (!w->bodies.shaped) return demi_look_off(e, "all bodies are spheres");
-    return demi_say(e, 1, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
+    return demi_say(e, 1, w->effects.unlike ? "%d of %d bodies are not spheres"
+                    : "%d of %d bodies are clusters of one sphere, computed as spheres",
+                    w->bodies.shaped, w->bodies.count);
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
     if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
@@ -39960,7 +40128,10 @@ static void demi_options_report(const dem_world *w, FILE *out) {
    any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
-    if (w->bodies.shaped)
+    if (w->bodies.shaped && !w->effects.unlike)
+        fprintf(out, "           %d bodies are clusters of one sphere, computed as spheres: "
+                "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
+    else if (w->bodies.shaped)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],

@@ -75,7 +75,7 @@ typedef struct bench_choice {
     int field;                  /* 1: solidicity and velocity sampled every 100 steps; 2: never again */
     int open;                   /* 1: no boundary is periodic                                   */
     int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere; 3: the same,
-                                   its centre of mass 1e-6 radii off; 4: spheres, except the last, a cluster */
+                                   its centre of mass 1e-6 radii off; 4: spheres, except the last, a cluster as in 3 */
     int cuts;                   /* parts of each side of DRUM's triangles: cuts^2 triangles each; 0 or 1: one */
     dem_law_fn law;             /* a user-defined law: 3 reals, 1 vector                        */
     dem_law_rows_fn rows;       /* the same for rows of contacts                                */
@@ -328,7 +328,7 @@ STUDY_FN dem_shape bench_shape(dem_world *world, int shaped, dem_real radius) {
     one.count = 1;
     one.positions = centre;
     one.radius = radius;
-    if (shaped == 3) {
+    if (shaped > 2) {
         const dem_real volume = (dem_real)4.18879*radius*radius*radius;
         one.mass = DEM_CLUSTER_GIVEN;
         one.volume = volume;

@@ -68,6 +68,7 @@
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
+       >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>meets             contact geometry of two bodies, and of a body on a wall, by shape
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
@@ -235,6 +236,7 @@
 #include "contact/polyhedra-walls.h"
 #include "contact/polyhedra-round.h"
 #include "contact/polyhedra-sieves.h"
+#include "contact/ellipsoids.h"
 #include "contact/meets.h"
 #include "contact/kept.h"
 #include "contact/kept-respond.h"

@@ -511,11 +511,11 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
     return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-/* True if contacts see a body as a lone sphere: it is a sphere, or a cluster of one sphere, which
-   differs from it only by its moments of inertia and an orientation. */
+/* True if pairs see a body as a lone sphere: it is a sphere or, with springs, a cluster of one
+   sphere, which differs from it only by its moments of inertia and an orientation. */
 DEM_INLINE int demi_lone(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    return !shape || shape->lone;
+    return !shape || (shape->lone && demi_response_is(w, DEMI_PRESSING));
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
@@ -576,127 +576,117 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
        safe. The method of [RUB15] 3.2, shrinking both by W until they separate, ends at exactly
        this point and normal; its line V2 V3 has the direction QA K^-1 QB s. Test: "quartic and
        eigenvectors of [RUB15] converge to the same contact". --- */
-typedef struct demi_meet {
-    double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
-    double s[3], a[3], b[3];       /* s, QA s, QB s */
-    double v[3];                   /* K^-1 QB s */
-    int iterations;
-} demi_meet;
-
-static void demi_sym_times(const double *Q, const double *x, double *out) {  /* xx yy zz xy xz yz */
-    out[0] = Q[0]*x[0] + Q[3]*x[1] + Q[4]*x[2];
-    out[1] = Q[3]*x[0] + Q[1]*x[1] + Q[5]*x[2];
-    out[2] = Q[4]*x[0] + Q[5]*x[1] + Q[2]*x[2];
+/* A symmetric matrix, and a product with it. */
+typedef struct demi_sym { double xx, yy, zz, xy, xz, yz; } demi_sym;
+DEM_INLINE demi_d3 demi_sym_times(demi_sym Q, demi_d3 x) {
+    return demi_d(Q.xx*x.x + Q.xy*x.y + Q.xz*x.z, Q.xy*x.x + Q.yy*x.y + Q.yz*x.z,
+                  Q.xz*x.x + Q.yz*x.y + Q.zz*x.z);
 }
-static double demi_dot3(const double *a, const double *b) {
-    return a[0]*b[0] + a[1]*b[1] + a[2]*b[2];
-}
-/* Computes Q of an ellipsoid, m2: xx yy zz xy xz yz. */
-static void demi_ellipsoid_matrix(dem_quat q, dem_vec3 axes, double *Q) {
+/* Q of an ellipsoid, m2. */
+DEM_INLINE demi_sym demi_ellipsoid_matrix(dem_quat q, dem_vec3 axes) {
     const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
     const double A = (double)axes.x*(double)axes.x, B = (double)axes.y*(double)axes.y;
     const double C = (double)axes.z*(double)axes.z;
-    const double R[9] = {1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-                         2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-                         2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)};
-    Q[0] = A*R[0]*R[0] + B*R[1]*R[1] + C*R[2]*R[2];
-    Q[1] = A*R[3]*R[3] + B*R[4]*R[4] + C*R[5]*R[5];
-    Q[2] = A*R[6]*R[6] + B*R[7]*R[7] + C*R[8]*R[8];
-    Q[3] = A*R[0]*R[3] + B*R[1]*R[4] + C*R[2]*R[5];
-    Q[4] = A*R[0]*R[6] + B*R[1]*R[7] + C*R[2]*R[8];
-    Q[5] = A*R[3]*R[6] + B*R[4]*R[7] + C*R[5]*R[8];
-}
-static void demi_ball_matrix(dem_real r, double *Q) {
-    Q[0] = Q[1] = Q[2] = (double)r*(double)r;
-    Q[3] = Q[4] = Q[5] = 0;
+    const demi_d3 R = demi_d(1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y));
+    const demi_d3 S = demi_d(2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x));
+    const demi_d3 T = demi_d(2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y));
+    demi_sym Q;
+    Q.xx = A*R.x*R.x + B*R.y*R.y + C*R.z*R.z;
+    Q.yy = A*S.x*S.x + B*S.y*S.y + C*S.z*S.z;
+    Q.zz = A*T.x*T.x + B*T.y*T.y + C*T.z*T.z;
+    Q.xy = A*R.x*S.x + B*R.y*S.y + C*R.z*S.z;
+    Q.xz = A*R.x*T.x + B*R.y*T.y + C*R.z*T.z;
+    Q.yz = A*S.x*T.x + B*S.y*T.y + C*S.z*T.z;
+    return Q;
 }
 /* Returns sqrt(r.Q r): the support height of an ellipsoid along r, times the length of r. */
-static double demi_sym_height(const double *Q, const double *r) {
-    double t[3];
-    demi_sym_times(Q, r, t);
-    return sqrt(demi_dot3(r, t));
+DEM_INLINE double demi_sym_height(demi_sym Q, demi_d3 r) {
+    return sqrt(demi_d3_dot(r, demi_sym_times(Q, r)));
 }
 /* Returns an initial lambda: exact for spheres and for equal, parallel ellipsoids. */
-static double demi_meet_start(const double *A, const double *B, const double *r) {
-    const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
+DEM_INLINE double demi_meet_start(double ha, double hb) {
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
+}
+typedef struct demi_meet {
+    double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
+    demi_d3 s, a, v;               /* s, QA s, K^-1 QB s */
+    double u, C, step;             /* (fA - fB)/(fA + fB); C; the step of l that Newton's method
+                                      takes from here */
+    int iterations;
+} demi_meet;
+/* Evaluates the function at m->l: an iteration. */
+DEM_INLINE void demi_meet_at(demi_sym A, demi_sym B, demi_d3 r, demi_meet *m) {
+    const double l = m->l;
+    demi_sym K, J;
+    demi_d3 b;
+    double per, u;
+    K.xx = (1 - l)*A.xx + l*B.xx; K.yy = (1 - l)*A.yy + l*B.yy; K.zz = (1 - l)*A.zz + l*B.zz;
+    K.xy = (1 - l)*A.xy + l*B.xy; K.xz = (1 - l)*A.xz + l*B.xz; K.yz = (1 - l)*A.yz + l*B.yz;
+    J.xx = K.yy*K.zz - K.yz*K.yz; J.xy = K.yz*K.xz - K.xy*K.zz; J.xz = K.xy*K.yz - K.xz*K.yy;
+    J.yy = K.xx*K.zz - K.xz*K.xz; J.yz = K.xy*K.xz - K.xx*K.yz; J.zz = K.xx*K.yy - K.xy*K.xy;
+    per = 1/(K.xx*J.xx + K.xy*J.xy + K.xz*J.xz);   /* K^-1 = per J, by cofactors */
+    m->s = demi_d3_scale(demi_sym_times(J, r), per);
+    m->f = l*(1 - l)*demi_d3_dot(r, m->s);
+    m->a = demi_sym_times(A, m->s);
+    b = demi_sym_times(B, m->s);
+    m->fa = (1 - l)*(1 - l)*demi_d3_dot(m->s, m->a);
+    m->fb = l*l*demi_d3_dot(m->s, b);
+    m->v = demi_d3_scale(demi_sym_times(J, b), per);
+    m->u = u = (m->fa - m->fb)/(m->fa + m->fb);
+    m->C = demi_d3_dot(m->a, m->v);
+    /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
+    m->step = u*(15 - 4*u*u)*m->fa*m->fb/
+        ((15 - 9*u*u)*m->C*((1 - l)*m->fb + l*m->fa));
 }
 /* Takes the last step without another evaluation: s follows ds/dl = K^-1 (QA - QB) s =
    (s - v)/(1 - l), v = K^-1 QB s, and f its series to second order, f' = fA - fB, f'' = -2 C. The
    error is of the order of the step squared. */
-static void demi_meet_finish(const double *A, double C, double step, demi_meet *m) {
-    const double rate = step/(1 - m->l);
-    int k;
-    m->f += ((m->fa - m->fb) - C*step)*step;
-    for (k = 0; k < 3; k++) m->s[k] += rate*(m->s[k] - m->v[k]);
-    m->l += step;
+DEM_INLINE void demi_meet_finish(demi_sym A, demi_meet *m) {
+    const double rate = m->step/(1 - m->l);
+    m->f += ((m->fa - m->fb) - m->C*m->step)*m->step;
+    m->s = demi_d3_plus(m->s, rate, demi_d3_sub(m->s, m->v));
+    m->l += m->step;
     m->fa = m->fb = m->f;
-    demi_sym_times(A, m->s, m->a);
+    m->a = demi_sym_times(A, m->s);
 }
 /* Tolerance for |fA - fB|/(fA + fB). It costs no more than a larger one. Normals are accurate to
    1e-10 at an aspect ratio of 2, and to 4e-6 at worst, at 100. */
 #define DEMI_MEET_NEAR 1e-4
 /* Finds the maximum of f from m->l on, by Newton's method on ln(fA/fB) within the bracket lo, hi,
    until fA and fB agree to `near`. Ends early once f > enough: the two are then apart. */
-static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
-                            double near, demi_meet *m) {
-    double lo = 0, hi = 1, l = m->l;
-    int k;
+static void demi_meet_solve(demi_sym A, demi_sym B, demi_d3 r, double enough, double near,
+                            demi_meet *m) {
+    double lo = 0, hi = 1;
     for (m->iterations = 1;; m->iterations++) {
-        double K[6], J[6], t, C, u, sum, step;
-        for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
-        J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
-        J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
-        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);     /* K^-1 = t J, by cofactors */
-        demi_sym_times(J, r, m->s);
-        for (k = 0; k < 3; k++) m->s[k] *= t;
-        m->l = l;
-        m->f = l*(1 - l)*demi_dot3(r, m->s);
-        demi_sym_times(A, m->s, m->a);
-        demi_sym_times(B, m->s, m->b);
-        m->fa = (1 - l)*(1 - l)*demi_dot3(m->s, m->a);
-        m->fb = l*l*demi_dot3(m->s, m->b);
-        if (m->f > enough) return;
-        demi_sym_times(J, m->b, m->v);
-        for (k = 0; k < 3; k++) m->v[k] *= t;
-        sum = m->fa + m->fb;
-        if (!(sum > 0)) return;
-        u = (m->fa - m->fb)/sum;
-        if (u > 0) lo = l; else hi = l;
-        /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
-        C = demi_dot3(m->a, m->v);
-        step = u*(15 - 4*u*u)*m->fa*m->fb/
-            ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
-        if (fabs(u) < near || m->iterations >= 100 || hi - lo < 1e-15) {
-            demi_meet_finish(A, C, step, m);
+        demi_meet_at(A, B, r, m);
+        if (m->f > enough || !(m->fa + m->fb > 0)) return;
+        if (m->u > 0) lo = m->l; else hi = m->l;
+        if (fabs(m->u) < near || m->iterations >= 100 || hi - lo < 1e-15) {
+            demi_meet_finish(A, m);
             return;
         }
-        l += step;
-        if (!(l > lo && l < hi)) l = (lo + hi)/2;
+        m->l += m->step;
+        if (!(m->l > lo && m->l < hi)) m->l = (lo + hi)/2;
     }
 }
 /* Computes the unit normal and the support heights of both ellipsoids along it, m. */
-static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double *hb) {
-    const double l = sqrt(demi_dot3(m->s, m->s));
-    int k;
-    for (k = 0; k < 3; k++) n[k] = m->s[k]/l;
+static void demi_meet_heights(const demi_meet *m, demi_d3 *n, double *ha, double *hb) {
+    const double l = demi_d3_length(m->s);
+    *n = demi_d3_over(m->s, l);
     *ha = sqrt(m->fa)/((1 - m->l)*l);
     *hb = sqrt(m->fb)/(m->l*l);
 }
 /* Returns the overlap of [RUB15] 3.2, m: the length of the line V2 V3 inside both ellipsoids. It
    leaves A at the larger root of (x + t d).QA^-1 (x + t d) = 1, and enters B at the smaller one. */
-static double demi_meet_chord(const demi_meet *m, const double *A) {
-    double d[3], u[3], ds, dv, du, out, in;
-    int k;
+static double demi_meet_chord(const demi_meet *m, demi_sym A) {
+    const demi_d3 d = demi_sym_times(A, m->v);
+    const demi_d3 u = demi_d3_over(demi_d3_sub(m->s, demi_d3_scale(m->v, m->l)), 1 - m->l);
+    const double ds = demi_d3_dot(d, m->s), dv = demi_d3_dot(d, m->v), du = demi_d3_dot(d, u);
+    double out, in;
     if (!(m->f < 1)) return 0;
-    demi_sym_times(A, m->v, d);
-    for (k = 0; k < 3; k++) u[k] = (m->s[k] - m->l*m->v[k])/(1 - m->l);
-    ds = demi_dot3(d, m->s);
-    dv = demi_dot3(d, m->v);
-    du = demi_dot3(d, u);
     out = (-(1 - m->l)*ds + sqrt((1 - m->l)*(1 - m->l)*ds*ds + dv*(1 - m->fa)))/dv;
     in = (m->l*ds - sqrt(m->l*m->l*ds*ds + du*(1 - m->fb)))/du;
-    return (out - in)*sqrt(demi_dot3(d, d));
+    return (out - in)*demi_d3_length(d);
 }
 DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
                                                          const dem_ellipsoid *b,
@@ -707,24 +697,24 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
     const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
     const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
     const dem_vec3 gap = demi_sub(b->position, a->position);
-    double A[6], B[6], r[3], n[3], ha, hb, w0;
+    const demi_sym A = demi_ellipsoid_matrix(qa, a->semi_axes);
+    const demi_sym B = demi_ellipsoid_matrix(qb, b->semi_axes);
+    demi_d3 r = demi_d3_of(gap), n;
+    double ha, hb, w0;
     demi_meet m;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    demi_ellipsoid_matrix(qa, a->semi_axes, A);
-    demi_ellipsoid_matrix(qb, b->semi_axes, B);
-    if (!(demi_dot3(r, r) > 0)) {               /* centres coincide: take any direction */
-        r[2] = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
+    if (!(demi_d3_square(r) > 0)) {             /* centres coincide: take any direction */
+        r.z = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
     }
-    m.l = lambda > 0 && lambda < 1 ? (double)lambda : demi_meet_start(A, B, r);
+    m.l = lambda > 0 && lambda < 1 ? (double)lambda
+        : demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
     demi_meet_solve(A, B, r, 1e300, 1e-12, &m);
-    demi_meet_heights(&m, n, &ha, &hb);
+    demi_meet_heights(&m, &n, &ha, &hb);
     w0 = sqrt(m.f);
     out.scale = (dem_real)w0;
     out.lambda = (dem_real)m.l;
     out.iterations = m.iterations;
-    out.normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    out.point = demi_add(a->position, demi_v((dem_real)((1 - m.l)*m.a[0]),
-        (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
+    out.normal = demi_d3_real(n);
+    out.point = demi_add(a->position, demi_d3_real(demi_d3_scale(m.a, 1 - m.l)));
     out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
     out.depth_chord = (dem_real)demi_meet_chord(&m, A);
     out.depth_conservative = (dem_real)((1 - w0)*
@@ -782,9 +772,13 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-static void demi_part_matrix(const demi_part *p, double *Q) {
-    if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
-    else demi_ellipsoid_matrix(p->q, p->axes, Q);
+/* Half axes of an ellipsoid, m; those of a sphere are equal. */
+DEM_INLINE dem_vec3 demi_part_axes(const demi_part *p) {
+    return p->kind == DEMI_BALL ? demi_v(p->radius, p->radius, p->radius) : p->axes;
+}
+/* Q of an ellipsoid or a sphere, m2. */
+static demi_sym demi_part_matrix(const demi_part *p) {
+    return demi_ellipsoid_matrix(p->q, demi_part_axes(p));
 }
 /* --- properties of spheres and ellipsoids (DEMI_SHAPES) --- */
 
@@ -843,15 +837,15 @@ static dem_real demi_balls_gap(const demi_part *p, const demi_part *q, dem_vec3 
 /* Returns the gap, m, of two ellipsoids, or of an ellipsoid and a sphere. */
 static dem_real demi_ellipsoids_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                     dem_real enough) {
-    double A[6], B[6], r[3], n[3], ha, hb;
+    const demi_sym A = demi_part_matrix(p), B = demi_part_matrix(q);
+    const demi_d3 r = demi_d3_of(gap);
+    double ha, hb;
+    demi_d3 n;
     demi_meet m;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     if (!(demi_length(gap) > 0)) return -enough;
-    demi_part_matrix(p, A);
-    demi_part_matrix(q, B);
-    m.l = demi_meet_start(A, B, r);
+    m.l = demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
     demi_meet_solve(A, B, r, 1e300, DEMI_MEET_NEAR, &m);
-    demi_meet_heights(&m, n, &ha, &hb);
+    demi_meet_heights(&m, &n, &ha, &hb);
     return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
 }
 /* Returns a lower bound of the distance between two parts, m; gap leads from centre to centre. May

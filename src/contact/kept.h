@@ -478,46 +478,34 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
     }
     return 1;
 }
-/* As demi_kept_same for two bodies of one part each: returns the index within its work group of the
-   old contact with body b, -1 if there is none. */
-DEM_INLINE int demi_kept_with(const dem_world *w, int d, const demi_kept *old, int olds, int b) {
-    const int first = (int)(old - demi_kept_of(w, d));
-    int *next = &w->domains[d].kept_same, n, i = *next - first;
-    if (i < 0 || i >= olds) i = 0;
-    for (n = 0; n < olds; n++) {
-        if (old[i].b == b) return *next = first + i + 1, first + i;
-        if (++i == olds) i = 0;
-    }
-    return -1;
-}
-/* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch. one: body
-   a. It is the only contact of its pair, so all its weights are 1. */
-DEM_INLINE void demi_kept_eggs(dem_world *w, int d, const demi_egg *one, int b, int send,
-                               dem_vec3 r, const demi_kept *old, int olds) {
-    const int from = demi_kept_with(w, d, old, olds, b);
-    demi_egg other;
-    demi_meet m;
-    demi_kept *c = w->kept_next + w->kept_first[d] + w->domains[d].kept_next;
-    demi_kept_ahead(c, 2);
-    demi_kept_ahead(old, (size_t)olds + 3);
-    demi_egg_of(w, b, &other);
-    if (!demi_eggs_meet(w, &one->part, one->Q, &other.part, other.Q, r,
-                        from < 0 ? 0 : demi_kept_of(w, d)[from].lambda, &m)) return;
+/* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
+   tile. It is the only contact of its pair, so all its weights are 1. */
+static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int send) {
+    const int at = d*w->near.stride + t->entry[k];
+    demi_part p, q;
+    demi_kept *c;
+    if (!demi_eggs_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
-    c->a = one->body; c->b = b;
+    demi_kept_ahead(c, 2);
+    c->a = w->near.a[at]; c->b = w->near.b[at];
     c->wall = c->element = -1;
     c->send = send;
-    c->from = from;
+    c->from = t->from[k];
     c->weight = c->lift = c->grip = 1;
     c->held = -1;                               /* as demi_kept_hold for one contact */
-    demi_eggs_set(w, &one->part, one->Q, &other.part, r, &m, c);
+    if (w->desc.ellipsoid_overlap != DEM_OVERLAP_CONSERVATIVE) {
+        p = demi_part_now(w, c->a, 0);
+        q = demi_part_now(w, c->b, 0);
+    }
+    demi_eggs_set(w, t, k, demi_egg_equal(w, c->a), demi_egg_equal(w, c->b), &p, &q, c);
+    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
 }
-/* Finds the contacts of one candidate pair, then merges them and passes grip on. one: body a with
-   its matrix, shared by all its pairs with later bodies; until it is needed, it may hold an earlier
-   body. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, demi_egg *one,
-                                      const demi_kept *old, int olds) {
+/* Finds the contacts of one candidate pair, then merges them and passes grip on. */
+static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
+                                      int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
     const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
@@ -529,17 +517,20 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, dem
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, &na);
     y = demi_balls_of(w, b, &nb);
-    if (!(x && y) && demi_egg_is(w, a) && demi_egg_is(w, b)) {
-        if (one->body != a) demi_egg_of(w, a, one);
-        demi_kept_eggs(w, d, one, b, send, r, old, olds);
-        return;
-    }
     if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
     if (!count) return;
     demi_kept_share(w, from, count);
     demi_kept_inherit(now, from, count);
+}
+/* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
+   which is filled again, before `end`, when it is used up; those of others individually. */
+DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send, demi_egg_tile *t,
+                                const demi_kept *old, int olds) {
+    if (p >= t->end) demi_eggs_find(w, d, p, end, t);
+    if (t->next < t->count && t->entry[t->next] == p) demi_kept_eggs(w, d, t, t->next++, send);
+    else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
 /* Handles a body whose centre has passed through an open surface, which repels on both sides: from
@@ -807,8 +798,11 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
-    demi_egg one;
-    one.body = -1;
+    const int eggs = demi_eggs_exist(w);
+    demi_egg_tile own, cross;
+    own.end = cross.end = eggs ? 0 : INT_MAX;
+    own.next = own.count = cross.next = cross.count = 0;
+    own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
@@ -823,10 +817,10 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
-            demi_kept_pair(w, d, base + p, 0, &one, old, (int)(old_end - old));
+            demi_kept_entry(w, d, p, own_end, 0, &own, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_pair(w, d, base + q, 1 + w->near.k[base + q], &one, old,
-                           (int)(old_end - old));
+            demi_kept_entry(w, d, q, cross_end, 1 + w->near.k[base + q], &cross, old,
+                            (int)(old_end - old));
         walled = domain->kept_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);

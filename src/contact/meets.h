@@ -34,84 +34,40 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
-/* A body that is an ellipsoid or a sphere, with its matrix ("egg" in names). */
-typedef struct demi_egg { int body; demi_part part; double Q[6]; } demi_egg;
-/* True if a body is an ellipsoid or a sphere. */
-static int demi_egg_is(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
-}
-/* Computes the part and the matrix of such a body. */
-static void demi_egg_of(const dem_world *w, int body, demi_egg *egg) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    egg->body = body;
-    if (shape) demi_part_single(w, body, shape, &egg->part);    /* without a copy */
-    else egg->part = demi_part_now(w, body, 0);
-    demi_part_matrix(&egg->part, egg->Q);
-}
-/* Returns 1 if two ellipsoids with matrices A and B touch or are within the range of the law; one
-   of them may be a sphere. Then *m has the contact point of Perram and Wertheim. gap and lambda: as
-   for demi_meet_fn. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the
-   two surface points that coincide when both are scaled by W0. It is never less than the true
-   distance, which the candidate lists use. Without a start value of lambda, the plane normal to the
-   line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights along that line, so
-   if the plane separates the two, they are apart. */
-static int demi_eggs_meet(const dem_world *w, const demi_part *p, const double *A,
-                          const demi_part *q, const double *B, dem_vec3 gap, double lambda,
-                          demi_meet *m) {
-    const double range = (double)demi_range(w, p->radius + q->radius);
-    double r[3], d2, most = 1;
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    d2 = demi_dot3(r, r);
-    if (range > 0) most += range/(double)(demi_part_thin(p) + demi_part_thin(q));
-    if (!(d2 > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
-    m->l = lambda;
-    if (!(lambda > 0)) {
-        const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
-        if (d2 - (ha + hb) > (range > 0 ? range*sqrt(d2) : 0)) return 0;
-        m->l = ha + hb > 0 ? ha/(ha + hb) : 0.5;
-    }
-    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, m);
-    return m->f < 1 || (range > 0 && sqrt(d2)*(1 - 1/sqrt(m->f)) < range);
-}
-/* Writes the contact of two ellipsoids to c, from Perram and Wertheim's contact point m; one of
-   them may be a sphere. At that point both scaled distances are W0, so the support heights are
-   h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|). A: the matrix of p. */
-static void demi_eggs_set(const dem_world *w, const demi_part *p, const double *A,
-                          const demi_part *q, dem_vec3 gap, const demi_meet *m, demi_kept *c) {
-    const double l = m->l, w0 = sqrt(m->f), per = 1/sqrt(demi_dot3(m->s, m->s));
-    const double both = w0*per/(l*(1 - l));     /* h_A + h_B */
-    double ra = (double)p->radius, rb = (double)q->radius;
+/* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
+   be a sphere. ra, rb: m, radii of spheres of equal volume. p, q: the two; not read if the overlap
+   is the conservative one. */
+DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, double ra, double rb,
+                              const demi_part *p, const demi_part *q, demi_kept *c) {
+    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];
     c->lambda = l;
-    c->normal = demi_v((dem_real)(m->s[0]*per), (dem_real)(m->s[1]*per), (dem_real)(m->s[2]*per));
-    c->deep = (dem_real)((1 - w0)/DEMI_MIN(l, 1 - l));
+    c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
+    c->deep = (dem_real)(left/DEMI_MIN(l, 1 - l));
     if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
-        if (p->kind != DEMI_BALL) ra = demi_ellipsoid_equal(p);
-        if (q->kind != DEMI_BALL) rb = demi_ellipsoid_equal(q);
-        c->overlap = (dem_real)((1 - w0)*(ra + rb));
+        c->overlap = (dem_real)(left*(ra + rb));
         c->slope = (dem_real)((ra + rb)/both);
     } else {
         ra = demi_part_round(w, p, l*both);
         rb = demi_part_round(w, q, (1 - l)*both);
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
-            ? demi_meet_chord(m, A) : (1 - w0)*both);
+            ? demi_eggs_chord(t, k) : left*both);
     }
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
-    c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - l)*m->a[0]),
-        (dem_real)((1 - l)*m->a[1]), (dem_real)((1 - l)*m->a[2])));
-    /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
-    double A[6], B[6];
-    demi_meet m;
+    demi_egg_tile t;
+    dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
-    demi_part_matrix(p, A);
-    demi_part_matrix(q, B);
-    if (!demi_eggs_meet(w, p, A, q, B, gap, lambda, &m)) return 0;
-    demi_eggs_set(w, p, A, q, gap, &m, c);
+    thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
+    demi_eggs_solve_one(&t, 0);
+    if (!demi_eggs_meet(&t, 0)) return 0;
+    demi_eggs_set(w, &t, 0, demi_part_equal(p), demi_part_equal(q), p, q, c);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    /* to the same point, exactly: conserves angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
 /* Sets overlap and arm of an ellipsoid at its normal, from left = 1 - W0: with a plane or a

@@ -253,17 +253,17 @@ static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_to
    farthest point) or of n.x - h (out = -1: that of the nearest), where h = sqrt(n.Q n) and n =
    (cos, sin), for the ellipse of Q's first two rows about x. n receives the direction. Newton's
    method, with steps uphill where the curvature is positive. */
-static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
+static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double angle,
                                  double *n) {
     int k;
     for (k = 0;; k++) {
         const double c = demi_cos(angle), s = demi_sin(angle);
-        const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
+        const double qn0 = Q.xx*c + Q.xy*s, qn1 = Q.xy*c + Q.yy*s;
         const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
         const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
         const double slope = -s*x + c*y + out*cross/h;
         const double bend = -(c*x + s*y) +
-            out*((Q[0] + Q[1])/h - 2*h - cross*cross/(h*h*h));
+            out*((Q.xx + Q.yy)/h - 2*h - cross*cross/(h*h*h));
         const int still = fabs(slope) < 1e-14*size;
         double step;
         n[0] = c;
@@ -284,8 +284,8 @@ static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm
     return h;
 }
 /* Half its width along n, in the plane across the axis, m. */
-static double demi_ellipse_height(const double *Q, const double *n) {
-    return sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
+static double demi_ellipse_height(demi_sym Q, const double *n) {
+    return sqrt(n[0]*n[0]*Q.xx + 2*n[0]*n[1]*Q.xy + n[1]*n[1]*Q.yy);
 }
 /* Returns 1 - W0, where W0 is the scale at which an ellipsoid about x just touches a cylinder of
    radius R (out = 1: from inside; -1: from outside). n: the direction of the contact point across
@@ -293,22 +293,21 @@ static double demi_ellipse_height(const double *Q, const double *n) {
    changes with W at the rate of the support height. If the centre has reached the wall, the result
    is that of the wall point next to it: W0 then decreases below 0 behind the wall, so that
    penetration is detected. */
-static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
+static double demi_ellipse_shrink(demi_sym Q, double x, double y, int out, double R,
                                   double far, double *n) {
     const double from_axis = sqrt(x*x + y*y);
     double W = 1;
     int k;
     for (k = 0; k < 20; k++) {
         const double step = out*(R - far)/demi_ellipse_height(Q, n);
-        double S[6];
-        int e;
+        demi_sym S = Q;
         W += step;
         if (!(W > 1e-3) && from_axis > 0) {
             n[0] = x/from_axis;
             n[1] = y/from_axis;
             return 1 - out*(R - from_axis)/demi_ellipse_height(Q, n);
         }
-        for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
+        S.xx *= W*W; S.xy *= W*W; S.yy *= W*W;
         far = demi_ellipse_far(S, x, y, out, demi_atan2(n[1], n[0]), n);
         if (fabs(step) < 1e-15) break;
     }
@@ -338,11 +337,11 @@ static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, cons
 static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
                                            dem_vec3 x, dem_real range, dem_vec3 *normal,
                                            dem_vec3 *point) {
-    double Q[6], n[3], far, left;
+    const demi_sym Q = demi_ellipsoid_matrix(p->q, p->axes);
+    double n[3], far, left;
     dem_vec3 arm;
-    demi_ellipsoid_matrix(p->q, p->axes, Q);
     far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
-                             ? demi_atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                             ? demi_atan2(2*Q.xy, Q.xx - Q.yy)/2 + (element ? DEMI_PI : 0)
                              : demi_atan2((double)x.y, (double)x.x), n);
     left = far - (double)wall->radius;
     if (!(wall->inside ? left > -(double)range : left < (double)range)) return DEMI_FAR_OFF;
@@ -362,19 +361,19 @@ static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, cons
                                         dem_vec3 *point) {
     const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
     const double most = 1 + (double)range/(double)(demi_part_thin(p) + wall->radius);
-    double Q[6], B[6], r[3], n[3], ha, hb;
+    const dem_vec3 round = demi_v(wall->radius, wall->radius, wall->radius);
+    const demi_sym A = demi_ellipsoid_matrix(p->q, p->axes);
+    const demi_sym B = demi_ellipsoid_matrix(dem_quat_make(1, 0, 0, 0), round);
+    demi_d3 r = demi_d3_of(gap), n;
+    double ha, hb;
     demi_meet m;
-    demi_ellipsoid_matrix(p->q, p->axes, Q);
-    demi_ball_matrix(wall->radius, B);
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
-    m.l = demi_meet_start(Q, B, r);
-    demi_meet_solve(Q, B, r, most*most, DEMI_MEET_NEAR, &m);
+    if (!(demi_d3_square(r) > 0)) r.z = 1e-9*(double)demi_part_thin(p);
+    m.l = demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
+    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, &m);
     if (!(m.f < most*most)) return DEMI_FAR_OFF;
-    demi_meet_heights(&m, n, &ha, &hb);
-    *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
-                                (dem_real)((1 - m.l)*m.a[2])));
+    demi_meet_heights(&m, &n, &ha, &hb);
+    *normal = demi_d3_real(n);
+    *point = demi_add(x, demi_d3_real(demi_d3_scale(m.a, 1 - m.l)));
     return (dem_real)(1 - sqrt(m.f));
 }
 /* A part as seen in a frame of axes R, such as that of a wall or a wire. */

@@ -74,7 +74,8 @@ typedef struct demi_near {
     unsigned char *image;          /* as in demi_list */
     unsigned char *on;             /* likewise: 1: may have a contact history */
     int32_t *hit;                  /* likewise: entries of the group that touch, ascending */
-    demi_near_balls *balls;        /* null if all bodies are spheres, or effects.clustered */
+    demi_near_balls *balls;        /* null if pairs see all bodies as lone spheres, or
+                                      effects.clustered */
     dem_real *memory;              /* contact history of two spheres: w->memory_stride columns, 0
                                       while the pair does not touch */
     int32_t *row;                  /* row of species_coef; unused if all bodies are alike or there
@@ -216,21 +217,21 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
 
 /* A domain is a work group: a range of consecutive bodies, which are neighbours in space because
    bodies are sorted by cell. One thread computes a whole group. The number of groups and their
-   boundaries depend only on the numbers of bodies and of those that are not spheres. A contact
-   belongs to the group of its body with the lower index. A force on a body of a later group is
-   stored in cross_force, and that group adds it in the order of the list. So the number of threads
-   changes who computes, but never the order of a sum, and results have the same bits for any number
-   of threads. Each list is one array in which every group has its own segment, so threads never
-   wait for each other to allocate. A group whose segment is too short sets `overflow`, and the list
-   is built again with more room. */
+   boundaries depend only on the numbers of bodies and of those that pairs do not see as lone
+   spheres (demi_lone). A contact belongs to the group of its body with the lower index. A force on
+   a body of a later group is stored in cross_force, and that group adds it in the order of the
+   list. So the number of threads changes who computes, but never the order of a sum, and results
+   have the same bits for any number of threads. Each list is one array in which every group has its
+   own segment, so threads never wait for each other to allocate. A group whose segment is too short
+   sets `overflow`, and the list is built again with more room. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside the group, pairs with a body of a
                                       later group, wall elements */
     int near_own, near_cross, near_end;    /* pruned list: end of pairs inside; begin and end of
                                       pairs with later groups; */
-    int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for pairs with
-                                      a body that is not a sphere */
+    int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for all other
+                                      pairs of bodies: >>kept finds their contacts */
     int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
                                       first among the pairs inside, and among those with later
                                       groups; 0 unless effects.clustered */

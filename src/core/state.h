@@ -64,6 +64,7 @@ typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int twisting;                  /* springs, and a pair has spinning friction */
     int uniform;                   /* one radius, one mass, one material, no fixed body */
     int fixed_count;
+    int unlike;                    /* number of bodies that pairs do not see as lone spheres */
     int tight;                     /* some body is so long that candidates are tested by more than
                                       bounding spheres */
     int ignoring;                  /* 1: some pair of materials is ignored (dem_pair) */

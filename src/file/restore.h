@@ -169,7 +169,8 @@ static int demi_numbers_check(const demi_reader *r) {
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
              (t->effects.twisting & ~1) || (t->effects.twisting && t->desc.law) ||
              t->effects.clustered < 0 || t->effects.clustered > 1 ||
-             (t->stage.list_valid && t->effects.clustered != demi_clustered(t)) ||
+             /* 0 although there are clusters: their shapes were added after the last rebuild */
+             (t->stage.list_valid && t->effects.clustered > demi_clustered(t)) ||
              t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "laws in force", -1);
@@ -268,7 +269,7 @@ static dem_real demi_quat_size2(const dem_real *q) {
 static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
     const int lost = demi_body_lost(t);
-    int i, k, shaped = 0;
+    int i, k, shaped = 0, unlike = 0;
     if (lost >= 0) return demi_lie(r, "state of body", lost);
     for (i = 0; i < t->bodies.count; i++) {
         if (!(t->bodies.pos[4*i + 3] > 0) ||
@@ -286,10 +287,12 @@ static int demi_bodies_sane(const demi_reader *r) {
             return demi_lie(r, "orientation of body", i);
         if (!t->bodies.shape[i]) continue;
         shaped++;
+        unlike += !demi_lone(t, i);
         for (k = 0; k < 3; k++)
             if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "inertia of body", i);
     }
-    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
+    return shaped == t->bodies.shaped && (!t->stage.list_valid || unlike == t->effects.unlike)
+        ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
 /* True if the spheres of entry `at` of the pruned list belong to its bodies. */
 static int demi_balls_own(const dem_world *t, int at) {

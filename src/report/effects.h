@@ -211,7 +211,9 @@ static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
     if (!w->bodies.shaped) return demi_look_off(e, "all bodies are spheres");
-    return demi_say(e, 1, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
+    return demi_say(e, 1, w->effects.unlike ? "%d of %d bodies are not spheres"
+                    : "%d of %d bodies are clusters of one sphere, computed as spheres",
+                    w->bodies.shaped, w->bodies.count);
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
     if (w->bodies.shaped) return demi_look_off(e, "included in shapes");

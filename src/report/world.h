@@ -246,7 +246,10 @@ static void demi_options_report(const dem_world *w, FILE *out) {
    any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
-    if (w->bodies.shaped)
+    if (w->bodies.shaped && !w->effects.unlike)
+        fprintf(out, "           %d bodies are clusters of one sphere, computed as spheres: "
+                "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
+    else if (w->bodies.shaped)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
                 "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],

@@ -199,7 +199,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->balls,
-                             w->bodies.shaped && !w->effects.clustered ? n : 0) &&
+                             !w->effects.clustered && w->effects.unlike ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
                     DEMI_GROW(w, near->hit, n))) &&
@@ -328,7 +328,7 @@ static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int 
         n = DEMI_MAX(n, crowd[d]);
         n += n ? n/4 + 16 : 0;
         if (d < listed && w->bodies.ghost) n = DEMI_MAX(n, demi_places_most(w, d));
-        if (d < listed && w->bodies.shaped) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
+        if (d < listed && w->effects.unlike) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
         first[d + 1] = first[d] + n;
     }
 }

@@ -191,9 +191,9 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
     old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
     for (e = 0; e < used; e++) m[e*stride] = old[e*last_stride];
 }
-/* Selects the pairs of spheres of the pruned list from a group's candidates, without a branch.
-   Writes them from entry p on and returns their end, or -1 if there is no room. mixed: 1 if there
-   are also other bodies, whose pairs are left out. */
+/* Selects the pairs of lone spheres of the pruned list from a group's candidates. Writes them from
+   entry p on and returns their end, or -1 if there is no room. mixed: 1 if there are also other
+   bodies, whose pairs are left out. */
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
@@ -212,7 +212,8 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
         const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
         out[p] = k;
         p += (dx*dx + dy*dy + dz*dz < cut*cut) &
-            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]));
+            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]) ||      /* often: no lookup */
+             (demi_lone(w, list->a[k]) && demi_lone(w, list->b[k])));
     }
     return k < end ? -1 : p;
 }
@@ -270,7 +271,7 @@ static int demi_has_balls(const dem_world *w, int body) {
 /* True if the pruned list holds the pairs of spheres of two bodies, instead of the two bodies. */
 static int demi_pair_of_balls(const dem_world *w, int a, int b) {
     return w->effects.clustered ? demi_has_balls(w, a) && demi_has_balls(w, b)
-        : !demi_shape_of(w, a) && !demi_shape_of(w, b);
+        : demi_lone(w, a) && demi_lone(w, b);
 }
 /* The same with clusters: selects the pairs of spheres of two bodies that may touch. */
 static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, int end, int d,
@@ -308,7 +309,7 @@ static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, 
 }
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
     if (w->effects.clustered) return demi_near_pick_balls(w, list, begin, end, d, p);
-    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+    return w->effects.unlike ? demi_near_pick_as(w, list, begin, end, d, p, 1)
         : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
 /* As demi_near_pick for all other pairs: tests the gap of their surfaces. */
@@ -569,7 +570,7 @@ static void demi_domain_near(dem_world *w, int d) {
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
         const int first = p;
         if (l) domain->near_next_shaped_cross = p;
-        if (w->bodies.shaped) p = demi_near_pick_shaped(w, list, begin, end, d, p);
+        if (w->effects.unlike) p = demi_near_pick_shaped(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
         p = demi_near_part(w, list, d, first, p);
         for (q = first; q < p; q++) {
@@ -645,7 +646,7 @@ static void demi_near_choose(dem_world *w) {
             touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
             candidates += domain->own + domain->cross;
         }
-        if (w->bodies.shaped) candidates *= 6;   /* support points, some gaps */
+        if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */
         longer = sqrt((0.15*candidates + near)*dt/
                       (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));

@@ -64,11 +64,11 @@ static double demi_reach_of(const dem_world *w, double radius) {
     }
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
-/* True with springs if the scene has a cluster of spheres, whether or not a body has that shape:
-   all slabs must answer the same. */
+/* True with springs if the scene has a cluster of several spheres or of one off its centre, whether
+   or not a body has that shape: all slabs must answer the same. */
 static int demi_clustered(const dem_world *w) {
     int k, any = 0;
-    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count > 0;
+    for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count && !w->shapes[k].lone;
     return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
@@ -94,9 +94,10 @@ static void demi_effects(dem_world *w) {
         w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
         w->effects.uniform &= w->bodies.material[i] == w->bodies.material[0];
     }
-    w->effects.tight = 0;
+    w->effects.tight = w->effects.unlike = 0;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const demi_shape *shape = demi_shape_of(w, i);
+        w->effects.unlike += !demi_lone(w, i);
         w->effects.uniform &= w->bodies.shape[i] == w->bodies.shape[0];
         w->effects.tight |= shape && shape->radius > 2*shape->equal;
     }
@@ -154,9 +155,10 @@ static int demi_spins(const dem_world *w) {
 static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
-   numbers of threads. It depends only on the numbers of bodies, so bits do not depend on threads.
-   shaped: those that are not spheres. Each costs about as much as eight spheres, so a few thousand
-   need several groups for each thread: where bodies fall, all contacts may be in the lowest one. */
+   numbers of threads. It depends only on the scene, so bits do not depend on threads. shaped: the
+   number of bodies that pairs do not see as lone spheres. Such a body costs about as much as eight
+   spheres, so a few thousand need several groups for each thread: where bodies fall, all contacts
+   may be in the lowest one. */
 static int demi_domains_for(int count, int shaped) {
     const int work = count + 7*shaped;
     int n = 1;
@@ -384,7 +386,7 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_weigh(dem_world *w) {
     /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
        body of another shape too, and the contact of such a body more */
-    const double kept = w->bodies.shaped ? 16 : 4;
+    const double kept = w->effects.unlike ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
@@ -403,7 +405,7 @@ static void demi_domains_weigh(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->bodies.count, w->bodies.shaped);
+    w->domain_count = demi_domains_for(w->bodies.count, w->effects.unlike);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);

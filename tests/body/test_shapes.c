@@ -440,6 +440,62 @@ static void meeting_tests(void) {
         }
     }
 
+    TEST("each contact of a world of ellipsoids is that of the two alone, also after sudden rotations") {
+        enum { PAIRS = 70 };
+        int kind, k, round;
+        for (kind = 0; kind < 3; kind++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_ellipsoid e[2*PAIRS];
+            dem_body body[2*PAIRS];
+            dem_contact_info c[PAIRS];
+            uint64_t seed = 5;
+            dem_world *world;
+            dem_material m;
+            desc.dt = DEM_R(1e-7);
+            desc.allow_large_dt = 1;
+            desc.ellipsoid_overlap = (dem_overlap)kind;
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e6, 0.5, 0, 0);
+            for (k = 0; k < 2*PAIRS; k++) {         /* every seventh body is a sphere */
+                const double a = 1e-3, b = 1e-3*(0.4 + 0.6*scene_random(&seed));
+                e[k].position = at(0.01*(k/2), 0, k%2 ? 2e-3 : 0);
+                e[k].semi_axes = k%7 ? at(a, b, 7e-4) : at(a, a, a);
+                e[k].orientation = k%7 ? random_quat(&seed) : upright();
+                body[k] = k%7 ? dem_body_add(world, m, dem_shape_ellipsoid_add(world, e[k].semi_axes), e[k].position,
+                                             e[k].orientation)
+                              : dem_sphere_add(world, m, DEM_R(1e-3), e[k].position);
+                if (k%2 == 0)                   /* beside it one whose bounding sphere overlaps, but which is apart */
+                    dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(4e-4, 4e-4, 1e-3)),
+                                 at(0.01*(k/2) + 1.9e-3, 0, 0), upright());
+            }
+            for (round = 0; round < 3; round++) {
+                int count;
+                for (k = 0; k < 2*PAIRS; k++) {
+                    dem_body_state s = scene_state(world, body[k]);
+                    s.velocity = s.spin = at(0, 0, 0);
+                    if (round && k%7) s.orientation = e[k].orientation = random_quat(&seed);
+                    if (k%2)                        /* W0 = 0.97 */
+                        e[k].position.z *= DEM_R(0.97)/dem_ellipsoids_contact_get(&e[k - 1], &e[k], 0).scale;
+                    s.position = e[k].position;
+                    CHECK_EQ(dem_body_set(world, body[k], &s), DEM_OK);
+                }
+                CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+                count = dem_contacts_get(world, c, PAIRS);
+                CHECK_EQ(count, PAIRS);
+                for (k = 0; k < count && k < PAIRS; k++) {
+                    const int i = (int)floor((double)c[k].point.x/0.01 + 0.5), flip = c[k].a.slot != body[2*i].slot;
+                    const dem_ellipsoid_contact alone = dem_ellipsoids_contact_get(&e[2*i], &e[2*i + 1], 0);
+                    const dem_real depth = kind == DEM_OVERLAP_CHORD ? alone.depth_chord
+                        : kind == DEM_OVERLAP_CONSERVATIVE ? alone.depth_conservative : alone.depth_normal;
+                    CHECK_REL(c[k].overlap, depth, SINGLE ? 2e-3 : 1e-4);
+                    CHECK_NEAR(dot(c[k].normal, alone.normal)*(flip ? -1 : 1), 1, SINGLE ? 1e-5 : 1e-7);
+                    CHECK_NEAR(apart(c[k].point, alone.point), 0, 1e-7);
+                }
+            }
+            dem_world_destroy(world);
+        }
+    }
+
     TEST("an ellipsoid on a huge one acts as on a plane: depth is its height less the gap") {
         uint64_t seed = 8;
         int i;

@@ -80,6 +80,34 @@ static double sums_apart(dem_world *w) {
         }
     return worst/most;
 }
+enum { MIXED = 300 };
+/* A bed in which every fourth body is an ellipsoid (kind 0) or a cluster of two (kind 1), or none is (kind 2). The others
+   are spheres, or clusters of one sphere (lone 1). */
+static dem_world *mixed_bed(int kind, int lone, int threads) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *w;
+    dem_material m;
+    dem_shape one = {0}, more = {0};
+    uint64_t seed = 4;
+    int i;
+    desc.dt = DEM_R(4e-6);
+    desc.gravity = at(0, 0, -98.1);
+    desc.threads = threads;
+    w = dem_world_create(&desc);
+    m = scene_material(w, 2e6, 0.5, 0.4, 0.1);
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    if (lone) one = row(w, 1, 1e-3, 0);
+    if (kind < 2) more = kind ? row(w, 2, 8e-4, 6e-4) : dem_shape_ellipsoid_add(w, at(1e-3, 8e-4, 9e-4));
+    for (i = 0; i < MIXED; i++) {
+        const int layer = i/36;
+        const dem_vec3 x = demi_scale(at(i%6 + 0.1*layer, i/6%6, 0.6 + layer), DEM_R(2.05e-3));
+        const dem_quat q = scene_turn(&seed);
+        const int other = kind < 2 && i%4 == 0;
+        if (other || lone) dem_body_add(w, m, other ? more : one, x, q);
+        else dem_sphere_add(w, m, DEM_R(1e-3), x);
+    }
+    return w;
+}
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
@@ -116,6 +144,48 @@ int main(int argc, char **argv) {
                 most = DEMI_MAX(most, (double)demi_length(demi_sub(x, y)));
             }
             CHECK_NEAR(most, 0, wide ? 1e-9 : 1e-4);
+            for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
+        }
+    }
+    TEST("clusters of one sphere move as spheres, alone or among others, and continue from a checkpoint on two threads") {
+        int kind, k, i;
+        for (kind = 0; kind < 3; kind++) {
+            dem_world *w[3];
+            double most = 0;
+            for (k = 0; k < 3; k++) w[k] = mixed_bed(kind, k > 0, 1 + k/2);
+            for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 1200), DEM_OK);
+            CHECK_EQ(w[1]->effects.clustered, kind == 1);
+            CHECK_EQ(w[1]->effects.unlike, kind < 2 ? MIXED/4 : 0);
+            CHECK(w[1]->domain_count > 7);
+            CHECK_EQ(dem_checkpoint_write(w[1], "build/tmp/members.dem"), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(w[2], "build/tmp/members.dem"), DEM_OK);
+            remove("build/tmp/members.dem");
+            for (k = 0; k < 3; k++) CHECK_EQ(scene_step(w[k], 300), DEM_OK);
+            CHECK(dem_counters_get(w[0]).contacts > 20);
+            CHECK_EQ(dem_world_hash_get(w[1]), dem_world_hash_get(w[2]));
+            for (i = 0; i < MIXED; i++) {
+                const dem_vec3 x = demi_at(w[0]->bodies.pos + 4*w[0]->bodies.slot_index[i]);
+                const dem_vec3 y = demi_at(w[1]->bodies.pos + 4*w[1]->bodies.slot_index[i]);
+                most = DEMI_MAX(most, (double)demi_length(demi_sub(x, y)));
+            }
+            CHECK_NEAR(most, 0, wide ? 1e-6 : 5e-4);        /* radii are 1e-3 */
+            for (k = 0; k < 3; k++) dem_world_destroy(w[k]);
+        }
+    }
+    TEST("a shape that is added between two steps leaves the world as it was: checkpoint, cost of effects, next steps") {
+        int kind, k;
+        for (kind = 0; kind < 3; kind += 2) {       /* the cluster of two is the first larger one */
+            dem_world *w[2];
+            dem_effect all[DEM_EFFECTS];
+            for (k = 0; k < 2; k++) w[k] = mixed_bed(kind, 1, 1);
+            CHECK_EQ(scene_step(w[0], 400), DEM_OK);
+            for (k = 0; k < 2; k++) row(w[k], 2, 8e-4, 6e-4);
+            CHECK_EQ(dem_checkpoint_write(w[0], "build/tmp/members.dem"), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(w[1], "build/tmp/members.dem"), DEM_OK);
+            remove("build/tmp/members.dem");
+            CHECK_EQ(dem_effects_get(w[0], 0.02, all), DEM_EFFECTS);
+            for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 400), DEM_OK);
+            CHECK_EQ(dem_world_hash_get(w[0]), dem_world_hash_get(w[1]));
             for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
         }
     }
