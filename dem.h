@@ -4942,20 +4942,34 @@ typedef struct demi_record {
 } demi_record;
 /* A contact of the present step, as the loops over contacts note it while events are recorded. */
 typedef struct demi_noted {
-    int32_t a, b;                  /* bodies; b -1: a wall */
-    int32_t wall;                  /* index */
-    int32_t old;                   /* 1: it existed before this step */
+    int32_t a, b;                  /* bodies; b < 0: wall -1 - b */
+    int32_t member, kind;          /* of the team; DEMI_NOTED_... below */
+    double force;                  /* N, repulsive force along the normal */
+    /* J, of this step: lost by the normal law, by sliding, by rolling; work against tangential
+       forces; stored in tangential springs */
+    double normal, slide, rolling, work, stored;
+} demi_noted;
+enum {
+    DEMI_NOTED_OLD = 1,            /* the contact existed before this step */
+    DEMI_NOTED_SPHERES = 2         /* two lone spheres: their centres tell where it is */
+};
+/* Where another contact is. Needed when it begins, or wears a wall. */
+typedef struct demi_noted_at {
     dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
     dem_vec3 shift;                /* m, from a to its image that touches the wall */
-    dem_real force;                /* N, repulsive force along the normal */
-    double energy[DEMI_E_ROLL + 1];            /* J, of this step */
-} demi_noted;
-/* A pair of bodies, or a body and a wall, that touch. event: as the user sees it, with the losses
-   booked so far. */
+} demi_noted_at;
+/* The open contact that a note was added to, with the bodies of the note. */
+typedef struct demi_matched { int32_t a, b, member, open; } demi_matched;
+enum { DEMI_EVENT_AHEAD = 12 };    /* notes between prefetching sums and changing them */
+/* Sums of an open contact, which each step changes: as in a note, over all steps so far. A line of
+   cache. */
+typedef struct demi_sums {
+    double normal, slide, rolling, work, impulse;
+    double stored, force, most;    /* of this step; force: N, most: the largest before */
+} demi_sums;
+/* A pair of bodies, or a body and a wall, that touch: an open contact. */
 typedef struct demi_ongoing {
-    dem_event event;
-    double force, stored, work;    /* N, of this step; J: of tangential springs now; against
-                                      tangential forces so far */
+    dem_event event;               /* how it began */
     double due[4];                 /* impulses: normal, slide and rolling losses (J) and normal
                                       impulse (N s) of the coming step, */
     int32_t facet, none;           /* on this facet of the wall; padding, 0 */
@@ -4979,12 +4993,16 @@ typedef struct demi_events {
     demi_event_counts n;
     dem_events_desc desc;
     demi_noted *noted;             /* of work group d: from noted_first[d] on */
+    demi_noted_at *noted_at;
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
-    uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
-    int32_t *order;                /* x 2: entries of `open` in the order of notes; odd turns are at
-                                      odd indices, even turns at even ones */
-    int ordered;                   /* number of notes in the last turn */
+    demi_sums *sums;               /* of each open contact */
+    uint32_t *last, turn;          /* of each: its last note; the first note of this turn; notes
+                                      are numbered through all turns, modulo 2^32 */
+    demi_matched *matched, *before;            /* by notes of this turn and of the turn before; then
+                                                  DEMI_EVENT_AHEAD that are 0 */
+    int before_count;
+    uint64_t rebuilds;             /* of lists, when `before` was filled */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */
@@ -18047,7 +18065,7 @@ static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
    >>noted
    Notes of the contacts of a step, while events are recorded (>>events). The loops that compute
    contact forces call these functions for each contact that acts; each work group writes to its own
-   segment, which demi_notes_room has allocated. Writes w->events.noted only.
+   segment, which demi_notes_room has allocated. Writes w->events.noted and noted_at only.
    --------------------------------------------------------------------------------------------- */
 
 /* Makes room for all contacts that are possible in this step, and empties the segments. Returns 0
@@ -18060,38 +18078,62 @@ static int demi_notes_room(dem_world *w) {
         e->noted_first[d + 1] = e->noted_first[d] + n;
         e->noted_count[d] = 0;
     }
-    return DEMI_GROW(w, e->noted, (size_t)e->noted_first[DEMI_DOMAINS]);
+    return DEMI_GROW(w, e->noted, (size_t)e->noted_first[DEMI_DOMAINS]) &&
+        DEMI_GROW(w, e->noted_at, (size_t)e->noted_first[DEMI_DOMAINS]);
 }
-/* Notes a contact of work group d. If the two do not overlap, it counts only if a law acts. */
-static void demi_note(dem_world *w, int d, const demi_noted *n, int overlaps) {
+/* Notes a contact of work group d. kind: of DEMI_NOTED_...; energy: J, DEMI_E_DASHPOT to
+   DEMI_E_ROLL. If the two do not overlap, it counts only if a law acts. Returns where to store its
+   place, or null if it does not count. */
+DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind, int overlaps,
+                                    dem_real force, const double *energy) {
     demi_events *e = &w->events;
-    double most = fabs((double)n->force);
-    int k;
-    for (k = 0; k <= DEMI_E_ROLL; k++) most = DEMI_MAX(most, fabs(n->energy[k]));
-    if (overlaps || most > 0) e->noted[e->noted_first[d] + e->noted_count[d]++] = *n;
+    const int i = e->noted_first[d] + e->noted_count[d];
+    demi_noted *n = e->noted + i;
+    int k, acts = overlaps || force > 0 || force < 0;
+    for (k = 0; k <= DEMI_E_ROLL && !acts; k++) acts = energy[k] > 0 || energy[k] < 0;
+    if (!acts) return 0;
+    e->noted_count[d]++;
+    n->a = a;
+    n->b = b;
+    n->member = w->member;
+    n->kind = kind;
+    n->force = (double)force;
+    n->normal = energy[DEMI_E_DASHPOT];
+    n->slide = energy[DEMI_E_SLIDE];
+    n->rolling = energy[DEMI_E_ROLL];
+    n->work = energy[DEMI_E_SHEAR_WORK];
+    n->stored = energy[DEMI_E_SHEAR_STORED];
+    return e->noted_at + i;
+}
+/* Returns the vector from the centre of a sphere to the contact point with another one, m. It
+   divides the distance of the centres as the radii do. radii: their sum, m. */
+static dem_vec3 demi_note_arm(dem_vec3 normal, dem_real radius, dem_real distance, dem_real radii) {
+    return demi_scale(normal, radius*distance/radii);
 }
 /* Notes the contacts of a tile of work group d: spheres, also those of clusters. */
 static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *span,
                            const demi_run *r) {
     int q, k;
     for (q = 0; q < span->count; q++) {
-        const int a = span->a[q], ball = span->ball ? span->ball[q] : -1;
-        const dem_real radius = ball < 0 ? w->bodies.pos[4*a + 3] : w->bodies.centre[4*ball + 3];
-        demi_noted n;
+        const int old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
+        const dem_vec3 normal = demi_row(t->normal, q);
+        double energy[DEMI_E_ROLL + 1];
+        demi_noted_at *at;
         if (!(t->touch[q] > 0)) continue;
-        n.a = a;
-        n.b = span->b[q];
-        n.wall = 0;
-        n.old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
-        n.normal = demi_row(t->normal, q);
-        /* the contact point divides the distance as the radii do */
-        n.arm = demi_scale(n.normal, radius*t->length[q]/(t->length[q] + t->overlap[q]));
-        if (ball >= 0) n.arm = demi_add(n.arm, demi_at(w->bodies.centre + 4*ball));
-        n.shift = demi_v(0, 0, 0);
-        n.force = -demi_dot(demi_row(t->force, q), n.normal);
-        n.energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
-        for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) n.energy[k] = (double)t->part[k][q];
-        demi_note(w, d, &n, t->overlap[q] > 0);
+        energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
+        for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) energy[k] = (double)t->part[k][q];
+        at = demi_note(w, d, span->a[q], span->b[q],
+                       old*DEMI_NOTED_OLD | !span->ball*DEMI_NOTED_SPHERES, t->overlap[q] > 0,
+                       -demi_dot(demi_row(t->force, q), normal), energy);
+        if (at && span->ball) {
+            const int ball = span->ball[q];
+            at->normal = normal;
+            at->arm = demi_note_arm(normal, ball < 0 ? w->bodies.pos[4*span->a[q] + 3] :
+                                    w->bodies.centre[4*ball + 3], t->length[q],
+                                    t->length[q] + t->overlap[q]);
+            if (ball >= 0) at->arm = demi_add(at->arm, demi_at(w->bodies.centre + 4*ball));
+            at->shift = demi_v(0, 0, 0);
+        }
     }
 }
 /* The force loop of spheres while events are recorded. */
@@ -22974,17 +23016,12 @@ static void demi_kept_energy(const dem_world *w, const demi_kept_tile *t, int q,
 static DEMI_APART void demi_kept_note(dem_world *w, int d, const demi_kept_tile *t, int q,
                                       const double *energy) {
     const demi_kept *c = t->contact[q];
-    demi_noted n;
-    n.a = c->a;
-    n.b = c->b;
-    n.wall = c->wall;
-    n.old = c->from >= 0;
-    n.normal = c->normal;
-    n.arm = c->arm_a;
-    n.shift = c->shift;
-    n.force = -demi_dot(c->force, c->normal);
-    memcpy(n.energy, energy, sizeof n.energy);
-    demi_note(w, d, &n, c->overlap > 0);
+    demi_noted_at *at = demi_note(w, d, c->a, c->b < 0 ? -1 - c->wall : c->b, c->from >= 0,
+                                  c->overlap > 0, -demi_dot(c->force, c->normal), energy);
+    if (!at) return;
+    at->normal = c->normal;
+    at->arm = c->arm_a;
+    at->shift = c->shift;
 }
 
 /* Adds the rates that a law returned for user-defined numbers, times the weight of contact c. */
@@ -25790,20 +25827,17 @@ static void demi_movers_force(dem_world *w, int d) {
 static DEMI_APART void demi_impulse_note(dem_world *w, int d, const demi_meeting *m,
                                          const demi_spot *o, const demi_kept *k, int old,
                                          dem_real force, const double *energy) {
-    demi_noted n;
-    n.a = m->a;
-    n.b = k && k->b < 0 ? -1 : m->b;
-    n.wall = k ? k->wall : 0;
-    n.old = old;
-    n.normal = o->normal;
-    n.arm = o->arm_a;
-    n.shift = n.b < 0 ? k->shift : demi_v(0, 0, 0);
-    n.force = force;
-    memset(n.energy, 0, sizeof n.energy);
-    n.energy[DEMI_E_DASHPOT] = energy[0];
-    n.energy[DEMI_E_SLIDE] = n.energy[DEMI_E_SHEAR_WORK] = energy[1];
-    n.energy[DEMI_E_ROLL] = energy[2];
-    demi_note(w, d, &n, 0);
+    const int wall = k && k->b < 0;
+    double all[DEMI_E_ROLL + 1] = {0};
+    demi_noted_at *at;
+    all[DEMI_E_DASHPOT] = energy[0];
+    all[DEMI_E_SLIDE] = all[DEMI_E_SHEAR_WORK] = energy[1];
+    all[DEMI_E_ROLL] = energy[2];
+    at = demi_note(w, d, m->a, wall ? -1 - k->wall : m->b, old, 0, force, all);
+    if (!at) return;
+    at->normal = o->normal;
+    at->arm = o->arm_a;
+    at->shift = wall ? k->shift : demi_v(0, 0, 0);
 }
 /* Stores the results of a domain's constraints: contact history, forces on walls, energy losses.
    The work of an impulse is exact with the mean of the velocities before and after the step. */
@@ -30057,13 +30091,14 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
    >>events
    Contact events: every contact from its beginning to its end, with what it has lost. The loops
    over contacts note the contacts of a step (>>noted). This part adds them, in the order of work
-   groups, to the open contact of the two bodies, or of the body and its wall. A hash table finds
-   it. A contact that was not noted in a step has ended: it is added to the statistics of its
-   materials, and passed to the user's function when the step is complete. The sums of an open
-   contact do not depend on its place in the list, so the bits are the same for any number of
-   threads. Slabs note contacts in their own worlds, and their head does the rest. With impulses a
-   contact loses its energy during the coming step; until then the losses are due (demi_due_book).
-   Owns w->events. In all functions w is the head of a team or a single world.
+   groups, to the open contact of the two bodies, or of the body and its wall. The notes of the
+   step before tell which one it is, or a hash table. A contact that was not noted in a step has
+   ended: it is added to the statistics of its materials, and passed to the user's function when
+   the step is complete. The sums of an open contact do not depend on its place in the list, so the
+   bits are the same for any number of threads. Slabs note contacts in their own worlds, and their
+   head does the rest. With impulses a contact loses its energy during the coming step; until then
+   the losses are due (demi_due_book). Owns w->events. In all functions w is the head of a team or
+   a single world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- the table of open contacts --- */
@@ -30092,21 +30127,35 @@ static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
    four fits, *next becomes the number after it. */
 static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     int k;
-    for (k = *next; k < *next + 4 && k < e->ordered; k++) {
-        const int last = e->order[2*k + !(e->turn & 1)];
-        if (last >= e->n.open || !demi_event_same(&e->open[last].event, key)) continue;
+    for (k = *next; k < *next + 4 && k < e->before_count; k++) {
+        const int open = e->before[k].open;
+        if (open >= e->n.open || !demi_event_same(&e->open[open].event, key)) continue;
         *next = k + 1;
-        return last;
+        return open;
     }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
-/* Prefetches the open contact that is needed some six notes later. */
+/* The same for a note, while lists and thus indices of bodies are those of the last step: returns
+   -1 also if the contact has a further note, or none of the four fits. An open contact is the one
+   that note k was added to if k is its last note: contacts may have moved since. */
+DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int *next) {
+    const uint32_t first = e->turn - 1 - (uint32_t)e->before_count;
+    int k;
+    for (k = *next; k < *next + 4 && k < e->before_count; k++) {
+        const demi_matched *m = e->before + k;
+        if (m->a != n->a || m->b != n->b || m->member != n->member) continue;
+        if (m->open >= e->n.open || e->last[m->open] != first + (uint32_t)k) return -1;
+        *next = k + 1;
+        return m->open;
+    }
+    return -1;
+}
+/* Prefetches the sums of the open contact that is probably needed some notes after number
+   `next` <= before_count. */
 DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
-    const int i = next + 6 < e->ordered ? e->order[2*(next + 6) + !(e->turn & 1)] : e->n.open;
-    size_t k;
-    if (i >= e->n.open) return;
-    DEMI_FETCH(e->seen + i);
-    for (k = 0; k < sizeof *e->open; k += 64) DEMI_FETCH((const char *)(e->open + i) + k);
+    const int i = e->before[next + DEMI_EVENT_AHEAD - 1].open;
+    DEMI_FETCH(e->last + i);
+    DEMI_FETCH(e->sums + i);
 }
 /* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
    out. */
@@ -30114,7 +30163,8 @@ static int demi_event_widen(dem_world *w) {
     demi_events *e = &w->events;
     const size_t n = (size_t)e->n.open + 1;
     int i, size = e->table_size ? e->table_size : 64;
-    if (!DEMI_GROW(w, e->open, n) || !DEMI_GROW(w, e->seen, n)) return 0;
+    if (!DEMI_GROW(w, e->open, n) || !DEMI_GROW(w, e->sums, n) || !DEMI_GROW(w, e->last, n))
+        return 0;
     while ((size_t)size < 2*n) size *= 2;
     if (size == e->table_size) return 1;
     if (!DEMI_GROW(w, e->table, (size_t)size)) return 0;
@@ -30139,7 +30189,8 @@ static void demi_event_drop(demi_events *e, int i) {
     if (i < last) {
         *demi_event_place(e, &e->open[last].event) = i + 1;
         e->open[i] = e->open[last];
-        e->seen[i] = e->seen[last];
+        e->sums[i] = e->sums[last];
+        e->last[i] = e->last[last];
     }
     e->n.open--;
 }
@@ -30196,19 +30247,13 @@ static int demi_events_room(dem_world *w) {
     }
     return 1;
 }
-/* Books losses of a contact, J. x: its contact point, m, for the wear of facets. */
-static void demi_event_lose(dem_world *w, demi_ongoing *o, const double *lost, int facet) {
-    dem_event *e = &o->event;
-    demi_worn *worn;
-    e->lost_normal += lost[0];
-    e->lost_slide += lost[1];
-    e->lost_rolling += lost[2];
-    if (!e->wall) return;
-    worn = &w->events.walls[(e->wall - 1)%DEMI_WALLS_MOST];
-    if (worn->id != e->wall) return;            /* removed since */
-    worn->normal += lost[0];
-    worn->slide += lost[1];
-    if (facet < worn->count) w->events.facets[worn->first + facet] += lost[1];
+/* Books losses on the wall of a contact, J: normal, by sliding on this facet. */
+static void demi_event_wear(dem_world *w, int32_t wall, int facet, double normal, double slide) {
+    demi_worn *worn = &w->events.walls[(wall - 1)%DEMI_WALLS_MOST];
+    if (worn->id != wall) return;               /* removed since */
+    worn->normal += normal;
+    worn->slide += slide;
+    if (facet < worn->count) w->events.facets[worn->first + facet] += slide;
 }
 
 /* --- contacts of a step --- */
@@ -30221,37 +30266,48 @@ static int demi_event_key(const dem_world *m, const demi_noted *n, dem_event *ke
     const int flip = n->b >= 0 && b.slot < a.slot;
     key->a = flip ? b : a;
     key->b = flip ? a : b;
-    key->wall = n->b < 0 ? m->walls[n->wall].id : 0;
+    key->wall = n->b < 0 ? m->walls[-1 - n->b].id : 0;
     return flip;
 }
 /* Fills in how a contact begins. m: the world that has noted it. */
 static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_noted *n,
-                             dem_event *e) {
+                             const demi_noted_at *noted, dem_event *e) {
     const demi_bodies *b = &m->bodies;
+    const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
     const demi_periods all = demi_periods_of(w), own = demi_periods_of(m);
-    const dem_vec3 at = demi_add(demi_at(b->pos + 4*n->a), n->arm);
-    dem_vec3 v = demi_velocity_at(b->vel, b->spin, n->a, n->arm), slip;
+    const dem_vec3 centre = demi_at(b->pos + 4*n->a);
+    const dem_vec3 way = wall ? centre :        /* to the other centre */
+        demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b), centre));
+    dem_vec3 normal, arm, v, slip;
     dem_real inv = b->inv_mass[n->a];
     const int flip = demi_event_key(m, n, e);
     const int32_t material_a = b->material[n->a];
-    const int32_t material_b = n->b < 0 ? m->walls[n->wall].material + 1 : b->material[n->b];
-    if (n->b < 0)
-        v = demi_sub(v, demi_surface_at(&m->walls[n->wall].pose, demi_add(at, n->shift)));
+    const int32_t material_b = wall ? wall->material + 1 : b->material[n->b];
+    if (n->kind & DEMI_NOTED_SPHERES) {
+        const dem_real length = demi_length(way), radius = b->pos[4*n->a + 3];
+        normal = demi_scale(way, 1/DEMI_MAX(length, DEM_R(1e-30)));
+        arm = demi_note_arm(normal, radius, length, radius + b->pos[4*n->b + 3]);
+    } else {
+        normal = noted->normal;
+        arm = noted->arm;
+    }
+    v = demi_velocity_at(b->vel, b->spin, n->a, arm);
+    if (wall)
+        v = demi_sub(v, demi_surface_at(&wall->pose, demi_add(demi_add(centre, arm),
+                                                              noted->shift)));
     else {
-        const dem_vec3 way = demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b),
-                                                         demi_at(b->pos + 4*n->a)));
-        v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(n->arm, way)));
+        v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(arm, way)));
         inv += b->inv_mass[n->b];
     }
-    slip = demi_sub(v, demi_scale(n->normal, demi_dot(v, n->normal)));
+    slip = demi_sub(v, demi_scale(normal, demi_dot(v, normal)));
     e->kind = DEM_EVENT_BEGIN;
     e->material_a.id = flip ? material_b : material_a;
     e->material_b.id = flip ? material_a : material_b;
-    e->cut = w->events.n.fresh && n->old;
-    e->point = demi_place_of(&all, at);
-    e->normal = demi_scale(n->normal, flip ? -1 : 1);
+    e->cut = w->events.n.fresh && (n->kind & DEMI_NOTED_OLD);
+    e->point = demi_place_of(&all, demi_add(centre, arm));
+    e->normal = demi_scale(normal, flip ? -1 : 1);
     e->begin = e->end = w->clock.time;
-    e->closing_speed = (double)demi_dot(v, n->normal);
+    e->closing_speed = (double)demi_dot(v, normal);
     e->slip_speed = (double)demi_length(slip);
     e->mass = inv > 0 ? 1/(double)inv : 0;
 }
@@ -30263,59 +30319,74 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
     e->pending[e->n.pending++] = *event;
     return 1;
 }
-/* What a tangential spring gains while radii change and nothing moves is work of growth, not of the
-   contact (>>growth); so that it does not count as a loss, it is added here, as in the ledger. */
-static void demi_event_regrow(const dem_world *w, demi_ongoing *o, double stored) {
-    if (demi_member(w, 0)->stage.grown) o->work += stored;
-}
-/* Adds a noted contact to its open contact, which begins if there is none. *next: as for
-   demi_event_find. Returns the index of the open contact, -1 if memory ran out. */
-static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n, int *next) {
+/* True if radii change and nothing moves. What a tangential spring then gains is work of growth,
+   not of the contact (>>growth). So that it does not count as a loss, it is added to the work, as
+   in the ledger. */
+static int demi_event_grown(const dem_world *w) { return demi_member(w, 0)->stage.grown; }
+/* Returns the index of the open contact of a note, which begins if there is none; -1 if memory ran
+   out. *next: as for demi_event_find. */
+static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const demi_noted *n,
+                                      const demi_noted_at *at, int *next) {
     demi_events *e = &w->events;
-    const int later = !demi_response_is(w, DEMI_LASTING);
-    const double lost[3] = {n->energy[DEMI_E_DASHPOT], n->energy[DEMI_E_SLIDE],
-                            n->energy[DEMI_E_ROLL]};
-    const double dt = later || w->stage.forces_valid ? (double)w->clock.dt : 0;
-    const int known = !(e->n.fresh && n->old);
     dem_event key;
-    demi_ongoing *o;
-    int i, k, facet = 0;
+    int i;
     demi_event_key(m, n, &key);
     i = demi_event_find(e, &key, next);
-    if (i < 0) {
-        if (!demi_event_widen(w)) return -1;
-        i = e->n.open;
-        memset(&e->open[i], 0, sizeof e->open[i]);
-        e->seen[i] = e->turn - 1;
-        demi_event_begin(w, m, n, &e->open[i].event);
-        if (!demi_event_wait(w, &e->open[i].event)) return -1;
-        *demi_event_place(e, &key) = ++e->n.open;
-    }
-    o = &e->open[i];
-    if (e->seen[i] != e->turn) {
-        o->event.force = DEMI_MAX(o->event.force, o->force);
-        demi_event_regrow(w, o, -o->stored);
-        o->force = o->stored = 0;
-        e->seen[i] = e->turn;
-    }
-    o->force += (double)n->force;
-    o->stored += n->energy[DEMI_E_SHEAR_STORED];
-    if (known) demi_event_regrow(w, o, n->energy[DEMI_E_SHEAR_STORED]);
-    if (n->b < 0 && lost[1] > 0 && demi_wall_kinds[m->walls[n->wall].kind].corners > 1)
-        facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
-                                                                demi_at(m->bodies.pos + 4*n->a)));
-    if (!later) {
-        /* a spring that exists already: what it stored before is unknown, but not lost */
-        o->work += known ? n->energy[DEMI_E_SHEAR_WORK]
-            : lost[1] + n->energy[DEMI_E_SHEAR_STORED];
-        o->event.impulse += (double)n->force*dt;
-        demi_event_lose(w, o, lost, facet);
-        return i;
-    }
-    for (k = 0; k < 3; k++) o->due[k] += lost[k];
-    o->due[3] += (double)n->force*dt;
-    o->facet = facet;
+    if (i >= 0) return i;
+    if (!demi_event_widen(w)) return -1;
+    i = e->n.open;
+    memset(&e->open[i], 0, sizeof e->open[i]);
+    memset(&e->sums[i], 0, sizeof e->sums[i]);
+    e->last[i] = e->turn - 1;
+    demi_event_begin(w, m, n, at, &e->open[i].event);
+    if (!demi_event_wait(w, &e->open[i].event)) return -1;
+    *demi_event_place(e, &key) = ++e->n.open;
     return i;
+}
+/* What holds for all notes of a turn. */
+typedef struct demi_turn {
+    double dt;                     /* s, 0 if the bodies have not moved yet */
+    int lasting, grown, fresh;     /* as demi_response_is, demi_event_grown, e->n.fresh */
+    int after, listed;             /* 1: there are notes of the turn before; and the lists stayed */
+} demi_turn;
+/* Adds note number `number` to open contact i. first: 1 if it is known to be the contact's first
+   one in this turn. */
+DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n,
+                               const demi_noted_at *at, int i, uint32_t number, int first,
+                               const demi_turn *turn) {
+    demi_events *e = &w->events;
+    const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
+    const int known = !(turn->fresh && (n->kind & DEMI_NOTED_OLD));
+    demi_sums *s = &e->sums[i];
+    int facet = 0;
+    if (first || e->last[i] - e->turn > number - e->turn) {
+        s->most = DEMI_MAX(s->most, s->force);
+        if (turn->grown) s->work -= s->stored;
+        s->force = s->stored = 0;
+    }
+    e->last[i] = number;
+    s->force += n->force;
+    s->stored += n->stored;
+    if (known && turn->grown) s->work += n->stored;
+    if (wall && n->slide > 0 && demi_wall_kinds[wall->kind].corners > 1)
+        facet = demi_worn_facet(wall, demi_add(demi_add(at->arm, at->shift),
+                                               demi_at(m->bodies.pos + 4*n->a)));
+    if (turn->lasting) {
+        /* a spring that exists already: what it stored before is unknown, but not lost */
+        s->normal += n->normal;
+        s->slide += n->slide;
+        s->rolling += n->rolling;
+        s->work += known ? n->work : n->slide + n->stored;
+        s->impulse += n->force*turn->dt;
+        if (wall) demi_event_wear(w, wall->id, facet, n->normal, n->slide);
+    } else {
+        demi_ongoing *o = &e->open[i];
+        o->due[0] += n->normal;
+        o->due[1] += n->slide;
+        o->due[2] += n->rolling;
+        o->due[3] += n->force*turn->dt;
+        o->facet = facet;
+    }
 }
 /* Impulses: books what was due when bodies have moved, see demi_due_book. */
 static void demi_events_due(dem_world *w) {
@@ -30323,19 +30394,28 @@ static void demi_events_due(dem_world *w) {
     int i;
     for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++) {
         demi_ongoing *o = &e->open[i];
-        demi_event_lose(w, o, o->due, o->facet);
-        o->work += o->due[1];                   /* no springs: all of it slides */
-        o->event.impulse += o->due[3];
+        demi_sums *s = &e->sums[i];
+        s->normal += o->due[0];
+        s->slide += o->due[1];
+        s->rolling += o->due[2];
+        s->work += o->due[1];                   /* no springs: all of it slides */
+        s->impulse += o->due[3];
+        if (o->event.wall) demi_event_wear(w, o->event.wall, o->facet, o->due[0], o->due[1]);
         memset(o->due, 0, sizeof o->due);
     }
 }
-/* Returns an open contact as users see it. */
-static dem_event demi_event_shown(const dem_world *w, const demi_ongoing *o, dem_event_kind kind) {
-    dem_event e = o->event;
+/* Returns open contact i as users see it. */
+static dem_event demi_event_shown(const dem_world *w, int i, dem_event_kind kind) {
+    const demi_sums *s = &w->events.sums[i];
+    dem_event e = w->events.open[i].event;
     e.kind = kind;
     e.end = w->clock.time;
-    e.force = DEMI_MAX(e.force, o->force);
-    e.lost_tangent = o->work - e.lost_slide - (kind == DEM_EVENT_END ? 0 : o->stored);
+    e.force = DEMI_MAX(s->most, s->force);
+    e.impulse = s->impulse;
+    e.lost_normal = s->normal;
+    e.lost_slide = s->slide;
+    e.lost_tangent = s->work - s->slide - (kind == DEM_EVENT_END ? 0 : s->stored);
+    e.lost_rolling = s->rolling;
     return e;
 }
 
@@ -30387,13 +30467,20 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
     }
     return 0;
 }
+/* Returns the last open contact up to number i that was not noted in this turn, -1 if there is
+   none. */
+static int demi_event_left(const demi_events *e, int i) {
+    const uint32_t *last = e->last, turn = e->turn, count = (uint32_t)e->before_count;
+    while (i >= 0 && last[i] - turn < count) i--;
+    return i;
+}
 /* Ends open contact i. Returns 0 if memory ran out. */
 static int demi_event_end(dem_world *w, int i) {
     demi_events *e = &w->events;
     dem_event event;
     dem_wall wall;
-    demi_event_regrow(w, &e->open[i], -e->open[i].stored);
-    event = demi_event_shown(w, &e->open[i], DEM_EVENT_END);
+    if (demi_event_grown(w)) e->sums[i].work -= e->sums[i].stored;
+    event = demi_event_shown(w, i, DEM_EVENT_END);
     wall.id = event.wall;
     if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
                                            : !demi_event_exists(w, event.b))) event.cut |= 2;
@@ -30404,7 +30491,7 @@ static int demi_event_end(dem_world *w, int i) {
 static void demi_events_clear(dem_world *w) {
     demi_events *e = &w->events;
     memset(&e->n, 0, sizeof e->n);
-    e->ordered = 0;
+    e->before_count = 0;
     if (e->table) memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
 }
 /* Allocates what a recording of the present counts needs. Returns 0 if memory ran out. */
@@ -30413,7 +30500,8 @@ static int demi_events_reserve(dem_world *w) {
     int size = 64;
     while (size/2 < e->n.open) size *= 2;
     if (!e->n.on) return 1;
-    if (!DEMI_GROW(w, e->open, (size_t)e->n.open) || !DEMI_GROW(w, e->seen, (size_t)e->n.open) ||
+    if (!DEMI_GROW(w, e->open, (size_t)e->n.open) || !DEMI_GROW(w, e->sums, (size_t)e->n.open) ||
+        !DEMI_GROW(w, e->last, (size_t)e->n.open) ||
         !DEMI_GROW(w, e->pending, (size_t)e->n.pending) ||
         !DEMI_GROW(w, e->pairs, (size_t)e->n.pairs) ||
         !DEMI_GROW(w, e->walls, (size_t)e->n.walls) ||
@@ -30426,12 +30514,12 @@ static int demi_events_reserve(dem_world *w) {
 static void demi_events_index(dem_world *w) {
     demi_events *e = &w->events;
     int i;
-    e->ordered = 0;
+    e->before_count = 0;
     if (!e->n.on) return;
     memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
     for (i = 0; i < e->n.open; i++) {
         *demi_event_place(e, &e->open[i].event) = i + 1;
-        e->seen[i] = e->turn;
+        e->last[i] = e->turn;                   /* before the next turn */
     }
 }
 /* Copies the recording of another world. Returns 0 if memory ran out. */
@@ -30443,6 +30531,7 @@ static int demi_events_copy(dem_world *to, const dem_world *from) {
     if (!f->n.on) return 1;
     if (!demi_events_reserve(to)) { memset(&e->n, 0, sizeof e->n); return 0; }
     if (e->n.open) memcpy(e->open, f->open, (size_t)e->n.open*sizeof *e->open);
+    if (e->n.open) memcpy(e->sums, f->sums, (size_t)e->n.open*sizeof *e->sums);
     if (e->n.pending) memcpy(e->pending, f->pending, (size_t)e->n.pending*sizeof *e->pending);
     if (e->n.pairs) memcpy(e->pairs, f->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
     if (e->n.walls) memcpy(e->walls, f->walls, (size_t)e->n.walls*sizeof *e->walls);
@@ -30466,33 +30555,61 @@ static void demi_events_start(dem_world *w) {
     w->events.n.since = w->clock.time;
     demi_events_switch(w, 1);
 }
+/* Takes over the contacts that work group d of member m has noted. count: notes taken before, and
+   afterwards with these; *next: as for demi_event_find. Returns 0 if memory ran out. */
+static DEMI_APART int demi_events_add(dem_world *w, const dem_world *m, int d, int *count,
+                                      int *next, const demi_turn *of) {
+    demi_events *e = &w->events;
+    const demi_turn turn = *of;
+    const demi_noted *n = m->events.noted + m->events.noted_first[d];
+    const demi_noted *const end = n + m->events.noted_count[d];
+    const demi_noted_at *at = m->events.noted_at + m->events.noted_first[d];
+    demi_matched *now = e->matched + *count;
+    uint32_t number = e->turn + (uint32_t)*count;
+    *count += (int)(end - n);
+    for (; n < end; n++, at++, now++, number++) {
+        const int again = turn.listed ? demi_event_again(e, n, next) : -1;
+        const int open = again >= 0 ? again : demi_event_open(w, m, n, at, next);
+        if (open < 0) return 0;
+        if (turn.after) demi_event_ahead(e, *next);
+        now->a = n->a;
+        now->b = n->b;
+        now->member = n->member;
+        now->open = open;
+        demi_event_add(w, m, n, at, open, number, again >= 0, &turn);
+    }
+    return 1;
+}
 /* Takes over the contacts that all members have noted, and ends those that nobody noted. If memory
    runs out, recording stops; demi_events_tell reports it. */
 static void demi_events_take(dem_world *w) {
     demi_events *e = &w->events;
+    demi_matched *const before = e->matched;
+    demi_turn turn;
     int i, k, d, ok, next = 0, count = 0;
-    e->turn++;
+    turn.lasting = demi_response_is(w, DEMI_LASTING);
+    turn.grown = demi_event_grown(w);
+    turn.fresh = e->n.fresh;
+    turn.after = e->before_count > 0;
+    turn.listed = turn.after && e->rebuilds == w->clock.rebuilds;
+    turn.dt = !turn.lasting || w->stage.forces_valid ? (double)w->clock.dt : 0;
     for (k = 0; k < demi_members(w); k++)
         for (d = 0; d < DEMI_DOMAINS; d++) count += demi_member(w, k)->events.noted_count[d];
-    ok = DEMI_GROW(w, e->order, 2*(size_t)count);
+    e->matched = e->before;
+    e->before = before;
+    e->turn += (uint32_t)e->before_count + 1;
+    e->rebuilds = w->clock.rebuilds;
+    ok = DEMI_GROW(w, e->matched, (size_t)count + DEMI_EVENT_AHEAD);
     count = 0;
-    for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++)
+    for (i = 0; i < e->n.open && !turn.lasting; i++)
         memset(e->open[i].due, 0, sizeof e->open[i].due);   /* a new solution replaces the last */
-    for (k = 0; k < demi_members(w); k++) {
-        const dem_world *m = demi_member(w, k);
-        const demi_events *own = &m->events;
-        for (d = 0; d < m->domain_count; d++)
-            for (i = 0; i < own->noted_count[d] && ok; i++) {
-                int at;
-                demi_event_ahead(e, next);
-                at = demi_event_add(w, m, own->noted + own->noted_first[d] + i, &next);
-                e->order[2*(size_t)count++ + (e->turn & 1)] = at;
-                ok = at >= 0;
-            }
-    }
-    e->ordered = count;
-    for (i = e->n.open - 1; i >= 0 && ok; i--)
-        if (e->seen[i] != e->turn) ok = demi_event_end(w, i);
+    for (k = 0; k < demi_members(w); k++)
+        for (d = 0; d < demi_member(w, k)->domain_count && ok; d++)
+            ok = demi_events_add(w, demi_member(w, k), d, &count, &next, &turn);
+    if (ok) memset(e->matched + count, 0, DEMI_EVENT_AHEAD*sizeof *e->matched);
+    e->before_count = count;
+    for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
+        ok = demi_event_end(w, i);
     e->n.fresh = 0;
     if (ok) return;
     demi_events_clear(w);
@@ -30574,7 +30691,7 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     if (!fn || !n) return n;
     all = (dem_event *)demi_alloc(w, (size_t)n, sizeof *all);
     if (!all) { demi_no_memory(w, __func__); return -1; }
-    for (i = 0; i < n; i++) all[i] = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+    for (i = 0; i < n; i++) all[i] = demi_event_shown(w, i, DEM_EVENT_OPEN);
     qsort(all, (size_t)n, sizeof *all, demi_event_compare);
     was = demi_calls(w, __func__, 0);
     for (i = 0; i < n; i++) fn(&all[i], user);
@@ -36110,7 +36227,7 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
         }
     }
     for (i = 0; i < w->events.n.open; i++) {
-        const dem_event e = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+        const dem_event e = demi_event_shown(w, i, DEM_EVENT_OPEN);
         if (!demi_impacts_fit((int)e.material_a.id - 1, (int)e.material_b.id - 1, a, b)) continue;
         out->open++;
         out->lost_normal += e.lost_normal;
@@ -36547,6 +36664,7 @@ static void demi_visit_outputs(dem_world *w, demi_stream *s) {
 static void demi_visit_events(dem_world *w, demi_stream *s) {
     demi_events *e = &w->events;
     demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
+    demi_visit(s, e->sums, (size_t)e->n.open*sizeof *e->sums);
     demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
     demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
     demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
@@ -36585,8 +36703,8 @@ static uint32_t demi_checkpoint_layout(void) {
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
                             sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written),
-                            sizeof(demi_event_counts), sizeof(demi_ongoing), sizeof(demi_impacts),
-                            (size_t)DEM_DOMAIN_BODIES};
+                            sizeof(demi_event_counts), sizeof(demi_ongoing), sizeof(demi_sums),
+                            sizeof(demi_impacts), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;
     int k;
@@ -36955,7 +37073,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of rails", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
-    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open, sizeof(demi_ongoing)) ||
+    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open,
+                                             sizeof(demi_ongoing) + sizeof(demi_sums)) ||
         !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
         !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
         !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||

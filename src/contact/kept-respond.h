@@ -430,17 +430,12 @@ static void demi_kept_energy(const dem_world *w, const demi_kept_tile *t, int q,
 static DEMI_APART void demi_kept_note(dem_world *w, int d, const demi_kept_tile *t, int q,
                                       const double *energy) {
     const demi_kept *c = t->contact[q];
-    demi_noted n;
-    n.a = c->a;
-    n.b = c->b;
-    n.wall = c->wall;
-    n.old = c->from >= 0;
-    n.normal = c->normal;
-    n.arm = c->arm_a;
-    n.shift = c->shift;
-    n.force = -demi_dot(c->force, c->normal);
-    memcpy(n.energy, energy, sizeof n.energy);
-    demi_note(w, d, &n, c->overlap > 0);
+    demi_noted_at *at = demi_note(w, d, c->a, c->b < 0 ? -1 - c->wall : c->b, c->from >= 0,
+                                  c->overlap > 0, -demi_dot(c->force, c->normal), energy);
+    if (!at) return;
+    at->normal = c->normal;
+    at->arm = c->arm_a;
+    at->shift = c->shift;
 }
 
 /* Adds the rates that a law returned for user-defined numbers, times the weight of contact c. */

@@ -2,7 +2,7 @@
    >>noted
    Notes of the contacts of a step, while events are recorded (>>events). The loops that compute
    contact forces call these functions for each contact that acts; each work group writes to its own
-   segment, which demi_notes_room has allocated. Writes w->events.noted only.
+   segment, which demi_notes_room has allocated. Writes w->events.noted and noted_at only.
    --------------------------------------------------------------------------------------------- */
 
 /* Makes room for all contacts that are possible in this step, and empties the segments. Returns 0
@@ -15,38 +15,62 @@ static int demi_notes_room(dem_world *w) {
         e->noted_first[d + 1] = e->noted_first[d] + n;
         e->noted_count[d] = 0;
     }
-    return DEMI_GROW(w, e->noted, (size_t)e->noted_first[DEMI_DOMAINS]);
+    return DEMI_GROW(w, e->noted, (size_t)e->noted_first[DEMI_DOMAINS]) &&
+        DEMI_GROW(w, e->noted_at, (size_t)e->noted_first[DEMI_DOMAINS]);
 }
-/* Notes a contact of work group d. If the two do not overlap, it counts only if a law acts. */
-static void demi_note(dem_world *w, int d, const demi_noted *n, int overlaps) {
+/* Notes a contact of work group d. kind: of DEMI_NOTED_...; energy: J, DEMI_E_DASHPOT to
+   DEMI_E_ROLL. If the two do not overlap, it counts only if a law acts. Returns where to store its
+   place, or null if it does not count. */
+DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind, int overlaps,
+                                    dem_real force, const double *energy) {
     demi_events *e = &w->events;
-    double most = fabs((double)n->force);
-    int k;
-    for (k = 0; k <= DEMI_E_ROLL; k++) most = DEMI_MAX(most, fabs(n->energy[k]));
-    if (overlaps || most > 0) e->noted[e->noted_first[d] + e->noted_count[d]++] = *n;
+    const int i = e->noted_first[d] + e->noted_count[d];
+    demi_noted *n = e->noted + i;
+    int k, acts = overlaps || force > 0 || force < 0;
+    for (k = 0; k <= DEMI_E_ROLL && !acts; k++) acts = energy[k] > 0 || energy[k] < 0;
+    if (!acts) return 0;
+    e->noted_count[d]++;
+    n->a = a;
+    n->b = b;
+    n->member = w->member;
+    n->kind = kind;
+    n->force = (double)force;
+    n->normal = energy[DEMI_E_DASHPOT];
+    n->slide = energy[DEMI_E_SLIDE];
+    n->rolling = energy[DEMI_E_ROLL];
+    n->work = energy[DEMI_E_SHEAR_WORK];
+    n->stored = energy[DEMI_E_SHEAR_STORED];
+    return e->noted_at + i;
+}
+/* Returns the vector from the centre of a sphere to the contact point with another one, m. It
+   divides the distance of the centres as the radii do. radii: their sum, m. */
+static dem_vec3 demi_note_arm(dem_vec3 normal, dem_real radius, dem_real distance, dem_real radii) {
+    return demi_scale(normal, radius*distance/radii);
 }
 /* Notes the contacts of a tile of work group d: spheres, also those of clusters. */
 static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *span,
                            const demi_run *r) {
     int q, k;
     for (q = 0; q < span->count; q++) {
-        const int a = span->a[q], ball = span->ball ? span->ball[q] : -1;
-        const dem_real radius = ball < 0 ? w->bodies.pos[4*a + 3] : w->bodies.centre[4*ball + 3];
-        demi_noted n;
+        const int old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
+        const dem_vec3 normal = demi_row(t->normal, q);
+        double energy[DEMI_E_ROLL + 1];
+        demi_noted_at *at;
         if (!(t->touch[q] > 0)) continue;
-        n.a = a;
-        n.b = span->b[q];
-        n.wall = 0;
-        n.old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
-        n.normal = demi_row(t->normal, q);
-        /* the contact point divides the distance as the radii do */
-        n.arm = demi_scale(n.normal, radius*t->length[q]/(t->length[q] + t->overlap[q]));
-        if (ball >= 0) n.arm = demi_add(n.arm, demi_at(w->bodies.centre + 4*ball));
-        n.shift = demi_v(0, 0, 0);
-        n.force = -demi_dot(demi_row(t->force, q), n.normal);
-        n.energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
-        for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) n.energy[k] = (double)t->part[k][q];
-        demi_note(w, d, &n, t->overlap[q] > 0);
+        energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
+        for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) energy[k] = (double)t->part[k][q];
+        at = demi_note(w, d, span->a[q], span->b[q],
+                       old*DEMI_NOTED_OLD | !span->ball*DEMI_NOTED_SPHERES, t->overlap[q] > 0,
+                       -demi_dot(demi_row(t->force, q), normal), energy);
+        if (at && span->ball) {
+            const int ball = span->ball[q];
+            at->normal = normal;
+            at->arm = demi_note_arm(normal, ball < 0 ? w->bodies.pos[4*span->a[q] + 3] :
+                                    w->bodies.centre[4*ball + 3], t->length[q],
+                                    t->length[q] + t->overlap[q]);
+            if (ball >= 0) at->arm = demi_add(at->arm, demi_at(w->bodies.centre + 4*ball));
+            at->shift = demi_v(0, 0, 0);
+        }
     }
 }
 /* The force loop of spheres while events are recorded. */

@@ -282,20 +282,34 @@ typedef struct demi_record {
 } demi_record;
 /* A contact of the present step, as the loops over contacts note it while events are recorded. */
 typedef struct demi_noted {
-    int32_t a, b;                  /* bodies; b -1: a wall */
-    int32_t wall;                  /* index */
-    int32_t old;                   /* 1: it existed before this step */
+    int32_t a, b;                  /* bodies; b < 0: wall -1 - b */
+    int32_t member, kind;          /* of the team; DEMI_NOTED_... below */
+    double force;                  /* N, repulsive force along the normal */
+    /* J, of this step: lost by the normal law, by sliding, by rolling; work against tangential
+       forces; stored in tangential springs */
+    double normal, slide, rolling, work, stored;
+} demi_noted;
+enum {
+    DEMI_NOTED_OLD = 1,            /* the contact existed before this step */
+    DEMI_NOTED_SPHERES = 2         /* two lone spheres: their centres tell where it is */
+};
+/* Where another contact is. Needed when it begins, or wears a wall. */
+typedef struct demi_noted_at {
     dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
     dem_vec3 shift;                /* m, from a to its image that touches the wall */
-    dem_real force;                /* N, repulsive force along the normal */
-    double energy[DEMI_E_ROLL + 1];            /* J, of this step */
-} demi_noted;
-/* A pair of bodies, or a body and a wall, that touch. event: as the user sees it, with the losses
-   booked so far. */
+} demi_noted_at;
+/* The open contact that a note was added to, with the bodies of the note. */
+typedef struct demi_matched { int32_t a, b, member, open; } demi_matched;
+enum { DEMI_EVENT_AHEAD = 12 };    /* notes between prefetching sums and changing them */
+/* Sums of an open contact, which each step changes: as in a note, over all steps so far. A line of
+   cache. */
+typedef struct demi_sums {
+    double normal, slide, rolling, work, impulse;
+    double stored, force, most;    /* of this step; force: N, most: the largest before */
+} demi_sums;
+/* A pair of bodies, or a body and a wall, that touch: an open contact. */
 typedef struct demi_ongoing {
-    dem_event event;
-    double force, stored, work;    /* N, of this step; J: of tangential springs now; against
-                                      tangential forces so far */
+    dem_event event;               /* how it began */
     double due[4];                 /* impulses: normal, slide and rolling losses (J) and normal
                                       impulse (N s) of the coming step, */
     int32_t facet, none;           /* on this facet of the wall; padding, 0 */
@@ -319,12 +333,16 @@ typedef struct demi_events {
     demi_event_counts n;
     dem_events_desc desc;
     demi_noted *noted;             /* of work group d: from noted_first[d] on */
+    demi_noted_at *noted_at;
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
-    uint32_t *seen, turn;          /* of each: the last turn in which it was noted; this turn */
-    int32_t *order;                /* x 2: entries of `open` in the order of notes; odd turns are at
-                                      odd indices, even turns at even ones */
-    int ordered;                   /* number of notes in the last turn */
+    demi_sums *sums;               /* of each open contact */
+    uint32_t *last, turn;          /* of each: its last note; the first note of this turn; notes
+                                      are numbered through all turns, modulo 2^32 */
+    demi_matched *matched, *before;            /* by notes of this turn and of the turn before; then
+                                                  DEMI_EVENT_AHEAD that are 0 */
+    int before_count;
+    uint64_t rebuilds;             /* of lists, when `before` was filled */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */

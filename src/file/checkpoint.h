@@ -348,6 +348,7 @@ static void demi_visit_outputs(dem_world *w, demi_stream *s) {
 static void demi_visit_events(dem_world *w, demi_stream *s) {
     demi_events *e = &w->events;
     demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
+    demi_visit(s, e->sums, (size_t)e->n.open*sizeof *e->sums);
     demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
     demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
     demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
@@ -386,8 +387,8 @@ static uint32_t demi_checkpoint_layout(void) {
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
                             sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written),
-                            sizeof(demi_event_counts), sizeof(demi_ongoing), sizeof(demi_impacts),
-                            (size_t)DEM_DOMAIN_BODIES};
+                            sizeof(demi_event_counts), sizeof(demi_ongoing), sizeof(demi_sums),
+                            sizeof(demi_impacts), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     const demi_field_row *r;
     int k;

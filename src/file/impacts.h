@@ -38,7 +38,7 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
         }
     }
     for (i = 0; i < w->events.n.open; i++) {
-        const dem_event e = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+        const dem_event e = demi_event_shown(w, i, DEM_EVENT_OPEN);
         if (!demi_impacts_fit((int)e.material_a.id - 1, (int)e.material_b.id - 1, a, b)) continue;
         out->open++;
         out->lost_normal += e.lost_normal;

@@ -141,7 +141,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "number of rails", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
-    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open, sizeof(demi_ongoing)) ||
+    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open,
+                                             sizeof(demi_ongoing) + sizeof(demi_sums)) ||
         !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
         !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
         !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||

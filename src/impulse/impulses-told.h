@@ -98,20 +98,17 @@ static void demi_movers_force(dem_world *w, int d) {
 static DEMI_APART void demi_impulse_note(dem_world *w, int d, const demi_meeting *m,
                                          const demi_spot *o, const demi_kept *k, int old,
                                          dem_real force, const double *energy) {
-    demi_noted n;
-    n.a = m->a;
-    n.b = k && k->b < 0 ? -1 : m->b;
-    n.wall = k ? k->wall : 0;
-    n.old = old;
-    n.normal = o->normal;
-    n.arm = o->arm_a;
-    n.shift = n.b < 0 ? k->shift : demi_v(0, 0, 0);
-    n.force = force;
-    memset(n.energy, 0, sizeof n.energy);
-    n.energy[DEMI_E_DASHPOT] = energy[0];
-    n.energy[DEMI_E_SLIDE] = n.energy[DEMI_E_SHEAR_WORK] = energy[1];
-    n.energy[DEMI_E_ROLL] = energy[2];
-    demi_note(w, d, &n, 0);
+    const int wall = k && k->b < 0;
+    double all[DEMI_E_ROLL + 1] = {0};
+    demi_noted_at *at;
+    all[DEMI_E_DASHPOT] = energy[0];
+    all[DEMI_E_SLIDE] = all[DEMI_E_SHEAR_WORK] = energy[1];
+    all[DEMI_E_ROLL] = energy[2];
+    at = demi_note(w, d, m->a, wall ? -1 - k->wall : m->b, old, 0, force, all);
+    if (!at) return;
+    at->normal = o->normal;
+    at->arm = o->arm_a;
+    at->shift = wall ? k->shift : demi_v(0, 0, 0);
 }
 /* Stores the results of a domain's constraints: contact history, forces on walls, energy losses.
    The work of an impulse is exact with the mean of the velocities before and after the step. */

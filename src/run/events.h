@@ -2,13 +2,14 @@
    >>events
    Contact events: every contact from its beginning to its end, with what it has lost. The loops
    over contacts note the contacts of a step (>>noted). This part adds them, in the order of work
-   groups, to the open contact of the two bodies, or of the body and its wall. A hash table finds
-   it. A contact that was not noted in a step has ended: it is added to the statistics of its
-   materials, and passed to the user's function when the step is complete. The sums of an open
-   contact do not depend on its place in the list, so the bits are the same for any number of
-   threads. Slabs note contacts in their own worlds, and their head does the rest. With impulses a
-   contact loses its energy during the coming step; until then the losses are due (demi_due_book).
-   Owns w->events. In all functions w is the head of a team or a single world.
+   groups, to the open contact of the two bodies, or of the body and its wall. The notes of the
+   step before tell which one it is, or a hash table. A contact that was not noted in a step has
+   ended: it is added to the statistics of its materials, and passed to the user's function when
+   the step is complete. The sums of an open contact do not depend on its place in the list, so the
+   bits are the same for any number of threads. Slabs note contacts in their own worlds, and their
+   head does the rest. With impulses a contact loses its energy during the coming step; until then
+   the losses are due (demi_due_book). Owns w->events. In all functions w is the head of a team or
+   a single world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- the table of open contacts --- */
@@ -37,21 +38,35 @@ static int32_t *demi_event_place(const demi_events *e, const dem_event *key) {
    four fits, *next becomes the number after it. */
 static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     int k;
-    for (k = *next; k < *next + 4 && k < e->ordered; k++) {
-        const int last = e->order[2*k + !(e->turn & 1)];
-        if (last >= e->n.open || !demi_event_same(&e->open[last].event, key)) continue;
+    for (k = *next; k < *next + 4 && k < e->before_count; k++) {
+        const int open = e->before[k].open;
+        if (open >= e->n.open || !demi_event_same(&e->open[open].event, key)) continue;
         *next = k + 1;
-        return last;
+        return open;
     }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
-/* Prefetches the open contact that is needed some six notes later. */
+/* The same for a note, while lists and thus indices of bodies are those of the last step: returns
+   -1 also if the contact has a further note, or none of the four fits. An open contact is the one
+   that note k was added to if k is its last note: contacts may have moved since. */
+DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int *next) {
+    const uint32_t first = e->turn - 1 - (uint32_t)e->before_count;
+    int k;
+    for (k = *next; k < *next + 4 && k < e->before_count; k++) {
+        const demi_matched *m = e->before + k;
+        if (m->a != n->a || m->b != n->b || m->member != n->member) continue;
+        if (m->open >= e->n.open || e->last[m->open] != first + (uint32_t)k) return -1;
+        *next = k + 1;
+        return m->open;
+    }
+    return -1;
+}
+/* Prefetches the sums of the open contact that is probably needed some notes after number
+   `next` <= before_count. */
 DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
-    const int i = next + 6 < e->ordered ? e->order[2*(next + 6) + !(e->turn & 1)] : e->n.open;
-    size_t k;
-    if (i >= e->n.open) return;
-    DEMI_FETCH(e->seen + i);
-    for (k = 0; k < sizeof *e->open; k += 64) DEMI_FETCH((const char *)(e->open + i) + k);
+    const int i = e->before[next + DEMI_EVENT_AHEAD - 1].open;
+    DEMI_FETCH(e->last + i);
+    DEMI_FETCH(e->sums + i);
 }
 /* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
    out. */
@@ -59,7 +74,8 @@ static int demi_event_widen(dem_world *w) {
     demi_events *e = &w->events;
     const size_t n = (size_t)e->n.open + 1;
     int i, size = e->table_size ? e->table_size : 64;
-    if (!DEMI_GROW(w, e->open, n) || !DEMI_GROW(w, e->seen, n)) return 0;
+    if (!DEMI_GROW(w, e->open, n) || !DEMI_GROW(w, e->sums, n) || !DEMI_GROW(w, e->last, n))
+        return 0;
     while ((size_t)size < 2*n) size *= 2;
     if (size == e->table_size) return 1;
     if (!DEMI_GROW(w, e->table, (size_t)size)) return 0;
@@ -84,7 +100,8 @@ static void demi_event_drop(demi_events *e, int i) {
     if (i < last) {
         *demi_event_place(e, &e->open[last].event) = i + 1;
         e->open[i] = e->open[last];
-        e->seen[i] = e->seen[last];
+        e->sums[i] = e->sums[last];
+        e->last[i] = e->last[last];
     }
     e->n.open--;
 }
@@ -141,19 +158,13 @@ static int demi_events_room(dem_world *w) {
     }
     return 1;
 }
-/* Books losses of a contact, J. x: its contact point, m, for the wear of facets. */
-static void demi_event_lose(dem_world *w, demi_ongoing *o, const double *lost, int facet) {
-    dem_event *e = &o->event;
-    demi_worn *worn;
-    e->lost_normal += lost[0];
-    e->lost_slide += lost[1];
-    e->lost_rolling += lost[2];
-    if (!e->wall) return;
-    worn = &w->events.walls[(e->wall - 1)%DEMI_WALLS_MOST];
-    if (worn->id != e->wall) return;            /* removed since */
-    worn->normal += lost[0];
-    worn->slide += lost[1];
-    if (facet < worn->count) w->events.facets[worn->first + facet] += lost[1];
+/* Books losses on the wall of a contact, J: normal, by sliding on this facet. */
+static void demi_event_wear(dem_world *w, int32_t wall, int facet, double normal, double slide) {
+    demi_worn *worn = &w->events.walls[(wall - 1)%DEMI_WALLS_MOST];
+    if (worn->id != wall) return;               /* removed since */
+    worn->normal += normal;
+    worn->slide += slide;
+    if (facet < worn->count) w->events.facets[worn->first + facet] += slide;
 }
 
 /* --- contacts of a step --- */
@@ -166,37 +177,48 @@ static int demi_event_key(const dem_world *m, const demi_noted *n, dem_event *ke
     const int flip = n->b >= 0 && b.slot < a.slot;
     key->a = flip ? b : a;
     key->b = flip ? a : b;
-    key->wall = n->b < 0 ? m->walls[n->wall].id : 0;
+    key->wall = n->b < 0 ? m->walls[-1 - n->b].id : 0;
     return flip;
 }
 /* Fills in how a contact begins. m: the world that has noted it. */
 static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_noted *n,
-                             dem_event *e) {
+                             const demi_noted_at *noted, dem_event *e) {
     const demi_bodies *b = &m->bodies;
+    const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
     const demi_periods all = demi_periods_of(w), own = demi_periods_of(m);
-    const dem_vec3 at = demi_add(demi_at(b->pos + 4*n->a), n->arm);
-    dem_vec3 v = demi_velocity_at(b->vel, b->spin, n->a, n->arm), slip;
+    const dem_vec3 centre = demi_at(b->pos + 4*n->a);
+    const dem_vec3 way = wall ? centre :        /* to the other centre */
+        demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b), centre));
+    dem_vec3 normal, arm, v, slip;
     dem_real inv = b->inv_mass[n->a];
     const int flip = demi_event_key(m, n, e);
     const int32_t material_a = b->material[n->a];
-    const int32_t material_b = n->b < 0 ? m->walls[n->wall].material + 1 : b->material[n->b];
-    if (n->b < 0)
-        v = demi_sub(v, demi_surface_at(&m->walls[n->wall].pose, demi_add(at, n->shift)));
+    const int32_t material_b = wall ? wall->material + 1 : b->material[n->b];
+    if (n->kind & DEMI_NOTED_SPHERES) {
+        const dem_real length = demi_length(way), radius = b->pos[4*n->a + 3];
+        normal = demi_scale(way, 1/DEMI_MAX(length, DEM_R(1e-30)));
+        arm = demi_note_arm(normal, radius, length, radius + b->pos[4*n->b + 3]);
+    } else {
+        normal = noted->normal;
+        arm = noted->arm;
+    }
+    v = demi_velocity_at(b->vel, b->spin, n->a, arm);
+    if (wall)
+        v = demi_sub(v, demi_surface_at(&wall->pose, demi_add(demi_add(centre, arm),
+                                                              noted->shift)));
     else {
-        const dem_vec3 way = demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b),
-                                                         demi_at(b->pos + 4*n->a)));
-        v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(n->arm, way)));
+        v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(arm, way)));
         inv += b->inv_mass[n->b];
     }
-    slip = demi_sub(v, demi_scale(n->normal, demi_dot(v, n->normal)));
+    slip = demi_sub(v, demi_scale(normal, demi_dot(v, normal)));
     e->kind = DEM_EVENT_BEGIN;
     e->material_a.id = flip ? material_b : material_a;
     e->material_b.id = flip ? material_a : material_b;
-    e->cut = w->events.n.fresh && n->old;
-    e->point = demi_place_of(&all, at);
-    e->normal = demi_scale(n->normal, flip ? -1 : 1);
+    e->cut = w->events.n.fresh && (n->kind & DEMI_NOTED_OLD);
+    e->point = demi_place_of(&all, demi_add(centre, arm));
+    e->normal = demi_scale(normal, flip ? -1 : 1);
     e->begin = e->end = w->clock.time;
-    e->closing_speed = (double)demi_dot(v, n->normal);
+    e->closing_speed = (double)demi_dot(v, normal);
     e->slip_speed = (double)demi_length(slip);
     e->mass = inv > 0 ? 1/(double)inv : 0;
 }
@@ -208,59 +230,74 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
     e->pending[e->n.pending++] = *event;
     return 1;
 }
-/* What a tangential spring gains while radii change and nothing moves is work of growth, not of the
-   contact (>>growth); so that it does not count as a loss, it is added here, as in the ledger. */
-static void demi_event_regrow(const dem_world *w, demi_ongoing *o, double stored) {
-    if (demi_member(w, 0)->stage.grown) o->work += stored;
-}
-/* Adds a noted contact to its open contact, which begins if there is none. *next: as for
-   demi_event_find. Returns the index of the open contact, -1 if memory ran out. */
-static int demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n, int *next) {
+/* True if radii change and nothing moves. What a tangential spring then gains is work of growth,
+   not of the contact (>>growth). So that it does not count as a loss, it is added to the work, as
+   in the ledger. */
+static int demi_event_grown(const dem_world *w) { return demi_member(w, 0)->stage.grown; }
+/* Returns the index of the open contact of a note, which begins if there is none; -1 if memory ran
+   out. *next: as for demi_event_find. */
+static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const demi_noted *n,
+                                      const demi_noted_at *at, int *next) {
     demi_events *e = &w->events;
-    const int later = !demi_response_is(w, DEMI_LASTING);
-    const double lost[3] = {n->energy[DEMI_E_DASHPOT], n->energy[DEMI_E_SLIDE],
-                            n->energy[DEMI_E_ROLL]};
-    const double dt = later || w->stage.forces_valid ? (double)w->clock.dt : 0;
-    const int known = !(e->n.fresh && n->old);
     dem_event key;
-    demi_ongoing *o;
-    int i, k, facet = 0;
+    int i;
     demi_event_key(m, n, &key);
     i = demi_event_find(e, &key, next);
-    if (i < 0) {
-        if (!demi_event_widen(w)) return -1;
-        i = e->n.open;
-        memset(&e->open[i], 0, sizeof e->open[i]);
-        e->seen[i] = e->turn - 1;
-        demi_event_begin(w, m, n, &e->open[i].event);
-        if (!demi_event_wait(w, &e->open[i].event)) return -1;
-        *demi_event_place(e, &key) = ++e->n.open;
-    }
-    o = &e->open[i];
-    if (e->seen[i] != e->turn) {
-        o->event.force = DEMI_MAX(o->event.force, o->force);
-        demi_event_regrow(w, o, -o->stored);
-        o->force = o->stored = 0;
-        e->seen[i] = e->turn;
-    }
-    o->force += (double)n->force;
-    o->stored += n->energy[DEMI_E_SHEAR_STORED];
-    if (known) demi_event_regrow(w, o, n->energy[DEMI_E_SHEAR_STORED]);
-    if (n->b < 0 && lost[1] > 0 && demi_wall_kinds[m->walls[n->wall].kind].corners > 1)
-        facet = demi_worn_facet(&m->walls[n->wall], demi_add(demi_add(n->arm, n->shift),
-                                                                demi_at(m->bodies.pos + 4*n->a)));
-    if (!later) {
-        /* a spring that exists already: what it stored before is unknown, but not lost */
-        o->work += known ? n->energy[DEMI_E_SHEAR_WORK]
-            : lost[1] + n->energy[DEMI_E_SHEAR_STORED];
-        o->event.impulse += (double)n->force*dt;
-        demi_event_lose(w, o, lost, facet);
-        return i;
-    }
-    for (k = 0; k < 3; k++) o->due[k] += lost[k];
-    o->due[3] += (double)n->force*dt;
-    o->facet = facet;
+    if (i >= 0) return i;
+    if (!demi_event_widen(w)) return -1;
+    i = e->n.open;
+    memset(&e->open[i], 0, sizeof e->open[i]);
+    memset(&e->sums[i], 0, sizeof e->sums[i]);
+    e->last[i] = e->turn - 1;
+    demi_event_begin(w, m, n, at, &e->open[i].event);
+    if (!demi_event_wait(w, &e->open[i].event)) return -1;
+    *demi_event_place(e, &key) = ++e->n.open;
     return i;
+}
+/* What holds for all notes of a turn. */
+typedef struct demi_turn {
+    double dt;                     /* s, 0 if the bodies have not moved yet */
+    int lasting, grown, fresh;     /* as demi_response_is, demi_event_grown, e->n.fresh */
+    int after, listed;             /* 1: there are notes of the turn before; and the lists stayed */
+} demi_turn;
+/* Adds note number `number` to open contact i. first: 1 if it is known to be the contact's first
+   one in this turn. */
+DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n,
+                               const demi_noted_at *at, int i, uint32_t number, int first,
+                               const demi_turn *turn) {
+    demi_events *e = &w->events;
+    const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
+    const int known = !(turn->fresh && (n->kind & DEMI_NOTED_OLD));
+    demi_sums *s = &e->sums[i];
+    int facet = 0;
+    if (first || e->last[i] - e->turn > number - e->turn) {
+        s->most = DEMI_MAX(s->most, s->force);
+        if (turn->grown) s->work -= s->stored;
+        s->force = s->stored = 0;
+    }
+    e->last[i] = number;
+    s->force += n->force;
+    s->stored += n->stored;
+    if (known && turn->grown) s->work += n->stored;
+    if (wall && n->slide > 0 && demi_wall_kinds[wall->kind].corners > 1)
+        facet = demi_worn_facet(wall, demi_add(demi_add(at->arm, at->shift),
+                                               demi_at(m->bodies.pos + 4*n->a)));
+    if (turn->lasting) {
+        /* a spring that exists already: what it stored before is unknown, but not lost */
+        s->normal += n->normal;
+        s->slide += n->slide;
+        s->rolling += n->rolling;
+        s->work += known ? n->work : n->slide + n->stored;
+        s->impulse += n->force*turn->dt;
+        if (wall) demi_event_wear(w, wall->id, facet, n->normal, n->slide);
+    } else {
+        demi_ongoing *o = &e->open[i];
+        o->due[0] += n->normal;
+        o->due[1] += n->slide;
+        o->due[2] += n->rolling;
+        o->due[3] += n->force*turn->dt;
+        o->facet = facet;
+    }
 }
 /* Impulses: books what was due when bodies have moved, see demi_due_book. */
 static void demi_events_due(dem_world *w) {
@@ -268,19 +305,28 @@ static void demi_events_due(dem_world *w) {
     int i;
     for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++) {
         demi_ongoing *o = &e->open[i];
-        demi_event_lose(w, o, o->due, o->facet);
-        o->work += o->due[1];                   /* no springs: all of it slides */
-        o->event.impulse += o->due[3];
+        demi_sums *s = &e->sums[i];
+        s->normal += o->due[0];
+        s->slide += o->due[1];
+        s->rolling += o->due[2];
+        s->work += o->due[1];                   /* no springs: all of it slides */
+        s->impulse += o->due[3];
+        if (o->event.wall) demi_event_wear(w, o->event.wall, o->facet, o->due[0], o->due[1]);
         memset(o->due, 0, sizeof o->due);
     }
 }
-/* Returns an open contact as users see it. */
-static dem_event demi_event_shown(const dem_world *w, const demi_ongoing *o, dem_event_kind kind) {
-    dem_event e = o->event;
+/* Returns open contact i as users see it. */
+static dem_event demi_event_shown(const dem_world *w, int i, dem_event_kind kind) {
+    const demi_sums *s = &w->events.sums[i];
+    dem_event e = w->events.open[i].event;
     e.kind = kind;
     e.end = w->clock.time;
-    e.force = DEMI_MAX(e.force, o->force);
-    e.lost_tangent = o->work - e.lost_slide - (kind == DEM_EVENT_END ? 0 : o->stored);
+    e.force = DEMI_MAX(s->most, s->force);
+    e.impulse = s->impulse;
+    e.lost_normal = s->normal;
+    e.lost_slide = s->slide;
+    e.lost_tangent = s->work - s->slide - (kind == DEM_EVENT_END ? 0 : s->stored);
+    e.lost_rolling = s->rolling;
     return e;
 }
 
@@ -332,13 +378,20 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
     }
     return 0;
 }
+/* Returns the last open contact up to number i that was not noted in this turn, -1 if there is
+   none. */
+static int demi_event_left(const demi_events *e, int i) {
+    const uint32_t *last = e->last, turn = e->turn, count = (uint32_t)e->before_count;
+    while (i >= 0 && last[i] - turn < count) i--;
+    return i;
+}
 /* Ends open contact i. Returns 0 if memory ran out. */
 static int demi_event_end(dem_world *w, int i) {
     demi_events *e = &w->events;
     dem_event event;
     dem_wall wall;
-    demi_event_regrow(w, &e->open[i], -e->open[i].stored);
-    event = demi_event_shown(w, &e->open[i], DEM_EVENT_END);
+    if (demi_event_grown(w)) e->sums[i].work -= e->sums[i].stored;
+    event = demi_event_shown(w, i, DEM_EVENT_END);
     wall.id = event.wall;
     if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
                                            : !demi_event_exists(w, event.b))) event.cut |= 2;
@@ -349,7 +402,7 @@ static int demi_event_end(dem_world *w, int i) {
 static void demi_events_clear(dem_world *w) {
     demi_events *e = &w->events;
     memset(&e->n, 0, sizeof e->n);
-    e->ordered = 0;
+    e->before_count = 0;
     if (e->table) memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
 }
 /* Allocates what a recording of the present counts needs. Returns 0 if memory ran out. */
@@ -358,7 +411,8 @@ static int demi_events_reserve(dem_world *w) {
     int size = 64;
     while (size/2 < e->n.open) size *= 2;
     if (!e->n.on) return 1;
-    if (!DEMI_GROW(w, e->open, (size_t)e->n.open) || !DEMI_GROW(w, e->seen, (size_t)e->n.open) ||
+    if (!DEMI_GROW(w, e->open, (size_t)e->n.open) || !DEMI_GROW(w, e->sums, (size_t)e->n.open) ||
+        !DEMI_GROW(w, e->last, (size_t)e->n.open) ||
         !DEMI_GROW(w, e->pending, (size_t)e->n.pending) ||
         !DEMI_GROW(w, e->pairs, (size_t)e->n.pairs) ||
         !DEMI_GROW(w, e->walls, (size_t)e->n.walls) ||
@@ -371,12 +425,12 @@ static int demi_events_reserve(dem_world *w) {
 static void demi_events_index(dem_world *w) {
     demi_events *e = &w->events;
     int i;
-    e->ordered = 0;
+    e->before_count = 0;
     if (!e->n.on) return;
     memset(e->table, 0, (size_t)e->table_size*sizeof *e->table);
     for (i = 0; i < e->n.open; i++) {
         *demi_event_place(e, &e->open[i].event) = i + 1;
-        e->seen[i] = e->turn;
+        e->last[i] = e->turn;                   /* before the next turn */
     }
 }
 /* Copies the recording of another world. Returns 0 if memory ran out. */
@@ -388,6 +442,7 @@ static int demi_events_copy(dem_world *to, const dem_world *from) {
     if (!f->n.on) return 1;
     if (!demi_events_reserve(to)) { memset(&e->n, 0, sizeof e->n); return 0; }
     if (e->n.open) memcpy(e->open, f->open, (size_t)e->n.open*sizeof *e->open);
+    if (e->n.open) memcpy(e->sums, f->sums, (size_t)e->n.open*sizeof *e->sums);
     if (e->n.pending) memcpy(e->pending, f->pending, (size_t)e->n.pending*sizeof *e->pending);
     if (e->n.pairs) memcpy(e->pairs, f->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
     if (e->n.walls) memcpy(e->walls, f->walls, (size_t)e->n.walls*sizeof *e->walls);
@@ -411,33 +466,61 @@ static void demi_events_start(dem_world *w) {
     w->events.n.since = w->clock.time;
     demi_events_switch(w, 1);
 }
+/* Takes over the contacts that work group d of member m has noted. count: notes taken before, and
+   afterwards with these; *next: as for demi_event_find. Returns 0 if memory ran out. */
+static DEMI_APART int demi_events_add(dem_world *w, const dem_world *m, int d, int *count,
+                                      int *next, const demi_turn *of) {
+    demi_events *e = &w->events;
+    const demi_turn turn = *of;
+    const demi_noted *n = m->events.noted + m->events.noted_first[d];
+    const demi_noted *const end = n + m->events.noted_count[d];
+    const demi_noted_at *at = m->events.noted_at + m->events.noted_first[d];
+    demi_matched *now = e->matched + *count;
+    uint32_t number = e->turn + (uint32_t)*count;
+    *count += (int)(end - n);
+    for (; n < end; n++, at++, now++, number++) {
+        const int again = turn.listed ? demi_event_again(e, n, next) : -1;
+        const int open = again >= 0 ? again : demi_event_open(w, m, n, at, next);
+        if (open < 0) return 0;
+        if (turn.after) demi_event_ahead(e, *next);
+        now->a = n->a;
+        now->b = n->b;
+        now->member = n->member;
+        now->open = open;
+        demi_event_add(w, m, n, at, open, number, again >= 0, &turn);
+    }
+    return 1;
+}
 /* Takes over the contacts that all members have noted, and ends those that nobody noted. If memory
    runs out, recording stops; demi_events_tell reports it. */
 static void demi_events_take(dem_world *w) {
     demi_events *e = &w->events;
+    demi_matched *const before = e->matched;
+    demi_turn turn;
     int i, k, d, ok, next = 0, count = 0;
-    e->turn++;
+    turn.lasting = demi_response_is(w, DEMI_LASTING);
+    turn.grown = demi_event_grown(w);
+    turn.fresh = e->n.fresh;
+    turn.after = e->before_count > 0;
+    turn.listed = turn.after && e->rebuilds == w->clock.rebuilds;
+    turn.dt = !turn.lasting || w->stage.forces_valid ? (double)w->clock.dt : 0;
     for (k = 0; k < demi_members(w); k++)
         for (d = 0; d < DEMI_DOMAINS; d++) count += demi_member(w, k)->events.noted_count[d];
-    ok = DEMI_GROW(w, e->order, 2*(size_t)count);
+    e->matched = e->before;
+    e->before = before;
+    e->turn += (uint32_t)e->before_count + 1;
+    e->rebuilds = w->clock.rebuilds;
+    ok = DEMI_GROW(w, e->matched, (size_t)count + DEMI_EVENT_AHEAD);
     count = 0;
-    for (i = 0; i < e->n.open && !demi_response_is(w, DEMI_LASTING); i++)
+    for (i = 0; i < e->n.open && !turn.lasting; i++)
         memset(e->open[i].due, 0, sizeof e->open[i].due);   /* a new solution replaces the last */
-    for (k = 0; k < demi_members(w); k++) {
-        const dem_world *m = demi_member(w, k);
-        const demi_events *own = &m->events;
-        for (d = 0; d < m->domain_count; d++)
-            for (i = 0; i < own->noted_count[d] && ok; i++) {
-                int at;
-                demi_event_ahead(e, next);
-                at = demi_event_add(w, m, own->noted + own->noted_first[d] + i, &next);
-                e->order[2*(size_t)count++ + (e->turn & 1)] = at;
-                ok = at >= 0;
-            }
-    }
-    e->ordered = count;
-    for (i = e->n.open - 1; i >= 0 && ok; i--)
-        if (e->seen[i] != e->turn) ok = demi_event_end(w, i);
+    for (k = 0; k < demi_members(w); k++)
+        for (d = 0; d < demi_member(w, k)->domain_count && ok; d++)
+            ok = demi_events_add(w, demi_member(w, k), d, &count, &next, &turn);
+    if (ok) memset(e->matched + count, 0, DEMI_EVENT_AHEAD*sizeof *e->matched);
+    e->before_count = count;
+    for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
+        ok = demi_event_end(w, i);
     e->n.fresh = 0;
     if (ok) return;
     demi_events_clear(w);
@@ -519,7 +602,7 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     if (!fn || !n) return n;
     all = (dem_event *)demi_alloc(w, (size_t)n, sizeof *all);
     if (!all) { demi_no_memory(w, __func__); return -1; }
-    for (i = 0; i < n; i++) all[i] = demi_event_shown(w, &w->events.open[i], DEM_EVENT_OPEN);
+    for (i = 0; i < n; i++) all[i] = demi_event_shown(w, i, DEM_EVENT_OPEN);
     qsort(all, (size_t)n, sizeof *all, demi_event_compare);
     was = demi_calls(w, __func__, 0);
     for (i = 0; i < n; i++) fn(&all[i], user);
