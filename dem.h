@@ -4943,7 +4943,7 @@ typedef struct demi_record {
 /* A contact of the present step, as the loops over contacts note it while events are recorded. */
 typedef struct demi_noted {
     int32_t a, b;                  /* bodies; b < 0: wall -1 - b */
-    int32_t member, kind;          /* of the team; DEMI_NOTED_... below */
+    int32_t member, kind;          /* index of the member that notes it; bits DEMI_NOTED_... */
     double force;                  /* N, repulsive force along the normal */
     /* J, of this step: lost by the normal law, by sliding, by rolling; work against tangential
        forces; stored in tangential springs */
@@ -4953,7 +4953,8 @@ enum {
     DEMI_NOTED_OLD = 1,            /* the contact existed before this step */
     DEMI_NOTED_SPHERES = 2         /* two lone spheres: their centres tell where it is */
 };
-/* Where another contact is. Needed when it begins, or wears a wall. */
+/* Where a contact is that is not of two lone spheres. A contact needs it when it begins or wears a
+   wall. */
 typedef struct demi_noted_at {
     dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
     dem_vec3 shift;                /* m, from a to its image that touches the wall */
@@ -4961,11 +4962,11 @@ typedef struct demi_noted_at {
 /* The open contact that a note was added to, with the bodies of the note. */
 typedef struct demi_matched { int32_t a, b, member, open; } demi_matched;
 enum { DEMI_EVENT_AHEAD = 12 };    /* notes between prefetching sums and changing them */
-/* Sums of an open contact, which each step changes: as in a note, over all steps so far. A line of
-   cache. */
+/* Sums of an open contact, which each step changes. They fill a line of cache. */
 typedef struct demi_sums {
-    double normal, slide, rolling, work, impulse;
-    double stored, force, most;    /* of this step; force: N, most: the largest before */
+    double normal, slide, rolling, work;       /* J, as in a note, over all steps so far */
+    double impulse;                            /* N s */
+    double stored, force, most;    /* J and N, of this step; N, the largest force of earlier ones */
 } demi_sums;
 /* A pair of bodies, or a body and a wall, that touch: an open contact. */
 typedef struct demi_ongoing {
@@ -5001,8 +5002,8 @@ typedef struct demi_events {
                                       are numbered through all turns, modulo 2^32 */
     demi_matched *matched, *before;            /* by notes of this turn and of the turn before; then
                                                   DEMI_EVENT_AHEAD that are 0 */
-    int before_count;
-    uint64_t rebuilds;             /* of lists, when `before` was filled */
+    int before_count;              /* of `before`; when the notes are added, of `matched` */
+    uint64_t rebuilds;             /* of lists, in the last turn */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */
@@ -18065,7 +18066,8 @@ static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
    >>noted
    Notes of the contacts of a step, while events are recorded (>>events). The loops that compute
    contact forces call these functions for each contact that acts; each work group writes to its own
-   segment, which demi_notes_room has allocated. Writes w->events.noted and noted_at only.
+   segment, which demi_notes_room has allocated. Writes w->events.noted, noted_at, noted_first and
+   noted_count only.
    --------------------------------------------------------------------------------------------- */
 
 /* Makes room for all contacts that are possible in this step, and empties the segments. Returns 0
@@ -18082,8 +18084,8 @@ static int demi_notes_room(dem_world *w) {
         DEMI_GROW(w, e->noted_at, (size_t)e->noted_first[DEMI_DOMAINS]);
 }
 /* Notes a contact of work group d. kind: of DEMI_NOTED_...; energy: J, DEMI_E_DASHPOT to
-   DEMI_E_ROLL. If the two do not overlap, it counts only if a law acts. Returns where to store its
-   place, or null if it does not count. */
+   DEMI_E_ROLL. If the two do not overlap, it counts only if a law acts. Returns null if it does not
+   count, otherwise where to store its place, which two lone spheres do not need. */
 DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind, int overlaps,
                                     dem_real force, const double *energy) {
     demi_events *e = &w->events;
@@ -30092,13 +30094,13 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
    Contact events: every contact from its beginning to its end, with what it has lost. The loops
    over contacts note the contacts of a step (>>noted). This part adds them, in the order of work
    groups, to the open contact of the two bodies, or of the body and its wall. The notes of the
-   step before tell which one it is, or a hash table. A contact that was not noted in a step has
-   ended: it is added to the statistics of its materials, and passed to the user's function when
-   the step is complete. The sums of an open contact do not depend on its place in the list, so the
-   bits are the same for any number of threads. Slabs note contacts in their own worlds, and their
-   head does the rest. With impulses a contact loses its energy during the coming step; until then
-   the losses are due (demi_due_book). Owns w->events. In all functions w is the head of a team or
-   a single world.
+   step before tell which contact that is. Where they do not, a hash table does. A contact that was
+   not noted in a step has ended: it is added to the statistics of its materials, and passed to the
+   user's function when the step is complete. The sums of an open contact do not depend on its
+   place in the list, so the bits are the same for any number of threads. Slabs note contacts in
+   their own worlds, and their head does the rest. With impulses a contact loses its energy during
+   the coming step; until then the losses are due (demi_due_book). Owns w->events. In all functions
+   w is the head of a team or a single world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- the table of open contacts --- */
@@ -30135,9 +30137,9 @@ static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
-/* The same for a note, while lists and thus indices of bodies are those of the last step: returns
-   -1 also if the contact has a further note, or none of the four fits. An open contact is the one
-   that note k was added to if k is its last note: contacts may have moved since. */
+/* The same for a note, by the indices of its bodies, which must be those of the turn before. Entry
+   k tells the open contact only if note k is that contact's last one, because demi_event_drop moves
+   entries of `open`. Otherwise, or if none of the four fits, this function returns -1. */
 DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int *next) {
     const uint32_t first = e->turn - 1 - (uint32_t)e->before_count;
     int k;
@@ -30276,7 +30278,7 @@ static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_
     const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
     const demi_periods all = demi_periods_of(w), own = demi_periods_of(m);
     const dem_vec3 centre = demi_at(b->pos + 4*n->a);
-    const dem_vec3 way = wall ? centre :        /* to the other centre */
+    const dem_vec3 way = wall ? centre :        /* to the other centre; not used for a wall */
         demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b), centre));
     dem_vec3 normal, arm, v, slip;
     dem_real inv = b->inv_mass[n->a];
@@ -30346,7 +30348,7 @@ static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const de
 /* What holds for all notes of a turn. */
 typedef struct demi_turn {
     double dt;                     /* s, 0 if the bodies have not moved yet */
-    int lasting, grown, fresh;     /* as demi_response_is, demi_event_grown, e->n.fresh */
+    int lasting, grown, fresh;     /* DEMI_LASTING of the response; demi_event_grown; n.fresh */
     int after, listed;             /* 1: there are notes of the turn before; and the lists stayed */
 } demi_turn;
 /* Adds note number `number` to open contact i. first: 1 if it is known to be the contact's first
@@ -30467,7 +30469,7 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
     }
     return 0;
 }
-/* Returns the last open contact up to number i that was not noted in this turn, -1 if there is
+/* Returns the last open contact, of those up to i, that was not noted in this turn; -1 if there is
    none. */
 static int demi_event_left(const demi_events *e, int i) {
     const uint32_t *last = e->last, turn = e->turn, count = (uint32_t)e->before_count;

@@ -2,7 +2,8 @@
    >>noted
    Notes of the contacts of a step, while events are recorded (>>events). The loops that compute
    contact forces call these functions for each contact that acts; each work group writes to its own
-   segment, which demi_notes_room has allocated. Writes w->events.noted and noted_at only.
+   segment, which demi_notes_room has allocated. Writes w->events.noted, noted_at, noted_first and
+   noted_count only.
    --------------------------------------------------------------------------------------------- */
 
 /* Makes room for all contacts that are possible in this step, and empties the segments. Returns 0
@@ -19,8 +20,8 @@ static int demi_notes_room(dem_world *w) {
         DEMI_GROW(w, e->noted_at, (size_t)e->noted_first[DEMI_DOMAINS]);
 }
 /* Notes a contact of work group d. kind: of DEMI_NOTED_...; energy: J, DEMI_E_DASHPOT to
-   DEMI_E_ROLL. If the two do not overlap, it counts only if a law acts. Returns where to store its
-   place, or null if it does not count. */
+   DEMI_E_ROLL. If the two do not overlap, it counts only if a law acts. Returns null if it does not
+   count, otherwise where to store its place, which two lone spheres do not need. */
 DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind, int overlaps,
                                     dem_real force, const double *energy) {
     demi_events *e = &w->events;

@@ -283,7 +283,7 @@ typedef struct demi_record {
 /* A contact of the present step, as the loops over contacts note it while events are recorded. */
 typedef struct demi_noted {
     int32_t a, b;                  /* bodies; b < 0: wall -1 - b */
-    int32_t member, kind;          /* of the team; DEMI_NOTED_... below */
+    int32_t member, kind;          /* index of the member that notes it; bits DEMI_NOTED_... */
     double force;                  /* N, repulsive force along the normal */
     /* J, of this step: lost by the normal law, by sliding, by rolling; work against tangential
        forces; stored in tangential springs */
@@ -293,7 +293,8 @@ enum {
     DEMI_NOTED_OLD = 1,            /* the contact existed before this step */
     DEMI_NOTED_SPHERES = 2         /* two lone spheres: their centres tell where it is */
 };
-/* Where another contact is. Needed when it begins, or wears a wall. */
+/* Where a contact is that is not of two lone spheres. A contact needs it when it begins or wears a
+   wall. */
 typedef struct demi_noted_at {
     dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
     dem_vec3 shift;                /* m, from a to its image that touches the wall */
@@ -301,11 +302,11 @@ typedef struct demi_noted_at {
 /* The open contact that a note was added to, with the bodies of the note. */
 typedef struct demi_matched { int32_t a, b, member, open; } demi_matched;
 enum { DEMI_EVENT_AHEAD = 12 };    /* notes between prefetching sums and changing them */
-/* Sums of an open contact, which each step changes: as in a note, over all steps so far. A line of
-   cache. */
+/* Sums of an open contact, which each step changes. They fill a line of cache. */
 typedef struct demi_sums {
-    double normal, slide, rolling, work, impulse;
-    double stored, force, most;    /* of this step; force: N, most: the largest before */
+    double normal, slide, rolling, work;       /* J, as in a note, over all steps so far */
+    double impulse;                            /* N s */
+    double stored, force, most;    /* J and N, of this step; N, the largest force of earlier ones */
 } demi_sums;
 /* A pair of bodies, or a body and a wall, that touch: an open contact. */
 typedef struct demi_ongoing {
@@ -341,8 +342,8 @@ typedef struct demi_events {
                                       are numbered through all turns, modulo 2^32 */
     demi_matched *matched, *before;            /* by notes of this turn and of the turn before; then
                                                   DEMI_EVENT_AHEAD that are 0 */
-    int before_count;
-    uint64_t rebuilds;             /* of lists, when `before` was filled */
+    int before_count;              /* of `before`; when the notes are added, of `matched` */
+    uint64_t rebuilds;             /* of lists, in the last turn */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */

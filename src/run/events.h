@@ -3,13 +3,13 @@
    Contact events: every contact from its beginning to its end, with what it has lost. The loops
    over contacts note the contacts of a step (>>noted). This part adds them, in the order of work
    groups, to the open contact of the two bodies, or of the body and its wall. The notes of the
-   step before tell which one it is, or a hash table. A contact that was not noted in a step has
-   ended: it is added to the statistics of its materials, and passed to the user's function when
-   the step is complete. The sums of an open contact do not depend on its place in the list, so the
-   bits are the same for any number of threads. Slabs note contacts in their own worlds, and their
-   head does the rest. With impulses a contact loses its energy during the coming step; until then
-   the losses are due (demi_due_book). Owns w->events. In all functions w is the head of a team or
-   a single world.
+   step before tell which contact that is. Where they do not, a hash table does. A contact that was
+   not noted in a step has ended: it is added to the statistics of its materials, and passed to the
+   user's function when the step is complete. The sums of an open contact do not depend on its
+   place in the list, so the bits are the same for any number of threads. Slabs note contacts in
+   their own worlds, and their head does the rest. With impulses a contact loses its energy during
+   the coming step; until then the losses are due (demi_due_book). Owns w->events. In all functions
+   w is the head of a team or a single world.
    --------------------------------------------------------------------------------------------- */
 
 /* --- the table of open contacts --- */
@@ -46,9 +46,9 @@ static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     }
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
-/* The same for a note, while lists and thus indices of bodies are those of the last step: returns
-   -1 also if the contact has a further note, or none of the four fits. An open contact is the one
-   that note k was added to if k is its last note: contacts may have moved since. */
+/* The same for a note, by the indices of its bodies, which must be those of the turn before. Entry
+   k tells the open contact only if note k is that contact's last one, because demi_event_drop moves
+   entries of `open`. Otherwise, or if none of the four fits, this function returns -1. */
 DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int *next) {
     const uint32_t first = e->turn - 1 - (uint32_t)e->before_count;
     int k;
@@ -187,7 +187,7 @@ static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_
     const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
     const demi_periods all = demi_periods_of(w), own = demi_periods_of(m);
     const dem_vec3 centre = demi_at(b->pos + 4*n->a);
-    const dem_vec3 way = wall ? centre :        /* to the other centre */
+    const dem_vec3 way = wall ? centre :        /* to the other centre; not used for a wall */
         demi_nearest(&own, demi_sub(demi_at(b->pos + 4*n->b), centre));
     dem_vec3 normal, arm, v, slip;
     dem_real inv = b->inv_mass[n->a];
@@ -257,7 +257,7 @@ static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const de
 /* What holds for all notes of a turn. */
 typedef struct demi_turn {
     double dt;                     /* s, 0 if the bodies have not moved yet */
-    int lasting, grown, fresh;     /* as demi_response_is, demi_event_grown, e->n.fresh */
+    int lasting, grown, fresh;     /* DEMI_LASTING of the response; demi_event_grown; n.fresh */
     int after, listed;             /* 1: there are notes of the turn before; and the lists stayed */
 } demi_turn;
 /* Adds note number `number` to open contact i. first: 1 if it is known to be the contact's first
@@ -378,7 +378,7 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
     }
     return 0;
 }
-/* Returns the last open contact up to number i that was not noted in this turn, -1 if there is
+/* Returns the last open contact, of those up to i, that was not noted in this turn; -1 if there is
    none. */
 static int demi_event_left(const demi_events *e, int i) {
     const uint32_t *last = e->last, turn = e->turn, count = (uint32_t)e->before_count;
