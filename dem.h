@@ -21428,8 +21428,8 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
    which the candidate lists use. */
 static int demi_eggs_meet(demi_egg_tile *t, int k) {
     demi_meet m;
-    if (!(t->found[k] > DEMI_EGGS_APART)) return 0;
-    if (t->found[k] > DEMI_EGGS_FOUND) {
+    if (!(t->found[k] > (double)DEMI_EGGS_APART)) return 0;
+    if (t->found[k] > (double)DEMI_EGGS_FOUND) {
         m.l = t->l[k];
         demi_meet_solve(demi_egg_matrix(t, 0, k), demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k),
                         t->most[k], DEMI_MEET_NEAR, &m);

@@ -22,7 +22,7 @@ static FILE *page, *csv;
 
 /* ---- meet ---- */
 
-typedef struct meeting { double A[6], B[6], r[3], l; } meeting;
+typedef struct meeting { demi_sym A, B; demi_d3 r; double l; } meeting;
 static meeting now[PAIRS], then[PAIRS];          /* and a moment ago */
 static uint64_t seed = 7;
 
@@ -32,6 +32,9 @@ static dem_quat orientation(void) {
     const double u = demi_uniform(&seed), a = 2*DEMI_PI*demi_uniform(&seed), b = 2*DEMI_PI*demi_uniform(&seed);
     const double r = sqrt(1 - u), s = sqrt(u);
     return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)), (dem_real)(s*cos(b)));
+}
+static double start(demi_sym A, demi_sym B, demi_d3 r) {
+    return demi_meet_start(demi_sym_height(A, r), demi_sym_height(B, r));
 }
 static void pair_make(int i, double ratio) {
     const dem_vec3 e = dem_quat_rotate(orientation(), dem_vec3_make(0, 0, 1));
@@ -44,27 +47,31 @@ static void pair_make(int i, double ratio) {
         dem_vec3 a;
         dem_quat p;
         a.x = 1; a.y = (dem_real)pow(ratio, demi_uniform(&seed)); a.z = (dem_real)ratio;
-        demi_ellipsoid_matrix(q, a, k ? m->B : m->A);
+        *(k ? &m->B : &m->A) = demi_ellipsoid_matrix(q, a);
         for (n = 0; n < 3; n++) { by[n] = 0; jog(&by[n]); }
         p = demi_quat_again(dem_quat_multiply(q, demi_quat_exp(dem_vec3_make((dem_real)by[0], (dem_real)by[1],
                                                                       (dem_real)by[2]))));
-        demi_ellipsoid_matrix(p, a, k ? was->B : was->A);
+        *(k ? &was->B : &was->A) = demi_ellipsoid_matrix(p, a);
     }
-    m->r[0] = (double)e.x; m->r[1] = (double)e.y; m->r[2] = (double)e.z;
-    found.l = demi_meet_start(m->A, m->B, m->r);
+    m->r = demi_d((double)e.x, (double)e.y, (double)e.z);
+    found.l = start(m->A, m->B, m->r);
     demi_meet_solve(m->A, m->B, m->r, 1e300, 1e-12, &found);
     s = (0.98 + 0.02*demi_uniform(&seed))/sqrt(found.f);
-    for (k = 0; k < 3; k++) { m->r[k] *= s; was->r[k] = m->r[k]; jog(&was->r[k]); }
-    found.l = demi_meet_start(was->A, was->B, was->r);
+    m->r = was->r = demi_d3_scale(m->r, s);
+    jog(&was->r.x); jog(&was->r.y); jog(&was->r.z);
+    found.l = start(was->A, was->B, was->r);
     demi_meet_solve(was->A, was->B, was->r, 1e300, DEMI_MEET_NEAR, &found);
     m->l = found.l;
 }
 /* W0 and normal by bisection in long double. */
 static void pair_exact(const meeting *m, long double *w0, long double *n) {
     long double lo = 0, hi = 1, f = 0, s[3] = {0, 0, 0}, size = 0, A[6], B[6], r[3];
+    const double a[6] = {m->A.xx, m->A.yy, m->A.zz, m->A.xy, m->A.xz, m->A.yz};
+    const double b[6] = {m->B.xx, m->B.yy, m->B.zz, m->B.xy, m->B.xz, m->B.yz};
+    const double between[3] = {m->r.x, m->r.y, m->r.z};
     int k, turn;
-    for (k = 0; k < 6; k++) { A[k] = (long double)m->A[k]; B[k] = (long double)m->B[k]; }
-    for (k = 0; k < 3; k++) r[k] = (long double)m->r[k];
+    for (k = 0; k < 6; k++) { A[k] = (long double)a[k]; B[k] = (long double)b[k]; }
+    for (k = 0; k < 3; k++) r[k] = (long double)between[k];
     for (turn = 0; turn < 64; turn++) {
         const long double l = (lo + hi)/2;
         long double K[6], J[6], det, fa = 0, fb = 0;
@@ -99,9 +106,9 @@ static void meet_run(double ratio, int on_page) {
     for (turn = 0; turn < TURNS; turn++) {
         double begun = study_clock();
         for (i = 0; i < PAIRS; i++) {
-            m.l = demi_meet_start(now[i].A, now[i].B, now[i].r);
+            m.l = start(now[i].A, now[i].B, now[i].r);
             demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
-            sum += m.s[0];
+            sum += m.s.x;
             looks[0] += m.iterations;
             worst[0] = m.iterations > worst[0] ? m.iterations : worst[0];
         }
@@ -110,7 +117,7 @@ static void meet_run(double ratio, int on_page) {
         for (i = 0; i < PAIRS; i++) {
             m.l = now[i].l;
             demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
-            sum += m.s[0];
+            sum += m.s.x;
             looks[1] += m.iterations;
             worst[1] = m.iterations > worst[1] ? m.iterations : worst[1];
         }
@@ -119,10 +126,12 @@ static void meet_run(double ratio, int on_page) {
     if (sum == 1.2345) puts("");                 /* so that nothing is left out */
     for (i = 0; i < CHECKED; i++) {
         double n[3], ha, hb, d = 0;
+        demi_d3 normal;
         long double w0, e[3];
-        m.l = demi_meet_start(now[i].A, now[i].B, now[i].r);
+        m.l = start(now[i].A, now[i].B, now[i].r);
         demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
-        demi_meet_heights(&m, n, &ha, &hb);
+        demi_meet_heights(&m, &normal, &ha, &hb);
+        n[0] = normal.x; n[1] = normal.y; n[2] = normal.z;
         pair_exact(&now[i], &w0, e);
         scale_error = fmax(scale_error, fabs((double)(sqrtl((long double)m.f) - w0)));
         for (k = 0; k < 3; k++) d += (double)(((long double)n[k] - e[k])*((long double)n[k] - e[k]));
@@ -130,10 +139,8 @@ static void meet_run(double ratio, int on_page) {
         square += d;
     }
     for (i = 0; i < PAIRS; i++) {
-        double r[3];
-        const double far = 1 + demi_uniform(&seed);
-        for (k = 0; k < 3; k++) r[k] = now[i].r[k]*far;
-        m.l = demi_meet_start(now[i].A, now[i].B, r);
+        const demi_d3 r = demi_d3_scale(now[i].r, 1 + demi_uniform(&seed));
+        m.l = start(now[i].A, now[i].B, r);
         demi_meet_solve(now[i].A, now[i].B, r, 1, DEMI_MEET_NEAR, &m);
         early += m.iterations == 1 && m.f > 1;
     }
