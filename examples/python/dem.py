@@ -781,10 +781,9 @@ class WorldBase(Handle):
 
     def _free(self):
         try:
-            for film in list(self._memory.films):
-                result = self._memory.complete(film)
-                if result:
-                    self._raise(_ERRORS[result])
+            results = [self._memory.complete(film) for film in list(self._memory.films)]
+            if any(results):
+                self._raise(_ERRORS[max(results)])
         finally:
             self._memory = None                     # views of arrays may hold it longer
 

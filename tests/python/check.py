@@ -245,6 +245,25 @@ def _():
     same((done.returncode, done.stderr, set(done.stdout.split())), (0, "", {"</script>"}))
 
 
+@test("a world that is closed completes all its replays, also when one of them cannot be written")
+def _():
+    folder = os.path.join(WORK.name, "gone")
+    os.mkdir(folder)
+    paths = [os.path.join(WORK.name, "complete%d.html" % i) for i in range(6)]
+    world = heap()[0]
+    positions = world.bodies.positions                      # holds the memory of the world
+    replays = [world.replay(path, interval=0.001) for path in paths[:3] + [os.path.join(folder, "x.html")] + paths[3:]]
+    world.run(0.01)
+    for name in os.listdir(folder):
+        os.remove(os.path.join(folder, name))
+    os.rmdir(folder)
+    raises(dem.FileError, world.close, "x.html")
+    for replay in replays:
+        raises(dem.Error, replay.frame_write, "null")
+    same([os.path.getsize(path) > 1000 for path in paths], [True]*6, "files")
+    del positions
+
+
 @test("a replay that nothing refers to records the run until its world is closed")
 def _():
     sizes = []
