@@ -30374,10 +30374,10 @@ DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_note
         facet = demi_worn_facet(wall, demi_add(demi_add(at->arm, at->shift),
                                                demi_at(m->bodies.pos + 4*n->a)));
     if (turn->lasting) {
-        /* a spring that exists already: what it stored before is unknown, but not lost */
         s->normal += n->normal;
         s->slide += n->slide;
         s->rolling += n->rolling;
+        /* a spring that exists already: what it stored before is unknown, but not lost */
         s->work += known ? n->work : n->slide + n->stored;
         s->impulse += n->force*turn->dt;
         if (wall) demi_event_wear(w, wall->id, facet, n->normal, n->slide);
