@@ -4292,6 +4292,8 @@ typedef struct demi_shape {
 
 /* What only few persistent contacts need (demi_kept_odd). */
 typedef struct demi_kept_more {
+    dem_vec3 felt;                 /* m, to the contact point from the point at which effective
+                                      masses are evaluated for the dashpot */
     dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
     dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
     dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
@@ -4306,8 +4308,8 @@ typedef struct demi_kept_more {
    walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
    and finds for each contact the one of the previous step (kept_now) that it continues. respond
    copies the history from that contact and computes the forces. Then the two lists are swapped, so
-   touch can start again with more room. What all contacts need comes first: reading it takes most
-   of the time. */
+   touch can start again with more room. Reading and writing it takes most of the time, so what the
+   next step needs comes first, and what few contacts need last. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
@@ -4319,26 +4321,32 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
+    int32_t row;                   /* its coefficients in the step before, see demi_coefs_row */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
-    dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
+    dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
+    dem_real grip;                 /* weight of friction */
+    dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals; touch does not set it */
+    dem_vec3 arm_b;                /* m, from b's centre */
     dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
                                       over the smaller half width (of a sphere: its radius) */
-    dem_real share, lift, grip;    /* weights of damping, elastic force, friction; */
+    dem_real share, lift;          /* weights of damping, elastic force; */
     dem_real weight;               /* before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
                                       all of it, see demi_kept_inherit */
     dem_real bend, slope;          /* per distance: turn of the normal, 1/m; change of overlap */
-    dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
-    dem_vec3 felt;                 /* m, to the contact point from the point at which effective
-                                      masses are evaluated for the dashpot */
+    dem_real r_eff;                /* m */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
-    /* kept from step to step: respond writes these, touch does not */
-    dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
-    dem_real coef_r;               /* m, the r_eff that they were computed for; 0: none yet */
-    dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals */
     demi_kept_more more;
 } demi_kept;
+/* Coefficients of persistent contacts. Those that agree in the first fields share a row, unless
+   there are many kinds of them. */
+typedef struct demi_coefs_row {
+    dem_real r_eff, inv[2];        /* m; 1/kg, of both bodies, of a wall 0 */
+    int32_t material[2], shape[2]; /* bodies.material, bodies.shape; of a wall: -1 - its index; 0 */
+    dem_real m_eff;                /* kg, of a sphere on a wall; 0: differs between contacts */
+    dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
+} demi_coefs_row;
 
 /* Force (N), torque (Nm), power (W) and contacts that the grains of one work group exert on one
    wall in one step. */
@@ -4370,6 +4378,7 @@ typedef struct demi_domain {
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
     int kept_same;                 /* where demi_kept_same starts its search */
+    int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
     int overflow;                  /* lists that ran out of room: 1 pairs inside, 2 pairs with later
                                       groups, 4 walls, 8 pruned list, 16 persistent contacts */
@@ -5153,6 +5162,7 @@ struct dem_world {
     demi_link *touching_links;
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
+    demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
@@ -15104,7 +15114,8 @@ static int demi_kept_room(dem_world *w, int *first) {
     demi_kept_lay(w, w->domain_count, crowd, first);
     return demi_wall_sums_room(w) &&
            DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
-           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]);
+           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) &&
+           DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS]);
 }
 /* Moves the contacts whose bodies and walls still exist from the old list (by slot) into the work
    groups of the new one. Body a becomes the one with the lower index. Where this exchanges a and b,
@@ -15130,11 +15141,10 @@ static void demi_kept_move(dem_world *w, const int *first) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            c.coef_r = 0;                       /* materials may have changed */
-            if (!pair && !demi_shape_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
             w->kept_next[e++] = c;
         }
         w->domains[d].kept = 0;
+        w->domains[d].coefs = 0;                /* materials may have changed */
     }
     memcpy(w->kept_first, first, sizeof w->kept_first);
     /* counting sort by body a; bodies.order is free after the search and holds the counts */
@@ -21243,26 +21253,15 @@ static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(D
    caller.
    --------------------------------------------------------------------------------------------- */
 
-/* True if a body is an ellipsoid or a sphere. */
-DEM_INLINE int demi_egg_is(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
+/* True if a body of this shape is an ellipsoid or a sphere (null). */
+DEM_INLINE int demi_egg_is(const demi_shape *shape) {
     return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
-}
-/* True if contact points of a pair are found in tiles: at least one is an ellipsoid. */
-DEM_INLINE int demi_eggs_are(const dem_world *w, int a, int b) {
-    return (demi_shape_of(w, a) || demi_shape_of(w, b)) && demi_egg_is(w, a) && demi_egg_is(w, b);
 }
 /* True if the scene has ellipsoids. */
 static int demi_eggs_exist(const dem_world *w) {
     int k, any = 0;
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
     return any;
-}
-/* Returns the radius of the sphere with the volume of such a body, m. */
-DEM_INLINE double demi_egg_equal(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    return (double)(shape ? shape->equal*demi_scale_of(w, body, shape)
-                          : w->bodies.pos[4*body + 3]);
 }
 /* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
    prefetched. */
@@ -21273,6 +21272,7 @@ enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
 typedef struct demi_egg_tile {
     dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
     double r[3][DEMI_EGGS];        /* m, from a to b */
+    double equal[2][DEMI_EGGS];    /* m, radii of the spheres of equal volume */
     double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
     double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
     double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
@@ -21280,6 +21280,7 @@ typedef struct demi_egg_tile {
        demi_meet and demi_eggs_keep */
     double found[DEMI_EGGS];
     double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
+    double overlap[DEMI_EGGS], slope[DEMI_EGGS], r_eff[DEMI_EGGS], deep[DEMI_EGGS];
     double s[3][DEMI_EGGS], v[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
     int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
@@ -21304,13 +21305,19 @@ DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
         demi_v(t->axes[side][0][q], t->axes[side][1][q], t->axes[side][2][q]));
 }
 /* Stores the contact point of row q. At that point both scaled distances are W0, so the support
-   heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. */
+   heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. The overlap is the
+   conservative one. */
 DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet m) {
-    const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s);
+    const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s), least = m.l < 0.5 ? m.l : 1 - m.l;
+    const double radii = t->equal[0][q] + t->equal[1][q];
     t->to[q] = m.l;
     t->f[q] = m.f;
     t->w0[q] = w0;
     t->both[q] = w0*per/(m.l*(1 - m.l));
+    t->overlap[q] = (1 - w0)*radii;
+    t->slope[q] = radii/t->both[q];
+    t->r_eff[q] = t->equal[0][q]*t->equal[1][q]/radii;
+    t->deep[q] = (1 - w0)/least;
     demi_eggs_put(t->s, q, m.s);
     demi_eggs_put(t->v, q, m.v);
     demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
@@ -21367,13 +21374,13 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
 }
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
 DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
-                                      int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    const dem_real radius = w->bodies.pos[4*body + 3];
+                                      int body, const demi_shape *shape) {
+    const dem_real radius = w->bodies.pos[4*body + 3], scale = shape ? radius/shape->radius : 0;
+    t->equal[side][k] = (double)(shape ? shape->equal*scale : radius);
     if (!shape)
         return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
     return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
-                        demi_scale(shape->axes, radius/shape->radius));
+                        demi_scale(shape->axes, scale));
 }
 /* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
 DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
@@ -21398,26 +21405,31 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
         const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
         const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
         const dem_real far = radii + (dem_real)w->margin.reach;
+        const demi_shape *one, *other;
         dem_real thin;
         if (p + DEMI_EGGS_AHEAD < end) {
             const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
             DEMI_FETCH(w->bodies.pos + 4*next);
             DEMI_FETCH(w->bodies.orient + 4*next);
         }
-        if (!(demi_dot(r, r) < far*far) || !demi_eggs_are(w, a, b)) continue;
+        if (!(demi_dot(r, r) < far*far)) continue;
+        one = demi_shape_of(w, a);
+        other = demi_shape_of(w, b);
+        if ((!one && !other) || !demi_egg_is(one) || !demi_egg_is(other)) continue;
         k = t->count++;
         o = demi_eggs_old(t, last, a, b);
         if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
         t->entry[k] = p;
         t->from[k] = o ? (int32_t)(o - now) : -1;
-        thin = demi_egg_body_put(w, t, k, 0, a);
-        thin += demi_egg_body_put(w, t, k, 1, b);
+        thin = demi_egg_body_put(w, t, k, 0, a, one);
+        thin += demi_egg_body_put(w, t, k, 1, b, other);
         demi_eggs_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
     }
     t->end = p;
     for (k = t->count; k%DEMI_LANES; k++) {     /* copies of two spheres pad the last group */
         demi_egg_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
         demi_egg_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        t->equal[0][k] = t->equal[1][k] = 1;
         demi_eggs_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
     }
     if (t->count) demi_eggs_solve(t, k);
@@ -21484,24 +21496,22 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
-   be a sphere. ra, rb: m, radii of spheres of equal volume. p, q: the two; not read if the overlap
-   is the conservative one. */
-DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, double ra, double rb,
-                              const demi_part *p, const demi_part *q, demi_kept *c) {
-    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];
-    c->lambda = l;
+   be a sphere. p, q: the two; not read if the overlap is the conservative one. */
+DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const demi_part *p,
+                              const demi_part *q, demi_kept *c) {
+    c->lambda = t->to[k];
     c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
-    c->deep = (dem_real)(left/DEMI_MIN(l, 1 - l));
-    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
-        c->overlap = (dem_real)(left*(ra + rb));
-        c->slope = (dem_real)((ra + rb)/both);
-    } else {
-        ra = demi_part_round(w, p, l*both);
-        rb = demi_part_round(w, q, (1 - l)*both);
+    c->deep = (dem_real)t->deep[k];
+    c->overlap = (dem_real)t->overlap[k];
+    c->r_eff = (dem_real)t->r_eff[k];
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) c->slope = (dem_real)t->slope[k];
+    else {
+        const double l = t->to[k], both = t->both[k];
+        const double ra = demi_part_round(w, p, l*both), rb = demi_part_round(w, q, (1 - l)*both);
+        c->r_eff = (dem_real)(ra*rb/(ra + rb));
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
-            ? demi_eggs_chord(t, k) : left*both);
+            ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
     }
-    c->r_eff = (dem_real)(ra*rb/(ra + rb));
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
@@ -21510,10 +21520,12 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
     thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    t.equal[0][0] = demi_part_equal(p);
+    t.equal[1][0] = demi_part_equal(q);
     demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
     demi_eggs_solve_one(&t, 0);
     if (!demi_eggs_meet(&t, 0)) return 0;
-    demi_eggs_set(w, &t, 0, demi_part_equal(p), demi_part_equal(q), p, q, c);
+    demi_eggs_set(w, &t, 0, p, q, c);
     c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
@@ -21732,17 +21744,25 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
-/* Prefetches the fields that every contact uses, of the contact `by` entries after k. That entry
-   may lie beyond the end of the list. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by) {
+/* Prefetches what the next step needs of the contact `by` entries after k or, with `all`, the
+   fields that every contact uses. That entry may lie beyond the end of the list. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
     const uintptr_t at = (uintptr_t)k + by*sizeof *k;
     size_t e;
     DEMI_UNROLL
-    for (e = 0; e < offsetof(demi_kept, memory) + 4*sizeof(dem_real); e += 64)
+    for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
+        DEMI_FETCH((const void *)(at + e));
+    DEMI_UNROLL
+    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more) && all; e += 64)
         DEMI_FETCH((const void *)(at + e));
 }
-/* Appends a contact to the new list of work group d and returns it, cleared except for the part
-   that >>kept-respond writes. Returns null if the list is full. */
+/* Clears all of a contact but its history, which respond writes, and `more`. */
+DEM_INLINE void demi_kept_blank(demi_kept *c) {
+    memset(c, 0, offsetof(demi_kept, memory));
+    memset(&c->arm_b, 0, offsetof(demi_kept, more) - offsetof(demi_kept, arm_b));
+}
+/* Appends a contact to the new list of work group d and returns it, cleared except for its history
+   and `more`. Returns null if the list is full. */
 static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_kept *c;
@@ -21751,7 +21771,7 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
         return 0;
     }
     c = w->kept_next + w->kept_first[d] + domain->kept_next++;
-    memset(c, 0, offsetof(demi_kept, coef));
+    demi_kept_blank(c);
     c->b = -1;
     c->share = c->slope = 1;
     return c;
@@ -21759,9 +21779,12 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
 DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
     return c->odd ? c->more.spread : demi_v(0, 0, 0);
 }
+DEM_INLINE dem_vec3 demi_kept_felt(const demi_kept *c) {
+    return c->odd ? c->more.felt : demi_v(0, 0, 0);
+}
 /* Copies a new contact, for which no force has been computed yet. */
 static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
-    memcpy(to, from, offsetof(demi_kept, coef));
+    memcpy(to, from, offsetof(demi_kept, more));
     if (from->odd) to->more = from->more;
 }
 
@@ -21987,9 +22010,9 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         dem_real A = d2, rate;
         demi_kept_more *m;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].felt = demi_kept_spread_of(&c[i]);        /* polyhedra: the centre of pressure */
+        if (c[i].odd) c[i].more.felt = c[i].more.spread;   /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
-        mean = demi_scale(demi_sub(c[i].arm_a, c[i].felt), d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, demi_kept_spread_of(&c[i])), d2);
         for (j = 0; j < n; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
@@ -22003,7 +22026,7 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         m->area = d2*demi_kept_room_of(m->added, &m->rate);
         c[i].share = c[i].weight*d2/m->area;
         if (A > d2/2)                           /* else negative weights prevail */
-            c[i].felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
+            m->felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
     if (one) demi_kept_lift(w, c, n);
 }
@@ -22201,7 +22224,7 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
     if (!demi_eggs_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
-    demi_kept_ahead(c, 2);
+    demi_kept_ahead(c, 2, 1);
     c->a = w->near.a[at]; c->b = w->near.b[at];
     c->wall = c->element = -1;
     c->send = send;
@@ -22212,7 +22235,7 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
     }
-    demi_eggs_set(w, t, k, demi_egg_equal(w, c->a), demi_egg_equal(w, c->b), &p, &q, c);
+    demi_eggs_set(w, t, k, &p, &q, c);
     c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
@@ -22563,11 +22586,13 @@ static int demi_kept_widen(dem_world *w) {
         first[d + 1] = first[d] + had + more;
     }
     if (!DEMI_GROW(w, w->kept_next, (size_t)first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS])) return 0;
+        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS])) return 0;
     for (d = w->domain_count - 1; d > 0; d--)
         memmove(w->kept_now + first[d], demi_kept_of(w, d),
                 (size_t)w->domains[d].kept*sizeof(demi_kept));
     memcpy(w->kept_first, first, sizeof w->kept_first);
+    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;
     return 1;
 }
 /* Finds the persistent contacts of all work groups. Returns 0 if memory ran out. */
@@ -22588,12 +22613,12 @@ static int demi_touch(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>kept-respond
-   Response of persistent contacts, a tile of them at a time. For each contact it copies
-   coefficients and contact history, fills the rows in which the stages of >>respond evaluate the
-   laws, and adds the forces to both bodies, the sums of walls, the ledger's energies and the rates
-   of user-defined numbers. It also gathers the forces on bodies of later work groups, which wait in
-   slots, for all contacts. It owns the part of a demi_kept that lasts from step to step, and adds
-   to forces of bodies.
+   Response of persistent contacts, a tile of them at a time. For each contact it finds the
+   coefficients, which contacts of one kind share (demi_coefs_row), and the history that it
+   continues, fills the rows in which the stages of >>respond evaluate the laws, and adds the forces
+   to both bodies, the sums of walls, the ledger's energies and the rates of user-defined numbers.
+   It also gathers the forces on bodies of later work groups, which wait in slots, for all contacts.
+   It owns w->coefs and the histories of persistent contacts, and adds to forces of bodies.
    --------------------------------------------------------------------------------------------- */
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
@@ -22610,7 +22635,8 @@ static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *ou
         (k->b >= 0 ? demi_body_give_at_most(w, k->b) : 0) : 0;
     demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
                              wall ? wall->material : w->bodies.material[k->b] - 1,
-                             (double)k->r_eff, half*(shaped ? 1/give : (double)k->m_eff),
+                             (double)k->r_eff,
+                             half*(shaped ? 1/give : (double)w->bodies.mass[k->a]),
                              wall && !grains, out, root);
     root[0] *= (dem_real)sqrt(half);
     root[1] *= (dem_real)sqrt(half);
@@ -22622,43 +22648,74 @@ static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int bo
 static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
-/* Copies history and coefficients from the contact that c continues; coefficients are worked out
-   again if its effective radius or its wall has changed. Returns that contact or, if c is new, c
-   itself, so that its change of normal is zero. */
-DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
-                                             demi_kept *c) {
-    const demi_kept *old = c->from < 0 ? c : now + c->from;
-    const int fits = old != c && old->wall == c->wall &&
-        !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
+/* Copies the history from the contact that c continues. */
+DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_kept *c) {
     int e;
-    if (c->b < 0 && !demi_shape_of(w, c->a))    /* not set by touch */
-        c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
-    for (e = 0; e < w->memory_stride; e++) c->memory[e] = old != c ? old->memory[e] : 0;
-    if (fits) {
-        memcpy(c->coef, old->coef, offsetof(demi_kept, memory) - offsetof(demi_kept, coef));
-        return old;
+    for (e = 0; e < w->memory_stride; e++) {
+        DEMI_ONE_BY_ONE(e);                     /* no call of memcpy for so few */
+        c->memory[e] = c->from < 0 ? 0 : now[c->from].memory[e];
     }
-    demi_kept_coefs(w, c, c->coef, c->root);
-    c->coef_r = c->r_eff;
-    return old;
 }
-/* Rescales the springs of friction and rolling when the weight of friction changes (merged
+/* Makes room for the coefficients of `more` contacts of work group d. Returns 0 if its rows are
+   empty, so that no contact has one yet. */
+static int demi_kept_rows_begin(dem_world *w, int d, int more) {
+    const int room = 2*(w->kept_first[d + 1] - w->kept_first[d]);
+    if (w->domains[d].coefs + more > room) w->domains[d].coefs = 0;
+    return w->domains[d].coefs > 0;
+}
+/* Returns the row with the coefficients of contact c: if `known`, that of `old`, the same contact
+   in the step before; otherwise one of the first few rows, or a new one. Masses, materials and
+   shapes stay the same while lists are valid; growth changes r_eff too. */
+DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c,
+                                               const demi_kept *old, int known) {
+    enum { FEW = 8 };
+    demi_coefs_row *rows = w->coefs + 2*(size_t)w->kept_first[d], key, *row;
+    int *count = &w->domains[d].coefs, i, most = DEMI_MIN(*count, FEW);
+    const int32_t *shape = w->bodies.shape;
+    if (known && old->wall == c->wall && old->row >= 0 && old->row < *count &&
+        !(rows[old->row].r_eff < c->r_eff || rows[old->row].r_eff > c->r_eff)) {
+        c->row = old->row;
+        return rows + c->row;
+    }
+    key.r_eff = c->r_eff;
+    key.inv[0] = w->bodies.inv_mass[c->a];
+    key.inv[1] = c->b < 0 ? 0 : w->bodies.inv_mass[c->b];
+    key.material[0] = w->bodies.material[c->a];
+    key.material[1] = c->b < 0 ? -1 - c->wall : w->bodies.material[c->b];
+    key.shape[0] = shape ? shape[c->a] : 0;
+    key.shape[1] = shape && c->b >= 0 ? shape[c->b] : 0;
+    for (i = 0; i < most; i++)
+        if (!memcmp(rows + i, &key, offsetof(demi_coefs_row, m_eff))) break;
+    c->row = i < most ? i : (*count)++;
+    row = rows + c->row;
+    if (i < most) return row;
+    memcpy(row, &key, offsetof(demi_coefs_row, m_eff));
+    row->m_eff = c->b < 0 && !key.shape[0] ? w->bodies.mass[c->a] : 0;
+    demi_kept_coefs(w, c, row->coef, row->root);
+    return row;
+}
+/* Returns the history that contact c continues: zeros, that of its old contact, or that with the
+   springs of friction and rolling rescaled, because the weight of friction has changed (merged
    contacts, contact points of a surface). If the weight grows, a spring keeps its force; if it
    falls, the spring keeps its length. The reverse would create energy. A contact that has ended in
    this one is merged first: the weighted mean of both springs stores no more energy than the two
    did. */
-static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *c) {
+static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, demi_kept *c) {
     const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real held = c->held < 0 ? now[c->from].grip : c->held, more = ended ? ended->grip : 0;
-    const dem_real all = held + more;
+    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? now[c->from].grip : c->held;
+    const dem_real more = ended ? ended->grip : 0, all = held + more;
     const dem_real left = c->grip > all ? all/c->grip : 1;
     int k;
-    if (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)) return;
+    if (c->from >= 0 && (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)))
+        return now[c->from].memory;
+    demi_kept_recall(w, now, c);
+    if (c->from < 0) return c->memory;
     for (k = 0; k < w->laws.memory; k++) {
         if (!(w->laws.vectors >> k & 1) && k != w->laws.at_twisting) continue;
         if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
         c->memory[k] *= left;
     }
+    return c->memory;
 }
 /* Sum of the two radii, m: of spheres, including those of clusters, or the bounding radii of other
    shapes; a wall adds none. */
@@ -22695,14 +22752,18 @@ typedef struct demi_kept_tile {
     dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: minus share */
     dem_real still[DEMI_ROOM];      /* N, elastic force, if any is lifted */
     dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 - inset */
-    dem_real root[2][DEMI_ROOM];
+    dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
+    dem_real slope[DEMI_ROOM];
     /* for 1/m_eff, if not all bodies are spheres: of a and b */
     demi_rows felt[2];             /* m; 0: does not rotate */
     dem_real q[2][4][DEMI_ROOM], I[2][3][DEMI_ROOM], inv[2][DEMI_ROOM];
     /* the remaining fields are last, so that all rows begin on cache lines */
     demi_tile rows;
+    const demi_coefs_row *row[DEMI_TILE];
+    const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */
     demi_kept *contact[DEMI_TILE];
     const demi_kept *old[DEMI_TILE];               /* what each continues; a new one: itself */
+    const dem_real *past[DEMI_TILE];               /* history that each continues */
     dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* point on a wall, m; its velocity */
     int count, lifted, shaped;     /* is `still` needed? bodies that are not spheres? */
 } demi_kept_tile;
@@ -22760,8 +22821,8 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
    1/mass, orientation and moments of inertia. */
 DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, int side,
                                      demi_kept_tile *t, int q) {
-    const dem_real inv = who < 0 ? 0 : w->bodies.inv_mass[who];
-    const int turns = inv > 0 && demi_shape_of(w, who);
+    const dem_real inv = t->row[q]->inv[side];
+    const int turns = inv > 0 && t->row[q]->shape[side];
     int e;
     t->inv[side][q] = inv;
     demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
@@ -22777,14 +22838,24 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, 
     DEMI_UNROLL
     for (e = 0; e < 3; e++) t->I[side][e][q] = 1;
 }
+/* Fills row q with the coefficients of its contact, unless it has them already. */
+DEM_INLINE void demi_kept_fetch_coefs(demi_kept_tile *t, int q) {
+    const demi_coefs_row *row = t->row[q];
+    int e;
+    t->rows.coef[DEMI_M_EFF][q] = row->m_eff;
+    if (t->filled[q] == row) return;
+    for (e = 0; e < DEMI_COEFS; e++) t->base[e][q] = t->rows.coef[e][q] = row->coef[e];
+    t->root[0][q] = row->root[0];
+    t->root[1][q] = row->root[1];
+    t->filled[q] = row;
+}
 /* Fills row q from a contact and the old one that it continues. */
 static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
                             demi_kept_tile *t, int q) {
     const dem_world *w = r->w;
     const dem_vec3 mid = demi_middle(k->arm_a, old->arm_a);
-    const dem_real *coef = k->coef, slope = k->slope;    /* d overlap/d approach */
     int e;
-    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = k->memory[e];
+    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = t->past[q][e];
     demi_row_put(t->rows.normal, q, k->normal);
     t->rows.overlap[q] = k->overlap;
     demi_rows_put(&t->arm[0], q, k->arm_a);
@@ -22796,36 +22867,30 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     }
     if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
     else demi_kept_fetch_pair(r, k, old, t, q);
-    DEMI_UNROLL
-    for (e = 0; e < DEMI_COEFS; e++) t->rows.coef[e][q] = coef[e];
-    t->rows.coef[DEMI_KN][q] *= slope;
-    t->rows.coef[DEMI_CN][q] *= slope;
-    t->rows.coef[DEMI_K_UN][q] *= slope;
-    for (e = DEMI_K_UN + 1; e < DEMI_COEFS; e++) t->rows.coef[e][q] *= slope;
-    t->rows.coef[DEMI_M_EFF][q] = k->m_eff;
-    t->root[0][q] = slope*k->root[0];
-    t->root[1][q] = k->root[1];
+    demi_kept_fetch_coefs(t, q);
+    t->slope[q] = k->slope;
     t->share[q] = k->share;
     t->grip[q] = k->grip;
     t->lift[q] = k->lift - k->share;
     t->couple[q] = k->odd ? k->more.couple : 0;
     t->outset[q] = k->odd ? 1 - k->more.inset : 0;
     if (!t->shaped) return;
-    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
-    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
+    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, demi_kept_felt(k)), 0, t, q);
+    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, demi_kept_felt(k)), 1, t, q);
 }
 /* Pads the last vector group of a tile with copies of its last contact, in every row that was
    filled. The padded results are ignored; copies avoid arithmetic on undefined values. */
 static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
-        t->rows.memory[0], t->rows.coef[0], t->share, t->grip, t->lift, t->couple, t->outset,
-        t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
-    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, 1, 1, 1, 1, 1,
+        t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
+        t->couple, t->outset, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
+    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1, 1,
         2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
     demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
         t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
     const int last = t->count - 1;
     int k, e, q;
+    for (q = last + 1; q < full; q++) t->filled[q] = 0;
     for (k = 0; k < (int)(sizeof rows/sizeof *rows); k++)
         for (e = 0; e < counts[k]; e++)
             for (q = last + 1; q < full; q++)
@@ -22858,11 +22923,16 @@ DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi
     const dem_vec3 u = demi_sub(demi_add(demi_rows_at(&t->rows.rate, q),
                                          demi_cross(wa, demi_rows_at(&t->arm[0], q))),
                                 demi_cross(wb, demi_rows_at(&t->arm[1], q)));
-    const dem_real closing = demi_dot(u, n);
+    const dem_real closing = demi_dot(u, n), slope = t->slope[q];       /* d overlap/d approach */
+    const dem_real root = DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    int e;
     demi_row_put(t->rows.slip, q, demi_sub(u, demi_scale(n, closing)));
     demi_rows_put(&t->rows.apart, q, apart);
-    t->rows.coef[DEMI_CN][q] += t->root[0][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
-    t->rows.coef[DEMI_CT][q] += t->root[1][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    t->rows.coef[DEMI_KN][q] = t->base[DEMI_KN][q]*slope;
+    t->rows.coef[DEMI_CN][q] = t->base[DEMI_CN][q]*slope + slope*t->root[0][q]*root;
+    t->rows.coef[DEMI_CT][q] = t->base[DEMI_CT][q] + t->root[1][q]*root;
+    DEMI_UNROLL
+    for (e = DEMI_K_UN; e < DEMI_COEFS; e++) t->rows.coef[e][q] = t->base[e][q]*slope;
     /* the moment about the normal also does work */
     t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
     if (following) {
@@ -23050,7 +23120,7 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.half_spin + 4*body);
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
-    if (!demi_shape_of(w, body)) return;
+    if (!w->bodies.shaped) return;
     DEMI_FETCH(w->bodies.orient + 4*body);
     DEMI_FETCH(w->bodies.moment + 4*body);
 }
@@ -23167,18 +23237,23 @@ static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows)
     for (q = 0; q < DEMI_TILE && q < rows; q++) {
         t->rows.touch[q] = 1;
         t->rows.memory[DEMI_MEMORY][q] = 0;
+        t->filled[q] = 0;
         t->still[q] = 0;                        /* if none is lifted */
         demi_row_put(t->rows.tangent, q, demi_v(0, 0, 0));      /* if no law sets it */
         t->rows.slope[0][q] = t->rows.slope[1][q] = t->rows.kt[1][q] = (dem_real)NAN;
     }
     if (r->ledger) memset(t->rows.part, 0, sizeof t->rows.part);
 }
-/* Appends contact c, which continues `old`, to a tile. */
-DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old) {
+/* Appends contact c, which continues `old` with history `past` and has coefficients `row`, to a
+   tile. */
+DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old,
+                                   const dem_real *past, const demi_coefs_row *row) {
     t->contact[t->count] = c;
+    t->past[t->count] = past;
+    t->row[t->count] = row;
     t->old[t->count++] = old;
     t->lifted |= demi_kept_lifted(c);
-    t->shaped |= !(c->m_eff > 0);
+    t->shaped |= !(row->m_eff > 0);
 }
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
@@ -23187,29 +23262,31 @@ static void demi_kept_respond(dem_world *w, int d) {
     const demi_kept *now = demi_kept_of(w, d);
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, dt);
-    int i;
+    int i, known;
     domain->kept_walls = 0;
     if (!domain->kept_next) return;
+    known = demi_kept_rows_begin(w, d, domain->kept_next);
     if (!w->desc.law) demi_run_laws(w, &run, 0);
     demi_kept_tile_begin(&tile, &run, domain->kept_next + DEMI_LANES);
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
-        const demi_kept *old;
-        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5);
+        const demi_kept *old = c->from < 0 ? c : now + c->from;
+        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5, 1);
         if (i + 2 < domain->kept_next) {
             demi_body_fetch(w, c[2].a);
             if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
-            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from);
+            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from, 0);
         }
-        old = demi_kept_recall(w, now, c);
         if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */
+            demi_kept_recall(w, now, c);
+            c->row = -1;
             c->force = demi_v(0, 0, 0);
             domain->kept_walls += c->b < 0;
             continue;
         }
-        demi_kept_tile_add(&tile, c, old);
+        demi_kept_tile_add(&tile, c, old, demi_kept_past(w, now, c),
+                           demi_kept_row(w, d, c, old, known && old != c));
         demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
-        if (c->from >= 0) demi_kept_hold(w, now, c);
         if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);
     }
     if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
@@ -23295,8 +23372,8 @@ DEM_INLINE void demi_member_add(demi_member_tile *m, int p, const demi_kept *c) 
     m->t.grip[q] = c->grip;
     m->t.lift[q] = c->lift - c->share;
     m->merged[q] = 1;
-    m->at[0][q] = demi_sub(c->arm_a, c->felt);
-    m->at[1][q] = demi_sub(c->arm_b, c->felt);
+    m->at[0][q] = demi_sub(c->arm_a, demi_kept_felt(c));
+    m->at[1][q] = demi_sub(c->arm_b, demi_kept_felt(c));
     m->aside[q] = c->odd ? c->more.aside : demi_v(0, 0, 0);
     m->weighted = 1;
 }
@@ -23622,7 +23699,7 @@ static const demi_kept *demi_members_merge(const dem_world *w, int d, const int3
         const dem_real *x = w->bodies.centre + 4*w->near.ball_a[at];
         const dem_real *y = w->bodies.centre + 4*w->near.ball_b[at];
         demi_kept *c = first + i;
-        memset(c, 0, offsetof(demi_kept, coef));
+        demi_kept_blank(c);
         c->a = w->near.a[at];
         c->b = w->near.b[at];
         c->part_a = w->near.ball_a[at] - w->bodies.centre_start[c->a];
@@ -28793,17 +28870,20 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, 0);
-    int d, k;
+    int d, k, known;
     if (!w->desc.law) demi_run_laws(w, &run, 0);
     demi_kept_tile_begin(&tile, &run, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
+        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
         for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c);
+            demi_kept_tile_add(&tile, c, c, c->memory,
+                               demi_kept_row(w, d, c, c, known));
             if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
         }
         if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+        if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
     }
 }
 /* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the
@@ -28959,12 +29039,12 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
         const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
         for (; c < end && w->domains[d].kept_walls; c++) {
             const double slope = (double)c->slope;
-            dem_real coef[DEMI_COEFS];
+            dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
             if (c->b >= 0 || walls[c->wall].group != walls[of].group ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
-            memcpy(coef, c->coef, sizeof coef);
-            coef[DEMI_CN] += c->root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
+            demi_kept_coefs(w, c, coef, root);
+            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
             s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
             if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
             if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;
@@ -36586,6 +36666,7 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
 /* Sets what a contact does not use to 0, since files and messages contain all of it. */
 static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
     int e;
+    c->row = 0;
     for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
     if (!c->odd) memset(&c->more, 0, sizeof c->more);
 }
@@ -36674,7 +36755,9 @@ static void demi_visit_events(dem_world *w, demi_stream *s) {
 }
 /* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
+    int d;
     demi_visit_numbers(w, s);
+    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* demi_kept_tidy */
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);
@@ -37165,7 +37248,7 @@ static int demi_domains_check(const demi_reader *r) {
     for (d = 0; d < t->domain_count; d++) {
         demi_domain *o = &t->domains[d];
         if (!demi_domain_check(r, d)) return demi_lie(r, "counts of domain", d);
-        o->overflow = 0;
+        o->overflow = o->coefs = 0;
         if (t->stage.list_valid) continue;
         /* left from a list that no longer fits */
         o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->bodies.count);
@@ -37493,6 +37576,7 @@ static int demi_twin_lists_room(dem_world *t) {
     if (!demi_wall_sums_room(t) ||
         !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
         !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->coefs, 2*(size_t)t->kept_first[DEMI_DOMAINS]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&

@@ -8,26 +8,15 @@
    caller.
    --------------------------------------------------------------------------------------------- */
 
-/* True if a body is an ellipsoid or a sphere. */
-DEM_INLINE int demi_egg_is(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
+/* True if a body of this shape is an ellipsoid or a sphere (null). */
+DEM_INLINE int demi_egg_is(const demi_shape *shape) {
     return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
-}
-/* True if contact points of a pair are found in tiles: at least one is an ellipsoid. */
-DEM_INLINE int demi_eggs_are(const dem_world *w, int a, int b) {
-    return (demi_shape_of(w, a) || demi_shape_of(w, b)) && demi_egg_is(w, a) && demi_egg_is(w, b);
 }
 /* True if the scene has ellipsoids. */
 static int demi_eggs_exist(const dem_world *w) {
     int k, any = 0;
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
     return any;
-}
-/* Returns the radius of the sphere with the volume of such a body, m. */
-DEM_INLINE double demi_egg_equal(const dem_world *w, int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    return (double)(shape ? shape->equal*demi_scale_of(w, body, shape)
-                          : w->bodies.pos[4*body + 3]);
 }
 /* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
    prefetched. */
@@ -38,6 +27,7 @@ enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
 typedef struct demi_egg_tile {
     dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
     double r[3][DEMI_EGGS];        /* m, from a to b */
+    double equal[2][DEMI_EGGS];    /* m, radii of the spheres of equal volume */
     double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
     double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
     double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
@@ -45,6 +35,7 @@ typedef struct demi_egg_tile {
        demi_meet and demi_eggs_keep */
     double found[DEMI_EGGS];
     double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
+    double overlap[DEMI_EGGS], slope[DEMI_EGGS], r_eff[DEMI_EGGS], deep[DEMI_EGGS];
     double s[3][DEMI_EGGS], v[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
     int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
@@ -69,13 +60,19 @@ DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
         demi_v(t->axes[side][0][q], t->axes[side][1][q], t->axes[side][2][q]));
 }
 /* Stores the contact point of row q. At that point both scaled distances are W0, so the support
-   heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. */
+   heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. The overlap is the
+   conservative one. */
 DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet m) {
-    const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s);
+    const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s), least = m.l < 0.5 ? m.l : 1 - m.l;
+    const double radii = t->equal[0][q] + t->equal[1][q];
     t->to[q] = m.l;
     t->f[q] = m.f;
     t->w0[q] = w0;
     t->both[q] = w0*per/(m.l*(1 - m.l));
+    t->overlap[q] = (1 - w0)*radii;
+    t->slope[q] = radii/t->both[q];
+    t->r_eff[q] = t->equal[0][q]*t->equal[1][q]/radii;
+    t->deep[q] = (1 - w0)/least;
     demi_eggs_put(t->s, q, m.s);
     demi_eggs_put(t->v, q, m.v);
     demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
@@ -132,13 +129,13 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
 }
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
 DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
-                                      int body) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    const dem_real radius = w->bodies.pos[4*body + 3];
+                                      int body, const demi_shape *shape) {
+    const dem_real radius = w->bodies.pos[4*body + 3], scale = shape ? radius/shape->radius : 0;
+    t->equal[side][k] = (double)(shape ? shape->equal*scale : radius);
     if (!shape)
         return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
     return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
-                        demi_scale(shape->axes, radius/shape->radius));
+                        demi_scale(shape->axes, scale));
 }
 /* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
 DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
@@ -163,26 +160,31 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
         const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
         const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
         const dem_real far = radii + (dem_real)w->margin.reach;
+        const demi_shape *one, *other;
         dem_real thin;
         if (p + DEMI_EGGS_AHEAD < end) {
             const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
             DEMI_FETCH(w->bodies.pos + 4*next);
             DEMI_FETCH(w->bodies.orient + 4*next);
         }
-        if (!(demi_dot(r, r) < far*far) || !demi_eggs_are(w, a, b)) continue;
+        if (!(demi_dot(r, r) < far*far)) continue;
+        one = demi_shape_of(w, a);
+        other = demi_shape_of(w, b);
+        if ((!one && !other) || !demi_egg_is(one) || !demi_egg_is(other)) continue;
         k = t->count++;
         o = demi_eggs_old(t, last, a, b);
         if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
         t->entry[k] = p;
         t->from[k] = o ? (int32_t)(o - now) : -1;
-        thin = demi_egg_body_put(w, t, k, 0, a);
-        thin += demi_egg_body_put(w, t, k, 1, b);
+        thin = demi_egg_body_put(w, t, k, 0, a, one);
+        thin += demi_egg_body_put(w, t, k, 1, b, other);
         demi_eggs_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
     }
     t->end = p;
     for (k = t->count; k%DEMI_LANES; k++) {     /* copies of two spheres pad the last group */
         demi_egg_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
         demi_egg_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        t->equal[0][k] = t->equal[1][k] = 1;
         demi_eggs_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
     }
     if (t->count) demi_eggs_solve(t, k);

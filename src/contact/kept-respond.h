@@ -1,11 +1,11 @@
 /* ---------------------------------------------------------------------------------------------
    >>kept-respond
-   Response of persistent contacts, a tile of them at a time. For each contact it copies
-   coefficients and contact history, fills the rows in which the stages of >>respond evaluate the
-   laws, and adds the forces to both bodies, the sums of walls, the ledger's energies and the rates
-   of user-defined numbers. It also gathers the forces on bodies of later work groups, which wait in
-   slots, for all contacts. It owns the part of a demi_kept that lasts from step to step, and adds
-   to forces of bodies.
+   Response of persistent contacts, a tile of them at a time. For each contact it finds the
+   coefficients, which contacts of one kind share (demi_coefs_row), and the history that it
+   continues, fills the rows in which the stages of >>respond evaluate the laws, and adds the forces
+   to both bodies, the sums of walls, the ledger's energies and the rates of user-defined numbers.
+   It also gathers the forces on bodies of later work groups, which wait in slots, for all contacts.
+   It owns w->coefs and the histories of persistent contacts, and adds to forces of bodies.
    --------------------------------------------------------------------------------------------- */
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
@@ -22,7 +22,8 @@ static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *ou
         (k->b >= 0 ? demi_body_give_at_most(w, k->b) : 0) : 0;
     demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
                              wall ? wall->material : w->bodies.material[k->b] - 1,
-                             (double)k->r_eff, half*(shaped ? 1/give : (double)k->m_eff),
+                             (double)k->r_eff,
+                             half*(shaped ? 1/give : (double)w->bodies.mass[k->a]),
                              wall && !grains, out, root);
     root[0] *= (dem_real)sqrt(half);
     root[1] *= (dem_real)sqrt(half);
@@ -34,43 +35,74 @@ static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int bo
 static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
-/* Copies history and coefficients from the contact that c continues; coefficients are worked out
-   again if its effective radius or its wall has changed. Returns that contact or, if c is new, c
-   itself, so that its change of normal is zero. */
-DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
-                                             demi_kept *c) {
-    const demi_kept *old = c->from < 0 ? c : now + c->from;
-    const int fits = old != c && old->wall == c->wall &&
-        !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
+/* Copies the history from the contact that c continues. */
+DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_kept *c) {
     int e;
-    if (c->b < 0 && !demi_shape_of(w, c->a))    /* not set by touch */
-        c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
-    for (e = 0; e < w->memory_stride; e++) c->memory[e] = old != c ? old->memory[e] : 0;
-    if (fits) {
-        memcpy(c->coef, old->coef, offsetof(demi_kept, memory) - offsetof(demi_kept, coef));
-        return old;
+    for (e = 0; e < w->memory_stride; e++) {
+        DEMI_ONE_BY_ONE(e);                     /* no call of memcpy for so few */
+        c->memory[e] = c->from < 0 ? 0 : now[c->from].memory[e];
     }
-    demi_kept_coefs(w, c, c->coef, c->root);
-    c->coef_r = c->r_eff;
-    return old;
 }
-/* Rescales the springs of friction and rolling when the weight of friction changes (merged
+/* Makes room for the coefficients of `more` contacts of work group d. Returns 0 if its rows are
+   empty, so that no contact has one yet. */
+static int demi_kept_rows_begin(dem_world *w, int d, int more) {
+    const int room = 2*(w->kept_first[d + 1] - w->kept_first[d]);
+    if (w->domains[d].coefs + more > room) w->domains[d].coefs = 0;
+    return w->domains[d].coefs > 0;
+}
+/* Returns the row with the coefficients of contact c: if `known`, that of `old`, the same contact
+   in the step before; otherwise one of the first few rows, or a new one. Masses, materials and
+   shapes stay the same while lists are valid; growth changes r_eff too. */
+DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c,
+                                               const demi_kept *old, int known) {
+    enum { FEW = 8 };
+    demi_coefs_row *rows = w->coefs + 2*(size_t)w->kept_first[d], key, *row;
+    int *count = &w->domains[d].coefs, i, most = DEMI_MIN(*count, FEW);
+    const int32_t *shape = w->bodies.shape;
+    if (known && old->wall == c->wall && old->row >= 0 && old->row < *count &&
+        !(rows[old->row].r_eff < c->r_eff || rows[old->row].r_eff > c->r_eff)) {
+        c->row = old->row;
+        return rows + c->row;
+    }
+    key.r_eff = c->r_eff;
+    key.inv[0] = w->bodies.inv_mass[c->a];
+    key.inv[1] = c->b < 0 ? 0 : w->bodies.inv_mass[c->b];
+    key.material[0] = w->bodies.material[c->a];
+    key.material[1] = c->b < 0 ? -1 - c->wall : w->bodies.material[c->b];
+    key.shape[0] = shape ? shape[c->a] : 0;
+    key.shape[1] = shape && c->b >= 0 ? shape[c->b] : 0;
+    for (i = 0; i < most; i++)
+        if (!memcmp(rows + i, &key, offsetof(demi_coefs_row, m_eff))) break;
+    c->row = i < most ? i : (*count)++;
+    row = rows + c->row;
+    if (i < most) return row;
+    memcpy(row, &key, offsetof(demi_coefs_row, m_eff));
+    row->m_eff = c->b < 0 && !key.shape[0] ? w->bodies.mass[c->a] : 0;
+    demi_kept_coefs(w, c, row->coef, row->root);
+    return row;
+}
+/* Returns the history that contact c continues: zeros, that of its old contact, or that with the
+   springs of friction and rolling rescaled, because the weight of friction has changed (merged
    contacts, contact points of a surface). If the weight grows, a spring keeps its force; if it
    falls, the spring keeps its length. The reverse would create energy. A contact that has ended in
    this one is merged first: the weighted mean of both springs stores no more energy than the two
    did. */
-static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *c) {
+static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, demi_kept *c) {
     const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real held = c->held < 0 ? now[c->from].grip : c->held, more = ended ? ended->grip : 0;
-    const dem_real all = held + more;
+    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? now[c->from].grip : c->held;
+    const dem_real more = ended ? ended->grip : 0, all = held + more;
     const dem_real left = c->grip > all ? all/c->grip : 1;
     int k;
-    if (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)) return;
+    if (c->from >= 0 && (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)))
+        return now[c->from].memory;
+    demi_kept_recall(w, now, c);
+    if (c->from < 0) return c->memory;
     for (k = 0; k < w->laws.memory; k++) {
         if (!(w->laws.vectors >> k & 1) && k != w->laws.at_twisting) continue;
         if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
         c->memory[k] *= left;
     }
+    return c->memory;
 }
 /* Sum of the two radii, m: of spheres, including those of clusters, or the bounding radii of other
    shapes; a wall adds none. */
@@ -107,14 +139,18 @@ typedef struct demi_kept_tile {
     dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: minus share */
     dem_real still[DEMI_ROOM];      /* N, elastic force, if any is lifted */
     dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 - inset */
-    dem_real root[2][DEMI_ROOM];
+    dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
+    dem_real slope[DEMI_ROOM];
     /* for 1/m_eff, if not all bodies are spheres: of a and b */
     demi_rows felt[2];             /* m; 0: does not rotate */
     dem_real q[2][4][DEMI_ROOM], I[2][3][DEMI_ROOM], inv[2][DEMI_ROOM];
     /* the remaining fields are last, so that all rows begin on cache lines */
     demi_tile rows;
+    const demi_coefs_row *row[DEMI_TILE];
+    const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */
     demi_kept *contact[DEMI_TILE];
     const demi_kept *old[DEMI_TILE];               /* what each continues; a new one: itself */
+    const dem_real *past[DEMI_TILE];               /* history that each continues */
     dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* point on a wall, m; its velocity */
     int count, lifted, shaped;     /* is `still` needed? bodies that are not spheres? */
 } demi_kept_tile;
@@ -172,8 +208,8 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
    1/mass, orientation and moments of inertia. */
 DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, int side,
                                      demi_kept_tile *t, int q) {
-    const dem_real inv = who < 0 ? 0 : w->bodies.inv_mass[who];
-    const int turns = inv > 0 && demi_shape_of(w, who);
+    const dem_real inv = t->row[q]->inv[side];
+    const int turns = inv > 0 && t->row[q]->shape[side];
     int e;
     t->inv[side][q] = inv;
     demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
@@ -189,14 +225,24 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, 
     DEMI_UNROLL
     for (e = 0; e < 3; e++) t->I[side][e][q] = 1;
 }
+/* Fills row q with the coefficients of its contact, unless it has them already. */
+DEM_INLINE void demi_kept_fetch_coefs(demi_kept_tile *t, int q) {
+    const demi_coefs_row *row = t->row[q];
+    int e;
+    t->rows.coef[DEMI_M_EFF][q] = row->m_eff;
+    if (t->filled[q] == row) return;
+    for (e = 0; e < DEMI_COEFS; e++) t->base[e][q] = t->rows.coef[e][q] = row->coef[e];
+    t->root[0][q] = row->root[0];
+    t->root[1][q] = row->root[1];
+    t->filled[q] = row;
+}
 /* Fills row q from a contact and the old one that it continues. */
 static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
                             demi_kept_tile *t, int q) {
     const dem_world *w = r->w;
     const dem_vec3 mid = demi_middle(k->arm_a, old->arm_a);
-    const dem_real *coef = k->coef, slope = k->slope;    /* d overlap/d approach */
     int e;
-    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = k->memory[e];
+    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = t->past[q][e];
     demi_row_put(t->rows.normal, q, k->normal);
     t->rows.overlap[q] = k->overlap;
     demi_rows_put(&t->arm[0], q, k->arm_a);
@@ -208,36 +254,30 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     }
     if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
     else demi_kept_fetch_pair(r, k, old, t, q);
-    DEMI_UNROLL
-    for (e = 0; e < DEMI_COEFS; e++) t->rows.coef[e][q] = coef[e];
-    t->rows.coef[DEMI_KN][q] *= slope;
-    t->rows.coef[DEMI_CN][q] *= slope;
-    t->rows.coef[DEMI_K_UN][q] *= slope;
-    for (e = DEMI_K_UN + 1; e < DEMI_COEFS; e++) t->rows.coef[e][q] *= slope;
-    t->rows.coef[DEMI_M_EFF][q] = k->m_eff;
-    t->root[0][q] = slope*k->root[0];
-    t->root[1][q] = k->root[1];
+    demi_kept_fetch_coefs(t, q);
+    t->slope[q] = k->slope;
     t->share[q] = k->share;
     t->grip[q] = k->grip;
     t->lift[q] = k->lift - k->share;
     t->couple[q] = k->odd ? k->more.couple : 0;
     t->outset[q] = k->odd ? 1 - k->more.inset : 0;
     if (!t->shaped) return;
-    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
-    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
+    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, demi_kept_felt(k)), 0, t, q);
+    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, demi_kept_felt(k)), 1, t, q);
 }
 /* Pads the last vector group of a tile with copies of its last contact, in every row that was
    filled. The padded results are ignored; copies avoid arithmetic on undefined values. */
 static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
-        t->rows.memory[0], t->rows.coef[0], t->share, t->grip, t->lift, t->couple, t->outset,
-        t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
-    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, 1, 1, 1, 1, 1,
+        t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
+        t->couple, t->outset, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
+    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1, 1,
         2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
     demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
         t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
     const int last = t->count - 1;
     int k, e, q;
+    for (q = last + 1; q < full; q++) t->filled[q] = 0;
     for (k = 0; k < (int)(sizeof rows/sizeof *rows); k++)
         for (e = 0; e < counts[k]; e++)
             for (q = last + 1; q < full; q++)
@@ -270,11 +310,16 @@ DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi
     const dem_vec3 u = demi_sub(demi_add(demi_rows_at(&t->rows.rate, q),
                                          demi_cross(wa, demi_rows_at(&t->arm[0], q))),
                                 demi_cross(wb, demi_rows_at(&t->arm[1], q)));
-    const dem_real closing = demi_dot(u, n);
+    const dem_real closing = demi_dot(u, n), slope = t->slope[q];       /* d overlap/d approach */
+    const dem_real root = DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    int e;
     demi_row_put(t->rows.slip, q, demi_sub(u, demi_scale(n, closing)));
     demi_rows_put(&t->rows.apart, q, apart);
-    t->rows.coef[DEMI_CN][q] += t->root[0][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
-    t->rows.coef[DEMI_CT][q] += t->root[1][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    t->rows.coef[DEMI_KN][q] = t->base[DEMI_KN][q]*slope;
+    t->rows.coef[DEMI_CN][q] = t->base[DEMI_CN][q]*slope + slope*t->root[0][q]*root;
+    t->rows.coef[DEMI_CT][q] = t->base[DEMI_CT][q] + t->root[1][q]*root;
+    DEMI_UNROLL
+    for (e = DEMI_K_UN; e < DEMI_COEFS; e++) t->rows.coef[e][q] = t->base[e][q]*slope;
     /* the moment about the normal also does work */
     t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
     if (following) {
@@ -462,7 +507,7 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.half_spin + 4*body);
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
-    if (!demi_shape_of(w, body)) return;
+    if (!w->bodies.shaped) return;
     DEMI_FETCH(w->bodies.orient + 4*body);
     DEMI_FETCH(w->bodies.moment + 4*body);
 }
@@ -579,18 +624,23 @@ static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows)
     for (q = 0; q < DEMI_TILE && q < rows; q++) {
         t->rows.touch[q] = 1;
         t->rows.memory[DEMI_MEMORY][q] = 0;
+        t->filled[q] = 0;
         t->still[q] = 0;                        /* if none is lifted */
         demi_row_put(t->rows.tangent, q, demi_v(0, 0, 0));      /* if no law sets it */
         t->rows.slope[0][q] = t->rows.slope[1][q] = t->rows.kt[1][q] = (dem_real)NAN;
     }
     if (r->ledger) memset(t->rows.part, 0, sizeof t->rows.part);
 }
-/* Appends contact c, which continues `old`, to a tile. */
-DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old) {
+/* Appends contact c, which continues `old` with history `past` and has coefficients `row`, to a
+   tile. */
+DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old,
+                                   const dem_real *past, const demi_coefs_row *row) {
     t->contact[t->count] = c;
+    t->past[t->count] = past;
+    t->row[t->count] = row;
     t->old[t->count++] = old;
     t->lifted |= demi_kept_lifted(c);
-    t->shaped |= !(c->m_eff > 0);
+    t->shaped |= !(row->m_eff > 0);
 }
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
@@ -599,29 +649,31 @@ static void demi_kept_respond(dem_world *w, int d) {
     const demi_kept *now = demi_kept_of(w, d);
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, dt);
-    int i;
+    int i, known;
     domain->kept_walls = 0;
     if (!domain->kept_next) return;
+    known = demi_kept_rows_begin(w, d, domain->kept_next);
     if (!w->desc.law) demi_run_laws(w, &run, 0);
     demi_kept_tile_begin(&tile, &run, domain->kept_next + DEMI_LANES);
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
-        const demi_kept *old;
-        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5);
+        const demi_kept *old = c->from < 0 ? c : now + c->from;
+        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5, 1);
         if (i + 2 < domain->kept_next) {
             demi_body_fetch(w, c[2].a);
             if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
-            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from);
+            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from, 0);
         }
-        old = demi_kept_recall(w, now, c);
         if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */
+            demi_kept_recall(w, now, c);
+            c->row = -1;
             c->force = demi_v(0, 0, 0);
             domain->kept_walls += c->b < 0;
             continue;
         }
-        demi_kept_tile_add(&tile, c, old);
+        demi_kept_tile_add(&tile, c, old, demi_kept_past(w, now, c),
+                           demi_kept_row(w, d, c, old, known && old != c));
         demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
-        if (c->from >= 0) demi_kept_hold(w, now, c);
         if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);
     }
     if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);

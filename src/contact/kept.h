@@ -18,17 +18,25 @@
 DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
-/* Prefetches the fields that every contact uses, of the contact `by` entries after k. That entry
-   may lie beyond the end of the list. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by) {
+/* Prefetches what the next step needs of the contact `by` entries after k or, with `all`, the
+   fields that every contact uses. That entry may lie beyond the end of the list. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
     const uintptr_t at = (uintptr_t)k + by*sizeof *k;
     size_t e;
     DEMI_UNROLL
-    for (e = 0; e < offsetof(demi_kept, memory) + 4*sizeof(dem_real); e += 64)
+    for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
+        DEMI_FETCH((const void *)(at + e));
+    DEMI_UNROLL
+    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more) && all; e += 64)
         DEMI_FETCH((const void *)(at + e));
 }
-/* Appends a contact to the new list of work group d and returns it, cleared except for the part
-   that >>kept-respond writes. Returns null if the list is full. */
+/* Clears all of a contact but its history, which respond writes, and `more`. */
+DEM_INLINE void demi_kept_blank(demi_kept *c) {
+    memset(c, 0, offsetof(demi_kept, memory));
+    memset(&c->arm_b, 0, offsetof(demi_kept, more) - offsetof(demi_kept, arm_b));
+}
+/* Appends a contact to the new list of work group d and returns it, cleared except for its history
+   and `more`. Returns null if the list is full. */
 static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_kept *c;
@@ -37,7 +45,7 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
         return 0;
     }
     c = w->kept_next + w->kept_first[d] + domain->kept_next++;
-    memset(c, 0, offsetof(demi_kept, coef));
+    demi_kept_blank(c);
     c->b = -1;
     c->share = c->slope = 1;
     return c;
@@ -45,9 +53,12 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
 DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
     return c->odd ? c->more.spread : demi_v(0, 0, 0);
 }
+DEM_INLINE dem_vec3 demi_kept_felt(const demi_kept *c) {
+    return c->odd ? c->more.felt : demi_v(0, 0, 0);
+}
 /* Copies a new contact, for which no force has been computed yet. */
 static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
-    memcpy(to, from, offsetof(demi_kept, coef));
+    memcpy(to, from, offsetof(demi_kept, more));
     if (from->odd) to->more = from->more;
 }
 
@@ -273,9 +284,9 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         dem_real A = d2, rate;
         demi_kept_more *m;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].felt = demi_kept_spread_of(&c[i]);        /* polyhedra: the centre of pressure */
+        if (c[i].odd) c[i].more.felt = c[i].more.spread;   /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
-        mean = demi_scale(demi_sub(c[i].arm_a, c[i].felt), d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, demi_kept_spread_of(&c[i])), d2);
         for (j = 0; j < n; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
@@ -289,7 +300,7 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         m->area = d2*demi_kept_room_of(m->added, &m->rate);
         c[i].share = c[i].weight*d2/m->area;
         if (A > d2/2)                           /* else negative weights prevail */
-            c[i].felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
+            m->felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
     if (one) demi_kept_lift(w, c, n);
 }
@@ -487,7 +498,7 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
     if (!demi_eggs_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
-    demi_kept_ahead(c, 2);
+    demi_kept_ahead(c, 2, 1);
     c->a = w->near.a[at]; c->b = w->near.b[at];
     c->wall = c->element = -1;
     c->send = send;
@@ -498,7 +509,7 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
     }
-    demi_eggs_set(w, t, k, demi_egg_equal(w, c->a), demi_egg_equal(w, c->b), &p, &q, c);
+    demi_eggs_set(w, t, k, &p, &q, c);
     c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
@@ -849,11 +860,13 @@ static int demi_kept_widen(dem_world *w) {
         first[d + 1] = first[d] + had + more;
     }
     if (!DEMI_GROW(w, w->kept_next, (size_t)first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS])) return 0;
+        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS])) return 0;
     for (d = w->domain_count - 1; d > 0; d--)
         memmove(w->kept_now + first[d], demi_kept_of(w, d),
                 (size_t)w->domains[d].kept*sizeof(demi_kept));
     memcpy(w->kept_first, first, sizeof w->kept_first);
+    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;
     return 1;
 }
 /* Finds the persistent contacts of all work groups. Returns 0 if memory ran out. */

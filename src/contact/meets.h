@@ -35,24 +35,22 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
-   be a sphere. ra, rb: m, radii of spheres of equal volume. p, q: the two; not read if the overlap
-   is the conservative one. */
-DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, double ra, double rb,
-                              const demi_part *p, const demi_part *q, demi_kept *c) {
-    const double l = t->to[k], left = 1 - t->w0[k], both = t->both[k];
-    c->lambda = l;
+   be a sphere. p, q: the two; not read if the overlap is the conservative one. */
+DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const demi_part *p,
+                              const demi_part *q, demi_kept *c) {
+    c->lambda = t->to[k];
     c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
-    c->deep = (dem_real)(left/DEMI_MIN(l, 1 - l));
-    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
-        c->overlap = (dem_real)(left*(ra + rb));
-        c->slope = (dem_real)((ra + rb)/both);
-    } else {
-        ra = demi_part_round(w, p, l*both);
-        rb = demi_part_round(w, q, (1 - l)*both);
+    c->deep = (dem_real)t->deep[k];
+    c->overlap = (dem_real)t->overlap[k];
+    c->r_eff = (dem_real)t->r_eff[k];
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) c->slope = (dem_real)t->slope[k];
+    else {
+        const double l = t->to[k], both = t->both[k];
+        const double ra = demi_part_round(w, p, l*both), rb = demi_part_round(w, q, (1 - l)*both);
+        c->r_eff = (dem_real)(ra*rb/(ra + rb));
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
-            ? demi_eggs_chord(t, k) : left*both);
+            ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
     }
-    c->r_eff = (dem_real)(ra*rb/(ra + rb));
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
@@ -61,10 +59,12 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
     thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    t.equal[0][0] = demi_part_equal(p);
+    t.equal[1][0] = demi_part_equal(q);
     demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
     demi_eggs_solve_one(&t, 0);
     if (!demi_eggs_meet(&t, 0)) return 0;
-    demi_eggs_set(w, &t, 0, demi_part_equal(p), demi_part_equal(q), p, q, c);
+    demi_eggs_set(w, &t, 0, p, q, c);
     c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));

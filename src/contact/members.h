@@ -47,8 +47,8 @@ DEM_INLINE void demi_member_add(demi_member_tile *m, int p, const demi_kept *c) 
     m->t.grip[q] = c->grip;
     m->t.lift[q] = c->lift - c->share;
     m->merged[q] = 1;
-    m->at[0][q] = demi_sub(c->arm_a, c->felt);
-    m->at[1][q] = demi_sub(c->arm_b, c->felt);
+    m->at[0][q] = demi_sub(c->arm_a, demi_kept_felt(c));
+    m->at[1][q] = demi_sub(c->arm_b, demi_kept_felt(c));
     m->aside[q] = c->odd ? c->more.aside : demi_v(0, 0, 0);
     m->weighted = 1;
 }
@@ -374,7 +374,7 @@ static const demi_kept *demi_members_merge(const dem_world *w, int d, const int3
         const dem_real *x = w->bodies.centre + 4*w->near.ball_a[at];
         const dem_real *y = w->bodies.centre + 4*w->near.ball_b[at];
         demi_kept *c = first + i;
-        memset(c, 0, offsetof(demi_kept, coef));
+        demi_kept_blank(c);
         c->a = w->near.a[at];
         c->b = w->near.b[at];
         c->part_a = w->near.ball_a[at] - w->bodies.centre_start[c->a];

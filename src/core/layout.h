@@ -163,6 +163,8 @@ typedef struct demi_shape {
 
 /* What only few persistent contacts need (demi_kept_odd). */
 typedef struct demi_kept_more {
+    dem_vec3 felt;                 /* m, to the contact point from the point at which effective
+                                      masses are evaluated for the dashpot */
     dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
     dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
     dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
@@ -177,8 +179,8 @@ typedef struct demi_kept_more {
    walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
    and finds for each contact the one of the previous step (kept_now) that it continues. respond
    copies the history from that contact and computes the forces. Then the two lists are swapped, so
-   touch can start again with more room. What all contacts need comes first: reading it takes most
-   of the time. */
+   touch can start again with more room. Reading and writing it takes most of the time, so what the
+   next step needs comes first, and what few contacts need last. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
@@ -190,26 +192,32 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
+    int32_t row;                   /* its coefficients in the step before, see demi_coefs_row */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
-    dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to the contact point */
+    dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
+    dem_real grip;                 /* weight of friction */
+    dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals; touch does not set it */
+    dem_vec3 arm_b;                /* m, from b's centre */
     dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
                                       over the smaller half width (of a sphere: its radius) */
-    dem_real share, lift, grip;    /* weights of damping, elastic force, friction; */
+    dem_real share, lift;          /* weights of damping, elastic force; */
     dem_real weight;               /* before contacts are merged: demi_kept_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
                                       all of it, see demi_kept_inherit */
     dem_real bend, slope;          /* per distance: turn of the normal, 1/m; change of overlap */
-    dem_real r_eff, m_eff;         /* m; kg: of a sphere on a wall, else 0: respond computes it */
-    dem_vec3 felt;                 /* m, to the contact point from the point at which effective
-                                      masses are evaluated for the dashpot */
+    dem_real r_eff;                /* m */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
-    /* kept from step to step: respond writes these, touch does not */
-    dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
-    dem_real coef_r;               /* m, the r_eff that they were computed for; 0: none yet */
-    dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals */
     demi_kept_more more;
 } demi_kept;
+/* Coefficients of persistent contacts. Those that agree in the first fields share a row, unless
+   there are many kinds of them. */
+typedef struct demi_coefs_row {
+    dem_real r_eff, inv[2];        /* m; 1/kg, of both bodies, of a wall 0 */
+    int32_t material[2], shape[2]; /* bodies.material, bodies.shape; of a wall: -1 - its index; 0 */
+    dem_real m_eff;                /* kg, of a sphere on a wall; 0: differs between contacts */
+    dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
+} demi_coefs_row;
 
 /* Force (N), torque (Nm), power (W) and contacts that the grains of one work group exert on one
    wall in one step. */
@@ -241,6 +249,7 @@ typedef struct demi_domain {
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
     int kept_same;                 /* where demi_kept_same starts its search */
+    int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
     int overflow;                  /* lists that ran out of room: 1 pairs inside, 2 pairs with later
                                       groups, 4 walls, 8 pruned list, 16 persistent contacts */

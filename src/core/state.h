@@ -493,6 +493,7 @@ struct dem_world {
     demi_link *touching_links;
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
+    demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of

@@ -268,6 +268,7 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
 /* Sets what a contact does not use to 0, since files and messages contain all of it. */
 static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
     int e;
+    c->row = 0;
     for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
     if (!c->odd) memset(&c->more, 0, sizeof c->more);
 }
@@ -356,7 +357,9 @@ static void demi_visit_events(dem_world *w, demi_stream *s) {
 }
 /* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
+    int d;
     demi_visit_numbers(w, s);
+    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* demi_kept_tidy */
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);

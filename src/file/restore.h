@@ -231,7 +231,7 @@ static int demi_domains_check(const demi_reader *r) {
     for (d = 0; d < t->domain_count; d++) {
         demi_domain *o = &t->domains[d];
         if (!demi_domain_check(r, d)) return demi_lie(r, "counts of domain", d);
-        o->overflow = 0;
+        o->overflow = o->coefs = 0;
         if (t->stage.list_valid) continue;
         /* left from a list that no longer fits */
         o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->bodies.count);
@@ -559,6 +559,7 @@ static int demi_twin_lists_room(dem_world *t) {
     if (!demi_wall_sums_room(t) ||
         !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
         !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->coefs, 2*(size_t)t->kept_first[DEMI_DOMAINS]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&

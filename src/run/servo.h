@@ -62,12 +62,12 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
         const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
         for (; c < end && w->domains[d].kept_walls; c++) {
             const double slope = (double)c->slope;
-            dem_real coef[DEMI_COEFS];
+            dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
             if (c->b >= 0 || walls[c->wall].group != walls[of].group ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
-            memcpy(coef, c->coef, sizeof coef);
-            coef[DEMI_CN] += c->root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
+            demi_kept_coefs(w, c, coef, root);
+            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
             s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
             if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
             if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;

@@ -36,17 +36,20 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
     DEMI_ALIGNED demi_kept_tile tile;
     demi_run run = demi_run_begin(w, 0);
-    int d, k;
+    int d, k, known;
     if (!w->desc.law) demi_run_laws(w, &run, 0);
     demi_kept_tile_begin(&tile, &run, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
+        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
         for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c);
+            demi_kept_tile_add(&tile, c, c, c->memory,
+                               demi_kept_row(w, d, c, c, known));
             if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
         }
         if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+        if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
     }
 }
 /* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the

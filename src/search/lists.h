@@ -347,7 +347,8 @@ static int demi_kept_room(dem_world *w, int *first) {
     demi_kept_lay(w, w->domain_count, crowd, first);
     return demi_wall_sums_room(w) &&
            DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
-           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]);
+           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) &&
+           DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS]);
 }
 /* Moves the contacts whose bodies and walls still exist from the old list (by slot) into the work
    groups of the new one. Body a becomes the one with the lower index. Where this exchanges a and b,
@@ -373,11 +374,10 @@ static void demi_kept_move(dem_world *w, const int *first) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            c.coef_r = 0;                       /* materials may have changed */
-            if (!pair && !demi_shape_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
             w->kept_next[e++] = c;
         }
         w->domains[d].kept = 0;
+        w->domains[d].coefs = 0;                /* materials may have changed */
     }
     memcpy(w->kept_first, first, sizeof w->kept_first);
     /* counting sort by body a; bodies.order is free after the search and holds the counts */

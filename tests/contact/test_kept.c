@@ -130,6 +130,36 @@ static void join(const dem_contact_info *c, dem_real *memory, void *user) {
     memory[15] = 1;
 }
 
+/* --- coefficients: grains of nine sizes and four materials between a floor and a ceiling. The largest touch both all the
+   time; the others bounce, so often during the life of a list that all rows for coefficients are used up several times. --- */
+enum { BOUNCERS = 40 };
+/* All of them, or number `only`. */
+static dem_world *bouncers(int only, int egg) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *w;
+    dem_material stuff[4];
+    int k;
+    desc.dt = DEM_R(2e-6);
+    desc.skin = DEM_R(4e-2);
+    desc.threads = 1;
+    desc.gravity = at(0, 0, 0);
+    w = dem_world_create(&desc);
+    for (k = 0; k < 4; k++) stuff[k] = scene_material(w, 1e7*(k + 1), 0.99, 0.1*k, 0);
+    dem_wall_plane_add(w, stuff[0], at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(w, stuff[1], at(0, 0, 3.2e-3), at(0, 0, -1));
+    for (k = 0; k < BOUNCERS; k++) {
+        const int squeezed = k%5 == 4;
+        const double r = squeezed ? 1.601e-3 : 1e-3 + 5e-5*(k/4), x = 4e-3*k;
+        const dem_vec3 from = at(x, 0, 1.6e-3);
+        dem_body one;
+        if (only >= 0 && k != only) continue;
+        one = egg ? dem_body_add(w, stuff[k%4], dem_shape_ellipsoid_add(w, at(r, r, r)), from, dem_quat_make(1, 0, 0, 0))
+                  : dem_sphere_add(w, stuff[k%4], (dem_real)r, from);
+        scene_move(w, one, at(0, 0.1, squeezed ? 0 : 1 + 0.01*k), at(20, 0, 0));
+    }
+    return w;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("over 10,000 links form and break in a gas: formed less broken is the number in force at any time") {
@@ -269,6 +299,34 @@ int main(int argc, char **argv) {
         CHECK_STR(text, "NumberOfPolys=\"0\"");
         CHECK(!strstr(text, "NumberOfLines=\"0\""));
         dem_world_destroy(w);
+    }
+    TEST("grains of many kinds on two walls bounce exactly as each does alone, spheres and ellipsoids") {
+        int egg, k;
+        for (egg = 0; egg < 2; egg++) {
+            dem_world *all = bouncers(-1, egg);
+            int turned = 0;
+            CHECK_EQ(dem_world_step(all, 20000), DEM_OK);
+            for (k = 0; k < BOUNCERS; k++) {
+                dem_world *alone = bouncers(k, egg);
+                dem_body_state a, b;
+                const double x = 4e-3*k;
+                int i;
+                for (i = 0; i < BOUNCERS; i++) {        /* its order has changed */
+                    a = scene_state(all, dem_body_id_get(all, i));
+                    if (fabs((double)a.position.x - x) < 2e-3) break;
+                }
+                CHECK(i < BOUNCERS);
+                CHECK_EQ(dem_world_step(alone, 20000), DEM_OK);
+                b = scene_state(alone, dem_body_id_get(alone, 0));
+                CHECK(!memcmp(&a.position, &b.position, sizeof a.position));
+                CHECK(!memcmp(&a.velocity, &b.velocity, sizeof a.velocity));
+                CHECK(!memcmp(&a.spin, &b.spin, sizeof a.spin));
+                turned += a.velocity.z < 0;
+                dem_world_destroy(alone);
+            }
+            CHECK(turned > 5 && turned < BOUNCERS - 5);
+            dem_world_destroy(all);
+        }
     }
     return test_end();
 }
