@@ -4952,7 +4952,7 @@ typedef struct demi_record {
 /* A contact of the present step, as the loops over contacts note it while events are recorded. */
 typedef struct demi_noted {
     int32_t a, b;                  /* bodies; b < 0: wall -1 - b */
-    int32_t member, kind;          /* index of the member that notes it; bits DEMI_NOTED_... */
+    int32_t kind;                  /* bits DEMI_NOTED_... */
     double force;                  /* N, repulsive force along the normal */
     /* J, of this step: lost by the normal law, by sliding, by rolling; work against tangential
        forces; stored in tangential springs */
@@ -4968,7 +4968,8 @@ typedef struct demi_noted_at {
     dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
     dem_vec3 shift;                /* m, from a to its image that touches the wall */
 } demi_noted_at;
-/* The open contact that a note was added to, with the bodies of the note. */
+/* The open contact that a note was added to, with the bodies of the note and the index of the
+   member that noted it. */
 typedef struct demi_matched { int32_t a, b, member, open; } demi_matched;
 enum { DEMI_EVENT_AHEAD = 12 };    /* notes between prefetching sums and changing them */
 /* Sums of an open contact, which each step changes. They fill a line of cache. */
@@ -5007,12 +5008,13 @@ typedef struct demi_events {
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
     demi_sums *sums;               /* of each open contact */
-    uint32_t *last, turn;          /* of each: its last note; the first note of this turn; notes
-                                      are numbered through all turns, modulo 2^32 */
+    uint32_t *last, turn;          /* of each: its first note in the last turn that noted it; the
+                                      first note of this turn; notes are numbered through all turns,
+                                      modulo 2^32 */
     demi_matched *matched, *before;            /* by notes of this turn and of the turn before; then
                                                   DEMI_EVENT_AHEAD that are 0 */
-    int before_count;              /* of `before`; when the notes are added, of `matched` */
-    uint64_t rebuilds;             /* of lists, in the last turn */
+    int before_count;              /* of the turn before: its notes, */
+    uint64_t rebuilds;             /* and the rebuilds of lists until then */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */
@@ -18107,7 +18109,6 @@ DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind,
     e->noted_count[d]++;
     n->a = a;
     n->b = b;
-    n->member = w->member;
     n->kind = kind;
     n->force = (double)force;
     n->normal = energy[DEMI_E_DASHPOT];
@@ -18140,10 +18141,8 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
         if (at && span->ball) {
             const int ball = span->ball[q];
             at->normal = normal;
-            at->arm = demi_note_arm(normal, ball < 0 ? w->bodies.pos[4*span->a[q] + 3] :
-                                    w->bodies.centre[4*ball + 3], t->length[q],
-                                    t->length[q] + t->overlap[q]);
-            if (ball >= 0) at->arm = demi_add(at->arm, demi_at(w->bodies.centre + 4*ball));
+            at->arm = demi_add(demi_at(w->bodies.centre + 4*ball), demi_note_arm(normal,
+                w->bodies.centre[4*ball + 3], t->length[q], t->length[q] + t->overlap[q]));
             at->shift = demi_v(0, 0, 0);
         }
     }
@@ -30218,14 +30217,15 @@ static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
 /* The same for a note, by the indices of its bodies, which must be those of the turn before. Entry
-   k tells the open contact only if note k is that contact's last one, because demi_event_drop moves
-   entries of `open`. Otherwise, or if none of the four fits, this function returns -1. */
-DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int *next) {
+   k tells the open contact only if note k was that contact's first one of the turn before and it
+   has none in this turn yet, because demi_event_drop moves entries of `open`. Otherwise, or if none
+   of the four fits, this function returns -1. member: index of the world that has noted it. */
+DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int member, int *next) {
     const uint32_t first = e->turn - 1 - (uint32_t)e->before_count;
     int k;
     for (k = *next; k < *next + 4 && k < e->before_count; k++) {
         const demi_matched *m = e->before + k;
-        if (m->a != n->a || m->b != n->b || m->member != n->member) continue;
+        if (m->a != n->a || m->b != n->b || m->member != member) continue;
         if (m->open >= e->n.open || e->last[m->open] != first + (uint32_t)k) return -1;
         *next = k + 1;
         return m->open;
@@ -30429,24 +30429,23 @@ static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const de
 typedef struct demi_turn {
     double dt;                     /* s, 0 if the bodies have not moved yet */
     int lasting, grown, fresh;     /* DEMI_LASTING of the response; demi_event_grown; n.fresh */
-    int after, listed;             /* 1: there are notes of the turn before; and the lists stayed */
+    int after, listed;             /* 1: there are notes of the turn before; the lists stayed */
 } demi_turn;
-/* Adds note number `number` to open contact i. first: 1 if it is known to be the contact's first
-   one in this turn. */
+/* Adds note number `number` to open contact i. */
 DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n,
-                               const demi_noted_at *at, int i, uint32_t number, int first,
+                               const demi_noted_at *at, int i, uint32_t number,
                                const demi_turn *turn) {
     demi_events *e = &w->events;
     const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
     const int known = !(turn->fresh && (n->kind & DEMI_NOTED_OLD));
     demi_sums *s = &e->sums[i];
     int facet = 0;
-    if (first || e->last[i] - e->turn > number - e->turn) {
+    if (e->last[i] - e->turn > number - e->turn) {     /* its first note of this turn */
+        e->last[i] = number;
         s->most = DEMI_MAX(s->most, s->force);
         if (turn->grown) s->work -= s->stored;
         s->force = s->stored = 0;
     }
-    e->last[i] = number;
     s->force += n->force;
     s->stored += n->stored;
     if (known && turn->grown) s->work += n->stored;
@@ -30549,8 +30548,8 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
     }
     return 0;
 }
-/* Returns the last open contact, of those up to i, that was not noted in this turn; -1 if there is
-   none. */
+/* Returns the last open contact, of those up to i, that was not noted in the turn that has just
+   ended; -1 if there is none. */
 static int demi_event_left(const demi_events *e, int i) {
     const uint32_t *last = e->last, turn = e->turn, count = (uint32_t)e->before_count;
     while (i >= 0 && last[i] - turn < count) i--;
@@ -30650,15 +30649,15 @@ static DEMI_APART int demi_events_add(dem_world *w, const dem_world *m, int d, i
     uint32_t number = e->turn + (uint32_t)*count;
     *count += (int)(end - n);
     for (; n < end; n++, at++, now++, number++) {
-        const int again = turn.listed ? demi_event_again(e, n, next) : -1;
+        const int again = turn.listed ? demi_event_again(e, n, m->member, next) : -1;
         const int open = again >= 0 ? again : demi_event_open(w, m, n, at, next);
         if (open < 0) return 0;
         if (turn.after) demi_event_ahead(e, *next);
         now->a = n->a;
         now->b = n->b;
-        now->member = n->member;
+        now->member = m->member;
         now->open = open;
-        demi_event_add(w, m, n, at, open, number, again >= 0, &turn);
+        demi_event_add(w, m, n, at, open, number, &turn);
     }
     return 1;
 }
@@ -30666,21 +30665,18 @@ static DEMI_APART int demi_events_add(dem_world *w, const dem_world *m, int d, i
    runs out, recording stops; demi_events_tell reports it. */
 static void demi_events_take(dem_world *w) {
     demi_events *e = &w->events;
-    demi_matched *const before = e->matched;
+    demi_matched *const before = e->before;
     demi_turn turn;
     int i, k, d, ok, next = 0, count = 0;
     turn.lasting = demi_response_is(w, DEMI_LASTING);
     turn.grown = demi_event_grown(w);
     turn.fresh = e->n.fresh;
     turn.after = e->before_count > 0;
-    turn.listed = turn.after && e->rebuilds == w->clock.rebuilds;
+    turn.listed = e->rebuilds == w->clock.rebuilds;
     turn.dt = !turn.lasting || w->stage.forces_valid ? (double)w->clock.dt : 0;
     for (k = 0; k < demi_members(w); k++)
         for (d = 0; d < DEMI_DOMAINS; d++) count += demi_member(w, k)->events.noted_count[d];
-    e->matched = e->before;
-    e->before = before;
     e->turn += (uint32_t)e->before_count + 1;
-    e->rebuilds = w->clock.rebuilds;
     ok = DEMI_GROW(w, e->matched, (size_t)count + DEMI_EVENT_AHEAD);
     count = 0;
     for (i = 0; i < e->n.open && !turn.lasting; i++)
@@ -30689,7 +30685,10 @@ static void demi_events_take(dem_world *w) {
         for (d = 0; d < demi_member(w, k)->domain_count && ok; d++)
             ok = demi_events_add(w, demi_member(w, k), d, &count, &next, &turn);
     if (ok) memset(e->matched + count, 0, DEMI_EVENT_AHEAD*sizeof *e->matched);
+    e->before = e->matched;                     /* this turn is now the one before */
+    e->matched = before;
     e->before_count = count;
+    e->rebuilds = w->clock.rebuilds;
     for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
         ok = demi_event_end(w, i);
     e->n.fresh = 0;
@@ -37504,9 +37503,12 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
-/* True if the ids of an event are possible. */
+/* True if the ids of an event are possible and its numbers finite. */
 static int demi_event_sane(const dem_world *t, const dem_event *e) {
-    return e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
+    const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
+        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+    return demi_finite_double(sum) &&
+        e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
         (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
         (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
         e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
@@ -37517,11 +37519,15 @@ static int demi_events_check(const demi_reader *r) {
     const dem_world *t = r->t;
     const demi_events *e = &t->events;
     int i;
-    for (i = 0; i < e->n.open; i++)
-        if (!demi_event_sane(t, &e->open[i].event) || e->open[i].facet < 0 ||
-            (e->open[i].event.wall &&
-             (e->open[i].event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
+    for (i = 0; i < e->n.open; i++) {
+        const demi_ongoing *o = &e->open[i];
+        const demi_sums *s = &e->sums[i];
+        const double sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
+            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
+        if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
+            (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
             return demi_lie(r, "contact event", i);
+    }
     for (i = 0; i < e->n.pending; i++)
         if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
     for (i = 0; i < e->n.pairs; i++)

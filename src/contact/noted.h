@@ -33,7 +33,6 @@ DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind,
     e->noted_count[d]++;
     n->a = a;
     n->b = b;
-    n->member = w->member;
     n->kind = kind;
     n->force = (double)force;
     n->normal = energy[DEMI_E_DASHPOT];
@@ -66,10 +65,8 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
         if (at && span->ball) {
             const int ball = span->ball[q];
             at->normal = normal;
-            at->arm = demi_note_arm(normal, ball < 0 ? w->bodies.pos[4*span->a[q] + 3] :
-                                    w->bodies.centre[4*ball + 3], t->length[q],
-                                    t->length[q] + t->overlap[q]);
-            if (ball >= 0) at->arm = demi_add(at->arm, demi_at(w->bodies.centre + 4*ball));
+            at->arm = demi_add(demi_at(w->bodies.centre + 4*ball), demi_note_arm(normal,
+                w->bodies.centre[4*ball + 3], t->length[q], t->length[q] + t->overlap[q]));
             at->shift = demi_v(0, 0, 0);
         }
     }

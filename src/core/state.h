@@ -283,7 +283,7 @@ typedef struct demi_record {
 /* A contact of the present step, as the loops over contacts note it while events are recorded. */
 typedef struct demi_noted {
     int32_t a, b;                  /* bodies; b < 0: wall -1 - b */
-    int32_t member, kind;          /* index of the member that notes it; bits DEMI_NOTED_... */
+    int32_t kind;                  /* bits DEMI_NOTED_... */
     double force;                  /* N, repulsive force along the normal */
     /* J, of this step: lost by the normal law, by sliding, by rolling; work against tangential
        forces; stored in tangential springs */
@@ -299,7 +299,8 @@ typedef struct demi_noted_at {
     dem_vec3 normal, arm;          /* unit, a -> b; m, from the centre of a to the contact point */
     dem_vec3 shift;                /* m, from a to its image that touches the wall */
 } demi_noted_at;
-/* The open contact that a note was added to, with the bodies of the note. */
+/* The open contact that a note was added to, with the bodies of the note and the index of the
+   member that noted it. */
 typedef struct demi_matched { int32_t a, b, member, open; } demi_matched;
 enum { DEMI_EVENT_AHEAD = 12 };    /* notes between prefetching sums and changing them */
 /* Sums of an open contact, which each step changes. They fill a line of cache. */
@@ -338,12 +339,13 @@ typedef struct demi_events {
     int noted_first[DEMI_DOMAINS + 1], noted_count[DEMI_DOMAINS];
     demi_ongoing *open;
     demi_sums *sums;               /* of each open contact */
-    uint32_t *last, turn;          /* of each: its last note; the first note of this turn; notes
-                                      are numbered through all turns, modulo 2^32 */
+    uint32_t *last, turn;          /* of each: its first note in the last turn that noted it; the
+                                      first note of this turn; notes are numbered through all turns,
+                                      modulo 2^32 */
     demi_matched *matched, *before;            /* by notes of this turn and of the turn before; then
                                                   DEMI_EVENT_AHEAD that are 0 */
-    int before_count;              /* of `before`; when the notes are added, of `matched` */
-    uint64_t rebuilds;             /* of lists, in the last turn */
+    int before_count;              /* of the turn before: its notes, */
+    uint64_t rebuilds;             /* and the rebuilds of lists until then */
     int32_t *table;                /* hash table of 1 + entry of `open`; 0: none */
     int table_size, failed;        /* a power of 2; 1: memory ran out, recording has stopped */
     dem_event *pending;            /* not yet passed to the user's function */

@@ -487,9 +487,12 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
-/* True if the ids of an event are possible. */
+/* True if the ids of an event are possible and its numbers finite. */
 static int demi_event_sane(const dem_world *t, const dem_event *e) {
-    return e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
+    const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
+        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+    return demi_finite_double(sum) &&
+        e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
         (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
         (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
         e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
@@ -500,11 +503,15 @@ static int demi_events_check(const demi_reader *r) {
     const dem_world *t = r->t;
     const demi_events *e = &t->events;
     int i;
-    for (i = 0; i < e->n.open; i++)
-        if (!demi_event_sane(t, &e->open[i].event) || e->open[i].facet < 0 ||
-            (e->open[i].event.wall &&
-             (e->open[i].event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
+    for (i = 0; i < e->n.open; i++) {
+        const demi_ongoing *o = &e->open[i];
+        const demi_sums *s = &e->sums[i];
+        const double sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
+            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
+        if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
+            (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
             return demi_lie(r, "contact event", i);
+    }
     for (i = 0; i < e->n.pending; i++)
         if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
     for (i = 0; i < e->n.pairs; i++)

@@ -47,14 +47,15 @@ static int demi_event_find(demi_events *e, const dem_event *key, int *next) {
     return e->table_size ? *demi_event_place(e, key) - 1 : -1;
 }
 /* The same for a note, by the indices of its bodies, which must be those of the turn before. Entry
-   k tells the open contact only if note k is that contact's last one, because demi_event_drop moves
-   entries of `open`. Otherwise, or if none of the four fits, this function returns -1. */
-DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int *next) {
+   k tells the open contact only if note k was that contact's first one of the turn before and it
+   has none in this turn yet, because demi_event_drop moves entries of `open`. Otherwise, or if none
+   of the four fits, this function returns -1. member: index of the world that has noted it. */
+DEM_INLINE int demi_event_again(const demi_events *e, const demi_noted *n, int member, int *next) {
     const uint32_t first = e->turn - 1 - (uint32_t)e->before_count;
     int k;
     for (k = *next; k < *next + 4 && k < e->before_count; k++) {
         const demi_matched *m = e->before + k;
-        if (m->a != n->a || m->b != n->b || m->member != n->member) continue;
+        if (m->a != n->a || m->b != n->b || m->member != member) continue;
         if (m->open >= e->n.open || e->last[m->open] != first + (uint32_t)k) return -1;
         *next = k + 1;
         return m->open;
@@ -258,24 +259,23 @@ static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const de
 typedef struct demi_turn {
     double dt;                     /* s, 0 if the bodies have not moved yet */
     int lasting, grown, fresh;     /* DEMI_LASTING of the response; demi_event_grown; n.fresh */
-    int after, listed;             /* 1: there are notes of the turn before; and the lists stayed */
+    int after, listed;             /* 1: there are notes of the turn before; the lists stayed */
 } demi_turn;
-/* Adds note number `number` to open contact i. first: 1 if it is known to be the contact's first
-   one in this turn. */
+/* Adds note number `number` to open contact i. */
 DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_noted *n,
-                               const demi_noted_at *at, int i, uint32_t number, int first,
+                               const demi_noted_at *at, int i, uint32_t number,
                                const demi_turn *turn) {
     demi_events *e = &w->events;
     const demi_wall *wall = n->b < 0 ? &m->walls[-1 - n->b] : 0;
     const int known = !(turn->fresh && (n->kind & DEMI_NOTED_OLD));
     demi_sums *s = &e->sums[i];
     int facet = 0;
-    if (first || e->last[i] - e->turn > number - e->turn) {
+    if (e->last[i] - e->turn > number - e->turn) {     /* its first note of this turn */
+        e->last[i] = number;
         s->most = DEMI_MAX(s->most, s->force);
         if (turn->grown) s->work -= s->stored;
         s->force = s->stored = 0;
     }
-    e->last[i] = number;
     s->force += n->force;
     s->stored += n->stored;
     if (known && turn->grown) s->work += n->stored;
@@ -378,8 +378,8 @@ static int demi_event_exists(const dem_world *w, dem_body b) {
     }
     return 0;
 }
-/* Returns the last open contact, of those up to i, that was not noted in this turn; -1 if there is
-   none. */
+/* Returns the last open contact, of those up to i, that was not noted in the turn that has just
+   ended; -1 if there is none. */
 static int demi_event_left(const demi_events *e, int i) {
     const uint32_t *last = e->last, turn = e->turn, count = (uint32_t)e->before_count;
     while (i >= 0 && last[i] - turn < count) i--;
@@ -479,15 +479,15 @@ static DEMI_APART int demi_events_add(dem_world *w, const dem_world *m, int d, i
     uint32_t number = e->turn + (uint32_t)*count;
     *count += (int)(end - n);
     for (; n < end; n++, at++, now++, number++) {
-        const int again = turn.listed ? demi_event_again(e, n, next) : -1;
+        const int again = turn.listed ? demi_event_again(e, n, m->member, next) : -1;
         const int open = again >= 0 ? again : demi_event_open(w, m, n, at, next);
         if (open < 0) return 0;
         if (turn.after) demi_event_ahead(e, *next);
         now->a = n->a;
         now->b = n->b;
-        now->member = n->member;
+        now->member = m->member;
         now->open = open;
-        demi_event_add(w, m, n, at, open, number, again >= 0, &turn);
+        demi_event_add(w, m, n, at, open, number, &turn);
     }
     return 1;
 }
@@ -495,21 +495,18 @@ static DEMI_APART int demi_events_add(dem_world *w, const dem_world *m, int d, i
    runs out, recording stops; demi_events_tell reports it. */
 static void demi_events_take(dem_world *w) {
     demi_events *e = &w->events;
-    demi_matched *const before = e->matched;
+    demi_matched *const before = e->before;
     demi_turn turn;
     int i, k, d, ok, next = 0, count = 0;
     turn.lasting = demi_response_is(w, DEMI_LASTING);
     turn.grown = demi_event_grown(w);
     turn.fresh = e->n.fresh;
     turn.after = e->before_count > 0;
-    turn.listed = turn.after && e->rebuilds == w->clock.rebuilds;
+    turn.listed = e->rebuilds == w->clock.rebuilds;
     turn.dt = !turn.lasting || w->stage.forces_valid ? (double)w->clock.dt : 0;
     for (k = 0; k < demi_members(w); k++)
         for (d = 0; d < DEMI_DOMAINS; d++) count += demi_member(w, k)->events.noted_count[d];
-    e->matched = e->before;
-    e->before = before;
     e->turn += (uint32_t)e->before_count + 1;
-    e->rebuilds = w->clock.rebuilds;
     ok = DEMI_GROW(w, e->matched, (size_t)count + DEMI_EVENT_AHEAD);
     count = 0;
     for (i = 0; i < e->n.open && !turn.lasting; i++)
@@ -518,7 +515,10 @@ static void demi_events_take(dem_world *w) {
         for (d = 0; d < demi_member(w, k)->domain_count && ok; d++)
             ok = demi_events_add(w, demi_member(w, k), d, &count, &next, &turn);
     if (ok) memset(e->matched + count, 0, DEMI_EVENT_AHEAD*sizeof *e->matched);
+    e->before = e->matched;                     /* this turn is now the one before */
+    e->matched = before;
     e->before_count = count;
+    e->rebuilds = w->clock.rebuilds;
     for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
         ok = demi_event_end(w, i);
     e->n.fresh = 0;

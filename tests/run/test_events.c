@@ -420,6 +420,33 @@ int main(int argc, char **argv) {
             remove(path);
         }
     }
+    TEST("a checkpoint whose recording contains an infinite number is rejected and leaves the world unchanged") {
+        const char *path = "build/tmp/events.ckpt";
+        dem_world *world = soup(SPHERES, 1, 0), *again = soup(SPHERES, 1, 0);
+        const uint64_t before = dem_world_hash_get(again);
+        stream s;
+        int k;
+        record(world, &s, 1);
+        scene_step(world, 1500);
+        while (dem_events_open_each(world, 0, 0) == 0) dem_world_step(world, 1);
+        for (k = 0; k < 4; k++) {
+            demi_events *e = &world->events;
+            double *number = k == 0 ? &e->open[0].event.mass : k == 1 ? &e->open[0].due[3]
+                : k == 2 ? &e->sums[0].normal : &e->sums[0].most;
+            const double was = *number;
+            *number = k & 1 ? HUGE_VAL : -HUGE_VAL;
+            CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+            *number = was;
+            CHECK_EQ(dem_checkpoint_read(again, path), DEM_ERROR_FORMAT);
+            CHECK_STR(dem_world_error_get(again), "invalid contact event 1");
+            CHECK(dem_world_hash_get(again) == before);
+        }
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(again, path), DEM_OK);
+        dem_world_destroy(world);
+        dem_world_destroy(again);
+        remove(path);
+    }
     TEST("slabs report the events of the single world and return the recording") {
         dem_world *world = soup(SPHERES | SHAPES, 1, 0), *whole = soup(SPHERES | SHAPES, 1, 0);
         dem_slabs_desc desc = DEM_SLABS_DESC;
