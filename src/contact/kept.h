@@ -26,8 +26,9 @@ DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
     DEMI_UNROLL
     for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
         DEMI_FETCH((const void *)(at + e));
+    if (!all) return;
     DEMI_UNROLL
-    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more) && all; e += 64)
+    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more); e += 64)
         DEMI_FETCH((const void *)(at + e));
 }
 /* Clears all of a contact but its history, which respond writes, and `more`. */
