@@ -4307,7 +4307,7 @@ typedef struct demi_kept_more {
    long as the two touch. The contacts of a work group are in the order of body a, pairs before
    walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
    and finds for each contact the one of the previous step (kept_now) that it continues. respond
-   copies the history from that contact and computes the forces. Then the two lists are swapped, so
+   continues the history of that contact and computes the forces. Then the two lists are swapped, so
    touch can start again with more room. Reading and writing it takes most of the time, so what the
    next step needs comes first, and what few contacts need last. */
 typedef struct demi_kept {
@@ -4321,7 +4321,7 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
-    int32_t row;                   /* its coefficients in the step before, see demi_coefs_row */
+    int32_t row;                   /* its coefficients, see demi_kept_row; -1: no law was asked */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
     dem_real grip;                 /* weight of friction */
@@ -21733,9 +21733,10 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the
-   step before each one continues. >>kept-respond then copies the history, evaluates the contact law
-   and adds the forces. Within a work group the list is ordered by body a. If a list is too short,
-   demi_touch enlarges it and starts again; this loses nothing, since the old list is untouched.
+   step before each one continues. >>kept-respond then continues the history, evaluates the contact
+   law and adds the forces. Within a work group the list is ordered by body a. If a list is too
+   short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
+   untouched.
    --------------------------------------------------------------------------------------------- */
 
 /* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
@@ -22230,7 +22231,7 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
     c->send = send;
     c->from = t->from[k];
     c->weight = c->lift = c->grip = 1;
-    c->held = -1;                               /* as demi_kept_hold for one contact */
+    c->held = -1;                               /* as demi_kept_past for one contact */
     if (w->desc.ellipsoid_overlap != DEM_OVERLAP_CONSERVATIVE) {
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
@@ -22665,7 +22666,8 @@ static int demi_kept_rows_begin(dem_world *w, int d, int more) {
 }
 /* Returns the row with the coefficients of contact c: if `known`, that of `old`, the same contact
    in the step before; otherwise one of the first few rows, or a new one. Masses, materials and
-   shapes stay the same while lists are valid; growth changes r_eff too. */
+   shapes stay the same while lists are valid: growth drops the lists, and ghosts have their masses
+   when forces are computed. */
 DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c,
                                                const demi_kept *old, int known) {
     enum { FEW = 8 };
@@ -23419,7 +23421,7 @@ DEM_INLINE void demi_member_fetch(const dem_world *w, demi_member_tile *DEMI_RES
     }
 }
 /* Copies the histories of a tile's entries. If the weight of friction grows, a spring keeps its
-   force, as in demi_kept_hold. */
+   force, as in demi_kept_past. */
 static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
                                int full) {
     const size_t stride = (size_t)w->near.stride;
@@ -36663,7 +36665,8 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
-/* Sets what a contact does not use to 0, since files and messages contain all of it. */
+/* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
+   contain all of it. */
 static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
     int e;
     c->row = 0;
@@ -36757,7 +36760,7 @@ static void demi_visit_events(dem_world *w, demi_stream *s) {
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     int d;
     demi_visit_numbers(w, s);
-    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* demi_kept_tidy */
+    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* see demi_kept_tidy */
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);
@@ -37508,7 +37511,7 @@ static int demi_outputs_check(const demi_reader *r) {
 static int demi_event_sane(const dem_world *t, const dem_event *e) {
     const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
         e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
-    return demi_finite_double(sum) &&
+    return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
         e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
         (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
         (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
@@ -37519,11 +37522,12 @@ static int demi_event_sane(const dem_world *t, const dem_event *e) {
 static int demi_events_check(const demi_reader *r) {
     const dem_world *t = r->t;
     const demi_events *e = &t->events;
-    int i;
+    double sum;
+    int i, k;
     for (i = 0; i < e->n.open; i++) {
         const demi_ongoing *o = &e->open[i];
         const demi_sums *s = &e->sums[i];
-        const double sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
+        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
             s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
         if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
             (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
@@ -37531,11 +37535,18 @@ static int demi_events_check(const demi_reader *r) {
     }
     for (i = 0; i < e->n.pending; i++)
         if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
-    for (i = 0; i < e->n.pairs; i++)
-        if (e->pairs[i].a < 0 || e->pairs[i].b < e->pairs[i].a ||
-            e->pairs[i].b >= t->material_count) return demi_lie(r, "spectrum", i);
+    for (i = 0; i < e->n.pairs; i++) {
+        const demi_impacts *p = &e->pairs[i];
+        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
+        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
+        if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
+            return demi_lie(r, "spectrum", i);
+    }
+    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
+    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
     for (i = 0; i < e->n.walls; i++)
-        if (e->walls[i].first < 0 || e->walls[i].count < 0 ||
+        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
+            e->walls[i].first < 0 || e->walls[i].count < 0 ||
             e->walls[i].count > e->n.facets - e->walls[i].first ||
             (e->walls[i].id == t->walls[i].id && e->walls[i].count && e->walls[i].count !=
              t->walls[i].element_count)) return demi_lie(r, "wear of wall", i);

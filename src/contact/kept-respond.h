@@ -52,7 +52,8 @@ static int demi_kept_rows_begin(dem_world *w, int d, int more) {
 }
 /* Returns the row with the coefficients of contact c: if `known`, that of `old`, the same contact
    in the step before; otherwise one of the first few rows, or a new one. Masses, materials and
-   shapes stay the same while lists are valid; growth changes r_eff too. */
+   shapes stay the same while lists are valid: growth drops the lists, and ghosts have their masses
+   when forces are computed. */
 DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c,
                                                const demi_kept *old, int known) {
     enum { FEW = 8 };

@@ -8,9 +8,10 @@
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the
-   step before each one continues. >>kept-respond then copies the history, evaluates the contact law
-   and adds the forces. Within a work group the list is ordered by body a. If a list is too short,
-   demi_touch enlarges it and starts again; this loses nothing, since the old list is untouched.
+   step before each one continues. >>kept-respond then continues the history, evaluates the contact
+   law and adds the forces. Within a work group the list is ordered by body a. If a list is too
+   short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
+   untouched.
    --------------------------------------------------------------------------------------------- */
 
 /* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
@@ -505,7 +506,7 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
     c->send = send;
     c->from = t->from[k];
     c->weight = c->lift = c->grip = 1;
-    c->held = -1;                               /* as demi_kept_hold for one contact */
+    c->held = -1;                               /* as demi_kept_past for one contact */
     if (w->desc.ellipsoid_overlap != DEM_OVERLAP_CONSERVATIVE) {
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);

@@ -94,7 +94,7 @@ DEM_INLINE void demi_member_fetch(const dem_world *w, demi_member_tile *DEMI_RES
     }
 }
 /* Copies the histories of a tile's entries. If the weight of friction grows, a spring keeps its
-   force, as in demi_kept_hold. */
+   force, as in demi_kept_past. */
 static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
                                int full) {
     const size_t stride = (size_t)w->near.stride;

@@ -178,7 +178,7 @@ typedef struct demi_kept_more {
    long as the two touch. The contacts of a work group are in the order of body a, pairs before
    walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
    and finds for each contact the one of the previous step (kept_now) that it continues. respond
-   copies the history from that contact and computes the forces. Then the two lists are swapped, so
+   continues the history of that contact and computes the forces. Then the two lists are swapped, so
    touch can start again with more room. Reading and writing it takes most of the time, so what the
    next step needs comes first, and what few contacts need last. */
 typedef struct demi_kept {
@@ -192,7 +192,7 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
-    int32_t row;                   /* its coefficients in the step before, see demi_coefs_row */
+    int32_t row;                   /* its coefficients, see demi_kept_row; -1: no law was asked */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
     dem_real grip;                 /* weight of friction */

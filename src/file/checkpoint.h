@@ -265,7 +265,8 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
-/* Sets what a contact does not use to 0, since files and messages contain all of it. */
+/* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
+   contain all of it. */
 static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
     int e;
     c->row = 0;
@@ -359,7 +360,7 @@ static void demi_visit_events(dem_world *w, demi_stream *s) {
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     int d;
     demi_visit_numbers(w, s);
-    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* demi_kept_tidy */
+    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* see demi_kept_tidy */
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);

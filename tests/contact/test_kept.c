@@ -160,6 +160,37 @@ static dem_world *bouncers(int only, int egg) {
     return w;
 }
 
+/* --- clusters that lie flat, of four materials; all of them, or number `only` --- */
+enum { PLATES = 20 };
+static dem_world *plates(int only) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_cluster_desc flat = DEM_CLUSTER_DESC;
+    dem_real centre[300];
+    dem_material stuff[4];
+    dem_shape plate;
+    dem_world *w;
+    int k;
+    for (k = 0; k < 300; k++)
+        centre[k] = k%3 == 0 ? (dem_real)(1e-3*(k/3%10)) : k%3 == 1 ? (dem_real)(1e-3*(k/30)) : 0;
+    desc.dt = DEM_R(2e-6);
+    desc.threads = 1;
+    w = dem_world_create(&desc);
+    for (k = 0; k < 4; k++) stuff[k] = scene_material(w, 1e7*(k + 1), 0.9, 0.1*k, 0);
+    flat.count = 100;
+    flat.positions = centre;
+    flat.radius = DEM_R(1e-3);
+    plate = dem_shape_cluster_add(w, &flat);
+    dem_wall_plane_add(w, stuff[0], at(0, 0, 0), at(0, 0, 1));
+    for (k = 0; k < PLATES; k++) {
+        dem_body one;
+        if (only >= 0 && k != only) continue;
+        one = dem_body_add(w, stuff[k%4], plate, at(0.02*k, 0, 1.001e-3), dem_quat_make(1, 0, 0, 0));
+        scene_move(w, one, at(0, 0, -0.1), at(0, 0.002*k, 0));
+    }
+    CHECK_EQ(dem_world_step(w, 1), DEM_OK);
+    return w;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("over 10,000 links form and break in a gas: formed less broken is the number in force at any time") {
@@ -327,6 +358,48 @@ int main(int argc, char **argv) {
             CHECK(turned > 5 && turned < BOUNCERS - 5);
             dem_world_destroy(all);
         }
+    }
+    TEST("a checkpoint that is written between two steps, and a belt that changes then, leave coefficients to their contacts") {
+        const char *path = "build/tmp/kept.ckpt";
+        dem_world *with = bouncers(-1, 0), *without = bouncers(-1, 0);
+        const dem_wall floor = {1};
+        int i;
+        for (i = 0; i < 10; i++) {
+            CHECK_EQ(dem_world_step(with, 500), DEM_OK);
+            CHECK_EQ(dem_world_step(without, 500), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(with, path), DEM_OK);
+            CHECK_EQ(dem_wall_surface_velocity_set(with, floor, at(0.1*i, 0, 0)), DEM_OK);
+            CHECK_EQ(dem_wall_surface_velocity_set(without, floor, at(0.1*i, 0, 0)), DEM_OK);
+        }
+        CHECK_EQ(dem_world_step(with, 500), DEM_OK);
+        CHECK_EQ(dem_world_step(without, 500), DEM_OK);
+        CHECK(dem_world_hash_get(with) == dem_world_hash_get(without));
+        dem_world_destroy(with);
+        dem_world_destroy(without);
+        remove(path);
+    }
+    TEST("plates of 100 spheres, which need more contacts than their list has room for, fall as each does alone") {
+        dem_world *all = plates(-1);
+        int i, k, moved = 0;
+        const int room = all->kept_first[DEMI_DOMAINS];
+        CHECK_EQ(dem_world_step(all, 20), DEM_OK);
+        CHECK(all->kept_first[DEMI_DOMAINS] > 2*room);
+        CHECK_EQ(dem_world_step(all, 2980), DEM_OK);
+        for (k = 0; k < PLATES; k++) {
+            dem_world *alone = plates(k);
+            dem_body_state a = scene_state(all, dem_body_id_get(all, 0)), b;
+            for (i = 0; i < PLATES && fabs((double)a.position.x - 0.02*k) > 5e-3; i++)
+                a = scene_state(all, dem_body_id_get(all, i));
+            CHECK_EQ(dem_world_step(alone, 3000), DEM_OK);
+            b = scene_state(alone, dem_body_id_get(alone, 0));
+            CHECK(!memcmp(&a.position, &b.position, sizeof a.position));
+            CHECK(!memcmp(&a.velocity, &b.velocity, sizeof a.velocity));
+            CHECK(!memcmp(&a.spin, &b.spin, sizeof a.spin));
+            moved += a.velocity.z > 0;
+            dem_world_destroy(alone);
+        }
+        CHECK(moved > 0);
+        dem_world_destroy(all);
     }
     return test_end();
 }

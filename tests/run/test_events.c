@@ -429,16 +429,19 @@ int main(int argc, char **argv) {
         record(world, &s, 1);
         scene_step(world, 1500);
         while (dem_events_open_each(world, 0, 0) == 0) dem_world_step(world, 1);
-        for (k = 0; k < 4; k++) {
+        CHECK(world->events.n.pairs > 0 && world->events.n.walls > 0);
+        for (k = 0; k < 6; k++) {
+            static const char *part[] = {"contact event 1", "contact event 1", "contact event 1", "contact event 1",
+                "spectrum 1", "wear of wall 1"};
             demi_events *e = &world->events;
-            double *number = k == 0 ? &e->open[0].event.mass : k == 1 ? &e->open[0].due[3]
-                : k == 2 ? &e->sums[0].normal : &e->sums[0].most;
+            double *number = k == 0 ? &e->open[0].event.mass : k == 1 ? &e->open[0].due[3] : k == 2 ? &e->sums[0].normal
+                : k == 3 ? &e->sums[0].most : k == 4 ? &e->pairs[0].energy[3] : &e->walls[0].slide;
             const double was = *number;
             *number = k & 1 ? HUGE_VAL : -HUGE_VAL;
             CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
             *number = was;
             CHECK_EQ(dem_checkpoint_read(again, path), DEM_ERROR_FORMAT);
-            CHECK_STR(dem_world_error_get(again), "invalid contact event 1");
+            CHECK_STR(dem_world_error_get(again), part[k]);
             CHECK(dem_world_hash_get(again) == before);
         }
         CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
