@@ -44,8 +44,7 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
         for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c, c->memory,
-                               demi_kept_row(w, d, c, c, known));
+            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
             if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
         }
         if (tile.count) demi_steer_tile(w, &run, &tile, sign);
