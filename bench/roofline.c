@@ -47,8 +47,10 @@ static const counted respond_friction = {{0, 0}, {260, 9 + 6*REALS}, {0, 6*REALS
 /* the same without friction, linear (gas): fetch 9, touch 14, motion 5, law 4, answers 7, tally 2, scatter 6. No
    bead but those of near pairs, few: place and velocity read, force read and written, of both */
 static const counted respond_smooth = {{0, 0}, {47, 9 + 32*REALS}, {0, 3*REALS}, {0, 0}, {0, 0}, {0, 0}};
-/* rest: a push that leads out, added at its other end; a wall contact: about 300 flops, its record read and written */
-static const counted rest_friction = {{0, 0}, {0, 0}, {6, 12 + 18*REALS}, {0, 0}, {0, 0}, {300, 2*sizeof(demi_kept)}};
+/* rest: a push that leads out, added at its other end; a wall contact: about 300 flops; its record written, and the first
+   part of that of the last step read */
+static const counted rest_friction = {{0, 0}, {0, 0}, {6, 12 + 18*REALS}, {0, 0}, {0, 0},
+                                      {300, offsetof(demi_kept, more) + offsetof(demi_kept, arm_b)}};
 static const counted rest_smooth = {{0, 0}, {0, 0}, {3, 12 + 9*REALS}, {0, 0}, {0, 0}, {0, 0}};
 /* move: to kick and drift 9 a component, to kick spin 5; pace 19. Place, half velocity, force read and written (force:
    cleared), velocity written, inverse mass; the same for spin and torque. A quiet bead: 6; place read and written, half
