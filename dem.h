@@ -303,8 +303,8 @@
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
    law_memory is the number of reals of contact history, law_vectors how many vectors they begin
-   with. Other fields are law_rows (the same law for many contacts at once, nearly as fast as a
-   built-in one: >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
+   with. Other fields are law_rows (the same law for many contacts at once, which is faster:
+   >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
    0: that of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
    c->who: ids, radii, masses, user-defined numbers) and law_rate, a function that returns how
    fast the law changes such numbers, so that dem.h can limit dt. Laws see the velocity at the
@@ -329,10 +329,10 @@
    100^(2/3) = 22 under a given load, as in a bed at rest.
 
    Keep the largest overlap near 0.01 radii, where results hardly depend on the stiffness. The
-   report warns above 0.05; the program in section 1 reaches 0.047. Some results need less: compared
-   with E = 1 GPa, the angle of repose changes by 1 % at a largest overlap of 0.024 radii, the
-   discharge rate at 0.065 and mill power at 0.073 (fits, docs/accuracy.md). The speed of sound and
-   adhesion depend on the true stiffness.
+   report warns above 0.05. Some results tolerate more: compared with E = 1 GPa, the angle of repose
+   changes by 1 % when the largest overlap is 0.024 radii, the discharge rate at 0.065 and mill
+   power at 0.073 (fits, docs/accuracy.md). The program in section 1 reaches 0.047. The speed of
+   sound and adhesion depend on the true stiffness.
 
    Impulses need a given dt, in which the fastest grain moves by less than a tenth of its radius;
    1e-3 s is usual for slow grains of some millimetres.
@@ -482,8 +482,9 @@
    function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
    Laws, force fields and body_reals_fn are called from several threads.
 
-   The same program and input give the same bits for any number of threads: bodies are divided into
-   work groups by their numbers only, and every sum has a fixed order. Compile with
+   The same program and input give the same bits for any number of threads: how many work groups
+   there are depends only on the numbers of spheres and of other bodies, and every sum has a fixed
+   order. Compile with
    -ffp-contract=off to get the same bits from other compilers, systems and processors. Slabs
    (dem_slabs_create) distribute a scene to threads, or to processes over MPI or any other
    transport: docs/parallel.md.
@@ -822,7 +823,8 @@ typedef enum dem_load {
 } dem_load;
 
 /* How the tangential spring and dashpot share Coulomb's limit while a contact slides. The force is
-   the same; the energy that the spring holds differs. */
+   the same while a contact sticks and while it slides steadily. In between, the force differs, and
+   so does the energy that the spring holds. */
 typedef enum dem_slider {
     /* Spring and dashpot act in parallel behind one slider. This never creates energy. */
     DEM_SLIDER_PARALLEL = 0,
@@ -920,8 +922,7 @@ typedef enum dem_cluster_contacts {
     /* Contacts with similar normals act as one contact. Stiffness and restitution do not depend on
        the number of spheres that touch [BER23]. */
     DEM_CLUSTER_CONTACTS_MERGED = 0,
-    /* Each is a contact of its own. The stiffness grows with their number; elastic energy is
-       conserved exactly. */
+    /* Each is a contact of its own. The stiffness grows with their number. */
     DEM_CLUSTER_CONTACTS_SEPARATE
 } dem_cluster_contacts;
 
@@ -1446,13 +1447,14 @@ typedef struct dem_allocator {
 
 /* ---------------------------------------------------------------------------------------------
    >>law-rows
-   User-defined laws that take a row of contacts at once. A law that dem.h calls contact by contact
-   (dem_law_fn) makes a step take about 2.5 times as long as a built-in law. DEM_LAW_ROWS turns the
-   same law into a loop over columns, which compilers vectorise:
+   User-defined laws that take a row of contacts at once. With a law that dem.h calls contact by
+   contact (dem_law_fn), a step of a bed takes about 3 times as long as with a built-in law.
+   DEM_LAW_ROWS turns the same law into a loop over columns, which compilers vectorise; a step then
+   takes about 1.25 times as long:
 
        DEM_INLINE void sticky(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
            (void)memory;
-           force->normal = 1e4*c->overlap - 3*c->closing_speed - 0.02;
+           force->normal = 1e4*c->overlap + 3*c->closing_speed - 0.02;   // N
        }
        DEM_LAW_ROWS(sticky_rows, sticky, 0)             // 0 reals of contact history
 
@@ -1696,8 +1698,9 @@ typedef struct dem_world_desc {
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved; if it is 0, three times the distance that the fastest body moves in a step, or less
-       where a short period leaves no room, but always between 0.1 and 1 of the largest radius.
+       solved. If it is 0, dem.h takes three times the distance that the fastest body moves in a
+       step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it is
+       at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
        The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
@@ -1744,12 +1747,10 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
 DEM_API void dem_world_destroy(dem_world *world);
 /* Returns the error message of the last call on this world that failed; "" if none failed. For a
    null world the message says that it is null.
-   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
-   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
-   that run the scene return an error that quotes its message, because a scene without its floor
-   would run and return DEM_OK. They work again after a call of this function or after the failed
-   call has been repeated with success. A program that handles such an error and continues calls
-   this function first. */
+   If a call that builds the scene fails (names that end in _add, _fill or _pack; dem_pair_set,
+   dem_material_set, dem_wall_motion_set), the next run fails too and quotes its message. Otherwise
+   a scene without its floor would run and return DEM_OK. Runs work again once the program has
+   called dem_world_error_get or repeated the failed call with success. */
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
@@ -1758,15 +1759,16 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
 /* A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients
-   at most 1e9. With impulses young may be 0 and restitution may be 0. */
+   at most 1e9. */
 typedef struct dem_material_desc {
     dem_real density;              /* kg/m3, required, > 0 */
-    /* Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness */
+    /* Pa, required, > 0; may be 0 with impulses, or if a linear or hysteretic law has a
+       stiffness */
     dem_real young;
     dem_real poisson;              /* >= 0 and < 0.5: nu; 0 is a physical value */
-    /* Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic
-       law takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a
-       contact without adhesion. */
+    /* Required, > 0 and <= 1: e, speed after a normal impact over speed before it; may be 0 with
+       impulses. The hysteretic law takes either this or stiffness_unloading; they are related by
+       e = sqrt(kn/kun) for a contact without adhesion. */
     dem_real restitution;
     dem_real friction;             /* sliding friction mu, >= 0 */
     /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
@@ -2316,7 +2318,7 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, 
    be a finite cylinder, a cone, a disc with a hole, a tube with a funnel or a drum with its ends.
    Both sides repel. In an inner corner a grain touches both pieces; at an outer corner and at a rim
    it touches the ring. A grain too wide for a narrow part touches one side of it only. Ellipsoids
-   have no contact with it. */
+   and, with springs, polyhedra touch facets in its place (>>tessellate). */
 enum { DEM_RINGS = 12 };
 DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
@@ -2340,8 +2342,8 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, in
                                      dem_real radius, dem_real share);
 
 /* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra
-   with infinite sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids, and polyhedra on
-   plates without thickness by springs, touch facets (>>tessellate). */
+   with infinite sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids and, with springs,
+   polyhedra on plates without thickness touch facets in their place (>>tessellate). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,               /* a square weave of round wires */
@@ -3510,11 +3512,12 @@ DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 /* The same for a world that differs from the one that wrote the file. allowed: words, each the name
    of a field of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all
    but density) or "pairs"; "" allows nothing. Fields named there keep the values of this world.
-   Everything else must agree: domain, boundary, planar, thickness, response, names, shapes, walls,
-   fields, feeds and outlets always. Contact histories are converted where a law is the same, and
-   begin at 0 if a law is user-defined and `law`, `law_memory` or the like differs. A ledger that
-   the file lacks begins with the present kinetic energy as `inserted` and the present elastic
-   energy as `growth`, which otherwise receives what springs hold more than in the file. */
+   Everything else must agree; domain, boundary, planar, thickness, response, body_reals,
+   law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact histories are
+   converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
+   `law_memory` or the like differs. If the file has no ledger, the ledger begins with the present
+   kinetic energy as `inserted` and the present elastic energy as `growth`. Otherwise `growth`
+   receives the energy that springs hold more than in the file. */
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *path,
                                                const char *allowed);
 /* Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as
@@ -3632,8 +3635,10 @@ typedef struct dem_slabs dem_slabs;
 
 /* Creates slabs from a world: copies its grains to them, with everything a step needs. The world
    stays as it is, and may be destroyed. Every process builds the same world and passes its own
-   `first` and `local`. Feeds and outlets continue in the slabs. An error with DEM_RESPONSE_IMPULSES
-   and if processes have built different scenes; dem_world_error_get(world) returns the message. */
+   `first` and `local`. Feeds and outlets continue in the slabs. Errors, which
+   dem_world_error_get(world) returns: impulses, bodies on rails, a deformed cell, a field with
+   variance; a recording of contacts if several processes hold the slabs; processes that have built
+   different scenes. */
 DEM_API dem_slabs *dem_slabs_create(dem_world *world, const dem_slabs_desc *desc);
 /* Destroys slabs and frees their memory. */
 DEM_API void dem_slabs_destroy(dem_slabs *slabs);

@@ -947,8 +947,9 @@ class Load(enum.IntEnum):
 
 
 class Slider(enum.IntEnum):
-    """How the tangential spring and dashpot share Coulomb's limit while a contact slides. The force is the same; the
-    energy that the spring holds differs.
+    """How the tangential spring and dashpot share Coulomb's limit while a contact slides. The force is the same while a
+    contact sticks and while it slides steadily. In between, the force differs, and so does the energy that the spring
+    holds.
     """
     # Spring and dashpot act in parallel behind one slider. This never creates energy.
     PARALLEL = 0
@@ -1045,7 +1046,7 @@ class ClusterContacts(enum.IntEnum):
     # Contacts with similar normals act as one contact. Stiffness and restitution do not depend on the number of
     # spheres that touch [BER23].
     MERGED = 0
-    # Each is a contact of its own. The stiffness grows with their number; elastic energy is conserved exactly.
+    # Each is a contact of its own. The stiffness grows with their number.
     SEPARATE = 1
 
 
@@ -1134,8 +1135,8 @@ class EdgeRule(enum.IntEnum):
 
 class SieveKind(enum.IntEnum):
     """The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra with infinite
-    sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids, and polyhedra on plates without thickness by
-    springs, touch facets (>>tessellate).
+    sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids and, with springs, polyhedra on plates without
+    thickness touch facets in their place (>>tessellate).
     """
     NONE = 0
     # a square weave of round wires
@@ -1362,11 +1363,11 @@ class Material(Id):
 
         Fields that are not given stay as they are.
         density: kg/m3, required, > 0
-        young: Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness
+        young: Pa, required, > 0; may be 0 with impulses, or if a linear or hysteretic law has a stiffness
         poisson: >= 0 and < 0.5: nu; 0 is a physical value
-        restitution: Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic law
-            takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact without
-            adhesion.
+        restitution: Required, > 0 and <= 1: e, speed after a normal impact over speed before it; may be 0 with
+            impulses. The hysteretic law takes either this or stiffness_unloading; they are related by e =
+            sqrt(kn/kun) for a contact without adhesion.
         friction: sliding friction mu, >= 0
         friction_static: Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
             Fn until the contact slides, then mu Fn until the slip stops or reverses.
@@ -2099,9 +2100,10 @@ class WorldDesc(Struct):
         ('response', Response,
          'DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order (docs/impulses.md) '
          'for either value of integrator that it accepts, 0 and DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m)'
-         ' is then the gap below which contacts are solved; if it is 0, three times the distance that the '
-         'fastest body moves in a step, or less where a short period leaves no room, but always between 0.1 '
-         'and 1 of the largest radius. The fields that follow apply to impulses only.'),
+         ' is then the gap below which contacts are solved. If it is 0, dem.h takes three times the distance '
+         'that the fastest body moves in a step, at most the largest radius R and at least 0.1 R. On a '
+         'periodic axis of length P it is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but '
+         'still at least 0.1 R. The fields that follow apply to impulses only.'),
         ('cone', Cone, ''),
         ('solver', Solver, ''),
         ('sweeps', ctypes.c_int, 'most sweeps over all contacts in a step; 0 means 200'),
@@ -2131,19 +2133,17 @@ class WorldDesc(Struct):
 
 @_struct
 class MaterialDesc(Struct):
-    """A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients at most 1e9. With
-    impulses young may be 0 and restitution may be 0.
-    """
+    """A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients at most 1e9."""
     __slots__ = ()
     c_name = 'dem_material_desc'
     rows = [
         ('density', Real, 'kg/m3, required, > 0'),
-        ('young', Real, 'Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness'),
+        ('young', Real, 'Pa, required, > 0; may be 0 with impulses, or if a linear or hysteretic law has a stiffness'),
         ('poisson', Real, '>= 0 and < 0.5: nu; 0 is a physical value'),
         ('restitution', Real,
-         'Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic law '
-         'takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact without'
-         ' adhesion.'),
+         'Required, > 0 and <= 1: e, speed after a normal impact over speed before it; may be 0 with impulses.'
+         ' The hysteretic law takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) '
+         'for a contact without adhesion.'),
         ('friction', Real, 'sliding friction mu, >= 0'),
         ('friction_static', Real,
          'Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s Fn until'
@@ -3830,9 +3830,10 @@ class World(WorldBase):
             the time step, and 1 m/s for the stiffness.
         response: DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order (docs/impulses.md)
             for either value of integrator that it accepts, 0 and DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is
-            then the gap below which contacts are solved; if it is 0, three times the distance that the fastest body
-            moves in a step, or less where a short period leaves no room, but always between 0.1 and 1 of the largest
-            radius. The fields that follow apply to impulses only.
+            then the gap below which contacts are solved. If it is 0, dem.h takes three times the distance that the
+            fastest body moves in a step, at most the largest radius R and at least 0.1 R. On a periodic axis of
+            length P it is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
+            The fields that follow apply to impulses only.
         sweeps: most sweeps over all contacts in a step; 0 means 200
         tolerance: m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when the
             root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is below
@@ -3866,11 +3867,10 @@ class World(WorldBase):
     @property
     def error(self):
         """Returns the error message of the last call on this world that failed; "" if none failed. For a null world the
-        message says that it is null. After a failed call that builds the scene (one whose name ends in _add, _fill or
-        _pack, dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others that run
-        the scene return an error that quotes its message, because a scene without its floor would run and return
-        DEM_OK. They work again after a call of this function or after the failed call has been repeated with success.
-        A program that handles such an error and continues calls this function first.
+        message says that it is null. If a call that builds the scene fails (names that end in _add, _fill or _pack;
+        dem_pair_set, dem_material_set, dem_wall_motion_set), the next run fails too and quotes its message. Otherwise
+        a scene without its floor would run and return DEM_OK. Runs work again once the program has called
+        dem_world_error_get or repeated the failed call with success.
         """
         return (_lib.dem_world_error_get(self._at) or b'').decode()
 
@@ -3886,11 +3886,11 @@ class World(WorldBase):
         """Adds a material. A world holds at most 64.
 
         density: kg/m3, required, > 0
-        young: Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness
+        young: Pa, required, > 0; may be 0 with impulses, or if a linear or hysteretic law has a stiffness
         poisson: >= 0 and < 0.5: nu; 0 is a physical value
-        restitution: Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic law
-            takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact without
-            adhesion.
+        restitution: Required, > 0 and <= 1: e, speed after a normal impact over speed before it; may be 0 with
+            impulses. The hysteretic law takes either this or stiffness_unloading; they are related by e =
+            sqrt(kn/kun) for a contact without adhesion.
         friction: sliding friction mu, >= 0
         friction_static: Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
             Fn until the contact slides, then mu Fn until the slip stops or reverses.
@@ -4273,7 +4273,8 @@ class World(WorldBase):
         rings of these radii (m, >= 0) at these heights (m, along the axis from point). It can be a finite cylinder, a
         cone, a disc with a hole, a tube with a funnel or a drum with its ends. Both sides repel. In an inner corner a
         grain touches both pieces; at an outer corner and at a rim it touches the ring. A grain too wide for a narrow
-        part touches one side of it only. Ellipsoids have no contact with it.
+        part touches one side of it only. Ellipsoids and, with springs, polyhedra touch facets in its place
+        (>>tessellate).
         """
         radii = _array(radii, Real)
         count = _count(radii, 1, 'radii')
@@ -5026,12 +5027,12 @@ class World(WorldBase):
     def checkpoint_read_changed(self, path, allowed):
         """The same for a world that differs from the one that wrote the file. allowed: words, each the name of a field
         of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all but density) or "pairs";
-        "" allows nothing. Fields named there keep the values of this world. Everything else must agree: domain,
-        boundary, planar, thickness, response, names, shapes, walls, fields, feeds and outlets always. Contact
-        histories are converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
-        `law_memory` or the like differs. A ledger that the file lacks begins with the present kinetic energy as
-        `inserted` and the present elastic energy as `growth`, which otherwise receives what springs hold more than in
-        the file.
+        "" allows nothing. Fields named there keep the values of this world. Everything else must agree; domain,
+        boundary, planar, thickness, response, body_reals, law_memory_names, groups, shapes, walls, fields, feeds and
+        outlets always. Contact histories are converted where a law is the same, and begin at 0 if a law is
+        user-defined and `law`, `law_memory` or the like differs. If the file has no ledger, the ledger begins with
+        the present kinetic energy as `inserted` and the present elastic energy as `growth`. Otherwise `growth`
+        receives the energy that springs hold more than in the file.
         """
         self._ok(_lib.dem_checkpoint_read_changed(self._at, os.fsencode(path), allowed.encode()))
 
@@ -5086,8 +5087,9 @@ class World(WorldBase):
     def slabs(self, *, axis=0, count=0, first=0, local=0, transport=None, balance=0, balance_interval=0):
         """Creates slabs from a world: copies its grains to them, with everything a step needs. The world stays as it is,
         and may be destroyed. Every process builds the same world and passes its own `first` and `local`. Feeds and
-        outlets continue in the slabs. An error with DEM_RESPONSE_IMPULSES and if processes have built different
-        scenes; dem_world_error_get(world) returns the message.
+        outlets continue in the slabs. Errors, which dem_world_error_get(world) returns: impulses, bodies on rails, a
+        deformed cell, a field with variance; a recording of contacts if several processes hold the slabs; processes
+        that have built different scenes.
 
         axis: 0, 1, 2: borders are planes x, y, z = const
         count: required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same

@@ -215,7 +215,8 @@ typedef enum dem_load {
 } dem_load;
 
 /* How the tangential spring and dashpot share Coulomb's limit while a contact slides. The force is
-   the same; the energy that the spring holds differs. */
+   the same while a contact sticks and while it slides steadily. In between, the force differs, and
+   so does the energy that the spring holds. */
 typedef enum dem_slider {
     /* Spring and dashpot act in parallel behind one slider. This never creates energy. */
     DEM_SLIDER_PARALLEL = 0,
@@ -313,8 +314,7 @@ typedef enum dem_cluster_contacts {
     /* Contacts with similar normals act as one contact. Stiffness and restitution do not depend on
        the number of spheres that touch [BER23]. */
     DEM_CLUSTER_CONTACTS_MERGED = 0,
-    /* Each is a contact of its own. The stiffness grows with their number; elastic energy is
-       conserved exactly. */
+    /* Each is a contact of its own. The stiffness grows with their number. */
     DEM_CLUSTER_CONTACTS_SEPARATE
 } dem_cluster_contacts;
 

@@ -94,7 +94,7 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, 
    be a finite cylinder, a cone, a disc with a hole, a tube with a funnel or a drum with its ends.
    Both sides repel. In an inner corner a grain touches both pieces; at an outer corner and at a rim
    it touches the ring. A grain too wide for a narrow part touches one side of it only. Ellipsoids
-   have no contact with it. */
+   and, with springs, polyhedra touch facets in its place (>>tessellate). */
 enum { DEM_RINGS = 12 };
 DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
@@ -118,8 +118,8 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, in
                                      dem_real radius, dem_real share);
 
 /* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra
-   with infinite sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids, and polyhedra on
-   plates without thickness by springs, touch facets (>>tessellate). */
+   with infinite sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids and, with springs,
+   polyhedra on plates without thickness touch facets in their place (>>tessellate). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,               /* a square weave of round wires */

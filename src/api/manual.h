@@ -173,8 +173,8 @@
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
    law_memory is the number of reals of contact history, law_vectors how many vectors they begin
-   with. Other fields are law_rows (the same law for many contacts at once, nearly as fast as a
-   built-in one: >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
+   with. Other fields are law_rows (the same law for many contacts at once, which is faster:
+   >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
    0: that of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
    c->who: ids, radii, masses, user-defined numbers) and law_rate, a function that returns how
    fast the law changes such numbers, so that dem.h can limit dt. Laws see the velocity at the
@@ -199,10 +199,10 @@
    100^(2/3) = 22 under a given load, as in a bed at rest.
 
    Keep the largest overlap near 0.01 radii, where results hardly depend on the stiffness. The
-   report warns above 0.05; the program in section 1 reaches 0.047. Some results need less: compared
-   with E = 1 GPa, the angle of repose changes by 1 % at a largest overlap of 0.024 radii, the
-   discharge rate at 0.065 and mill power at 0.073 (fits, docs/accuracy.md). The speed of sound and
-   adhesion depend on the true stiffness.
+   report warns above 0.05. Some results tolerate more: compared with E = 1 GPa, the angle of repose
+   changes by 1 % when the largest overlap is 0.024 radii, the discharge rate at 0.065 and mill
+   power at 0.073 (fits, docs/accuracy.md). The program in section 1 reaches 0.047. The speed of
+   sound and adhesion depend on the true stiffness.
 
    Impulses need a given dt, in which the fastest grain moves by less than a tenth of its radius;
    1e-3 s is usual for slow grains of some millimetres.
@@ -352,8 +352,9 @@
    function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
    Laws, force fields and body_reals_fn are called from several threads.
 
-   The same program and input give the same bits for any number of threads: bodies are divided into
-   work groups by their numbers only, and every sum has a fixed order. Compile with
+   The same program and input give the same bits for any number of threads: how many work groups
+   there are depends only on the numbers of spheres and of other bodies, and every sum has a fixed
+   order. Compile with
    -ffp-contract=off to get the same bits from other compilers, systems and processors. Slabs
    (dem_slabs_create) distribute a scene to threads, or to processes over MPI or any other
    transport: docs/parallel.md.

@@ -256,11 +256,12 @@ DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 /* The same for a world that differs from the one that wrote the file. allowed: words, each the name
    of a field of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all
    but density) or "pairs"; "" allows nothing. Fields named there keep the values of this world.
-   Everything else must agree: domain, boundary, planar, thickness, response, names, shapes, walls,
-   fields, feeds and outlets always. Contact histories are converted where a law is the same, and
-   begin at 0 if a law is user-defined and `law`, `law_memory` or the like differs. A ledger that
-   the file lacks begins with the present kinetic energy as `inserted` and the present elastic
-   energy as `growth`, which otherwise receives what springs hold more than in the file. */
+   Everything else must agree; domain, boundary, planar, thickness, response, body_reals,
+   law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact histories are
+   converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
+   `law_memory` or the like differs. If the file has no ledger, the ledger begins with the present
+   kinetic energy as `inserted` and the present elastic energy as `growth`. Otherwise `growth`
+   receives the energy that springs hold more than in the file. */
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *path,
                                                const char *allowed);
 /* Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as
@@ -378,8 +379,10 @@ typedef struct dem_slabs dem_slabs;
 
 /* Creates slabs from a world: copies its grains to them, with everything a step needs. The world
    stays as it is, and may be destroyed. Every process builds the same world and passes its own
-   `first` and `local`. Feeds and outlets continue in the slabs. An error with DEM_RESPONSE_IMPULSES
-   and if processes have built different scenes; dem_world_error_get(world) returns the message. */
+   `first` and `local`. Feeds and outlets continue in the slabs. Errors, which
+   dem_world_error_get(world) returns: impulses, bodies on rails, a deformed cell, a field with
+   variance; a recording of contacts if several processes hold the slabs; processes that have built
+   different scenes. */
 DEM_API dem_slabs *dem_slabs_create(dem_world *world, const dem_slabs_desc *desc);
 /* Destroys slabs and frees their memory. */
 DEM_API void dem_slabs_destroy(dem_slabs *slabs);

@@ -107,8 +107,9 @@ typedef struct dem_world_desc {
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved; if it is 0, three times the distance that the fastest body moves in a step, or less
-       where a short period leaves no room, but always between 0.1 and 1 of the largest radius.
+       solved. If it is 0, dem.h takes three times the distance that the fastest body moves in a
+       step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it is
+       at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
        The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
@@ -155,12 +156,10 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
 DEM_API void dem_world_destroy(dem_world *world);
 /* Returns the error message of the last call on this world that failed; "" if none failed. For a
    null world the message says that it is null.
-   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
-   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
-   that run the scene return an error that quotes its message, because a scene without its floor
-   would run and return DEM_OK. They work again after a call of this function or after the failed
-   call has been repeated with success. A program that handles such an error and continues calls
-   this function first. */
+   If a call that builds the scene fails (names that end in _add, _fill or _pack; dem_pair_set,
+   dem_material_set, dem_wall_motion_set), the next run fails too and quotes its message. Otherwise
+   a scene without its floor would run and return DEM_OK. Runs work again once the program has
+   called dem_world_error_get or repeated the failed call with success. */
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
@@ -169,15 +168,16 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
 /* A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients
-   at most 1e9. With impulses young may be 0 and restitution may be 0. */
+   at most 1e9. */
 typedef struct dem_material_desc {
     dem_real density;              /* kg/m3, required, > 0 */
-    /* Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness */
+    /* Pa, required, > 0; may be 0 with impulses, or if a linear or hysteretic law has a
+       stiffness */
     dem_real young;
     dem_real poisson;              /* >= 0 and < 0.5: nu; 0 is a physical value */
-    /* Required, > 0 and <= 1: e, speed after a normal impact over speed before it. The hysteretic
-       law takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a
-       contact without adhesion. */
+    /* Required, > 0 and <= 1: e, speed after a normal impact over speed before it; may be 0 with
+       impulses. The hysteretic law takes either this or stiffness_unloading; they are related by
+       e = sqrt(kn/kun) for a contact without adhesion. */
     dem_real restitution;
     dem_real friction;             /* sliding friction mu, >= 0 */
     /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s

@@ -226,7 +226,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("periodic images of a funnel repel alike, files and checkpoints hold its rings, and ellipsoids are rejected") {
+    TEST("periodic images of a funnel repel alike, and files and checkpoints hold its rings") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world[2];
         dem_material m;
