@@ -204,8 +204,9 @@
    --- 3. The world and its options ---
 
    A world is created from a dem_world_desc. Start from DEM_WORLD_DESC, which is all zero, and set
-   only the fields you need. Zero means "absent" or "default". dem_world_desc_get returns the values
-   in force, and dem_world_report prints most of them. An effect that is absent costs nothing.
+   only the fields you need. Zero means "absent" or "default". dem_world_desc_get returns the
+   present time step and other choices of dem.h, and dem_world_report prints most of them. An effect
+   that is absent costs nothing.
 
        dem_world_desc desc = DEM_WORLD_DESC;
        desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
@@ -476,23 +477,25 @@
    only where you call a function that prints.
 
    Laws, force fields, motions, regions, progress functions and observers may call every function
-   that takes the world as const. Calls that change the world fail there and leave it as it is; make
-   them between runs. Progress functions, functions given to dem_contacts_each or dem_events_record
-   and functions that compute a value of a CSV output may also write files and replay frames. The
+   that takes the world as const; within a step dem_bodies_select and dem_bodies_means_get fail.
+   Calls that change the world fail there and leave it as it is; make
+   them between runs. Progress functions (except that of dem_trials_run), functions given to
+   dem_contacts_each or dem_events_record and functions that compute a value of a CSV output may
+   also write files and replay frames. The
    function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
    Laws, force fields and body_reals_fn are called from several threads.
 
    The same program and input give the same bits for any number of threads: how many work groups
    there are depends only on the numbers of spheres and of other bodies, and every sum has a fixed
-   order. Compile with
-   -ffp-contract=off to get the same bits from other compilers, systems and processors. Slabs
-   (dem_slabs_create) distribute a scene to threads, or to processes over MPI or any other
-   transport: docs/parallel.md.
+   order. Compile with -ffp-contract=off to get the same bits from other compilers, systems and
+   processors. Slabs (dem_slabs_create) distribute a scene to threads, or to processes over MPI or
+   any other transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
    read one world by functions that take it as const, while none changes it. Exceptions, which write
-   to the world, are calls that fail, dem_world_error_get, dem_progress_print, dem_world_report,
-   dem_contacts_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
+   to the world or allocate, are calls that fail, dem_world_error_get, dem_progress_print,
+   dem_world_report, dem_contacts_get, dem_stress_get, dem_mixing_get, dem_bodies_select,
+   dem_bodies_means_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
    dem_bodies_get, which wraps positions into the box.
 
    --- 14. Compile-time options, extensions ---
@@ -867,8 +870,9 @@ typedef enum dem_response {
        a contact time. */
     DEM_RESPONSE_SPRINGS = 0,
     /* Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The
-       laws above do not act; restitution, friction, static friction and, with Gauss-Seidel, rolling
-       friction of the materials do. A time step is as long as the flow allows, 1e-3 s for grains of
+       laws above do not act; restitution, friction and static friction of the materials do, and
+       cohesion and compliance of pairs. Rolling and spinning friction need Gauss-Seidel; with
+       another solver a step fails. A time step is as long as the flow allows, 1e-3 s for grains of
        some millimetres. */
     DEM_RESPONSE_IMPULSES
 } dem_response;
@@ -1083,7 +1087,8 @@ typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_f
    for body b: 1/s, >= 0, the largest of several numbers. Both are 0 when it is called. A step is
    stable while dt times the sum over the contacts of a body is below 1.
    In *c only overlap, range, normal, r_eff, m_eff, dt, user, material_a, material_b, wall and `who`
-   (without point and rates) are set; velocities and coefficients are 0. */
+   (without point and rates; its radii are those of bounding spheres, of a wall 0) are set;
+   velocities and coefficients are 0. */
 typedef void (*dem_law_rate_fn)(const dem_contact *c, dem_real *rates);
 
 /* Rotates a tangent vector of the contact history with the contact plane over the last step: with
@@ -1402,7 +1407,9 @@ DEM_INLINE void dem_law_twist(const dem_contact *c, dem_real *memory, dem_contac
 
 /* A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m)
    and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of
-   the coming step. It is called once per body and step, from several threads. */
+   the coming step. It is called once per body and step, and again whenever forces are computed
+   without a step (after a change of the scene, by dem_contacts_each, by the report), from several
+   threads. */
 typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass,
                                  double time, void *user);
@@ -1429,11 +1436,11 @@ typedef dem_real (*dem_growth_fn)(const dem_body_state *body, dem_body id, doubl
 
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
-   derivatives of position and rotation. It is called twice per step (for its end and its middle;
-   with impulses also for the end of the next step), from one thread. dem_world_check calls it too,
-   also for later times, and reports a velocity or spin that is not the derivative. A pose that is
-   not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with
-   DEM_ERROR_UNSTABLE. */
+   derivatives of position and rotation. It is called twice per step, for its end and its middle
+   (with impulses for its end, and for the middle and the end of the next step), from one thread.
+   dem_world_check calls it too, also for later times, and reports a velocity or spin that is not
+   the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s,
+   rad/s) stops the run with DEM_ERROR_UNSTABLE. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
 /* Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if
@@ -1688,7 +1695,9 @@ typedef struct dem_world_desc {
     dem_integrator integrator;
     /* s, the time step; 0 means chosen from the scene, see dem_step_advice_get */
     dem_real dt;
-    int allow_large_dt;            /* 1 allows dt above t_c/20, to show what happens then */
+    /* 1 allows dt above the stable limit, to show what happens then. It switches off all checks of
+       the step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either. */
+    int allow_large_dt;
     /* m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness
        from Young's modulus depend on it. 0 means the largest speed expected from grains, walls and
        height of fall for the time step, and 1 m/s for the stiffness. */
@@ -1737,8 +1746,9 @@ typedef struct dem_world_desc {
 static const dem_world_desc DEM_WORLD_DESC_ZERO = DEM_ZERO;
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
-/* Creates an empty world. Returns null if a value of desc is out of range or memory runs out;
-   dem_world_create_error_get(desc) says why. */
+/* Creates an empty world. Returns null if a value of desc is out of range
+   (dem_world_create_error_get(desc) says why), if memory runs out, or if version or DEM_REAL differ
+   from those of the implementation; then it returns "". */
 static inline dem_world *dem_world_create(const dem_world_desc *desc);
 /* Returns the reason why dem_world_create refuses desc, or "" if it accepts desc. */
 DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
@@ -1754,7 +1764,9 @@ DEM_API void dem_world_destroy(dem_world *world);
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
-/* Returns the desc in force: zeros are replaced by the values that were chosen. */
+/* Returns the desc as given, with the present gravity, domain and dt, the search and integrator in
+   use, and thickness and threads where they were 0. skin is the present one: 0 before the first
+   list, and where desc.skin is below 0. Other zeros stay 0, such as laws, sweeps and tolerance. */
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
@@ -1809,9 +1821,9 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
      the given one if E* is unknown because a material has no young;
    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
-    dem_real young_eff;            /* Pa, E* */
+    dem_real young_eff;            /* Pa, E*, > 0; where a material's young may be 0, it may, too */
     dem_real shear_eff;            /* Pa, G* */
-    dem_real restitution;          /* > 0 and <= 1: e */
+    dem_real restitution;          /* > 0 and <= 1: e; may be 0 with impulses */
     dem_real friction;             /* sliding friction mu, >= 0 */
     /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
        materials leave it 0. */
@@ -1853,7 +1865,8 @@ typedef struct dem_coefficients {
     dem_real r_eff, m_eff;         /* m, kg: effective radius and mass */
     dem_real kn, cn, kt, ct;       /* see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v */
     dem_real kun;                  /* N/m, hysteretic law; otherwise 0 */
-    dem_real damping_ratio;        /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
+    /* beta = -ln e / sqrt(pi^2 + ln^2 e); larger with DEM_TENSION_COMPENSATED; 0 with impulses */
+    dem_real damping_ratio;
     dem_real contact_time;         /* s, at the impact speed; hysteretic law: [ALK07] eq 2.45 */
     DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)                /* kad */
 } dem_coefficients;
@@ -1862,7 +1875,8 @@ typedef struct dem_coefficients {
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out);
-/* Prints the contact properties of all pairs of materials, one line per pair. */
+/* Prints contact properties of all pairs of materials, one line per pair: moduli, restitution,
+   friction and stiffness; with impulses also spinning friction, cohesion and compliance. */
 DEM_API void dem_pairs_print(const dem_world *world, FILE *out);
 
 /* ---- grains ---- */
@@ -2029,7 +2043,7 @@ typedef struct dem_bodies {
     const int32_t *materials;      /* count: ids of dem_material */
     /* count x 4: w, x, y, z, from principal axes to the world; null if none is followed */
     const dem_real *orientations;
-    const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if all are */
+    const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if orientations is */
     int real_count;                /* numbers per body (desc.body_reals) */
     const dem_real *reals;         /* count x real_count; null if there are none */
     const dem_real *rates;         /* count x real_count, per s, of the last step; null likewise */
@@ -2169,13 +2183,14 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_r
 /* Properties of a shape. */
 typedef struct dem_shape_info {
     int spheres;                   /* of a cluster; otherwise 0 */
-    int corners, faces;            /* of a polyhedron; otherwise 0 */
+    int corners, faces;            /* of a polyhedron, or the prism of a polygon; otherwise 0 */
     dem_real volume;               /* m3 */
     dem_vec3 centre;               /* m, centre of mass in the frame in which the shape was given */
     dem_quat frame;                /* rotates the principal axes into that frame */
     dem_vec3 inertia;              /* m5, principal moments of inertia per density */
     dem_vec3 semi_axes;            /* m, of the ellipsoid with the same moments */
-    dem_real radius;               /* m, of the smallest sphere about the centre that contains it */
+    /* m, of the smallest sphere about the centre that contains it (a polygon: its prism) */
+    dem_real radius;
     int pieces;                    /* of a union; otherwise 0 */
 } dem_shape_info;
 /* Writes the properties of a shape to info. */
@@ -2184,7 +2199,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 /* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
    orientation (any length but 0) from the frame in which the shape was given. It is an error if a
    wall has no contact with this shape: DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind)
-   have none with ellipsoids and polyhedra. */
+   have none with ellipsoids and polyhedra; sieves, cones and other surfaces of revolution have none
+   with polygons. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:
@@ -2230,7 +2246,9 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *world);
 
 /* ---- walls ---- */
 /* Walls repel grains and move as prescribed; grains do not move them. Functions that add a wall
-   copy their data. */
+   copy their data. In a periodic world a finite wall that is not longer than the period repeats
+   along that axis. A longer one does not: it must extend beyond both faces by the largest radius
+   and the range of the law, or the next step fails. */
 
 /* The kind of a wall's motion. */
 typedef enum dem_motion_kind {
@@ -2318,7 +2336,8 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, 
    be a finite cylinder, a cone, a disc with a hole, a tube with a funnel or a drum with its ends.
    Both sides repel. In an inner corner a grain touches both pieces; at an outer corner and at a rim
    it touches the ring. A grain too wide for a narrow part touches one side of it only. Ellipsoids
-   and, with springs, polyhedra touch facets in its place (>>tessellate). */
+   and, with springs, polyhedra touch facets in its place (>>tessellate). Polygons have no contact
+   with it; use a profile. */
 enum { DEM_RINGS = 12 };
 DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
@@ -2414,7 +2433,9 @@ typedef struct dem_wall_loads {
     dem_vec3 force;                /* N, of the last step */
     dem_vec3 torque;               /* N m, of the last step */
     dem_real torque_axial;         /* N m, component along the axis of its motion */
-    dem_real power;                /* W, from the wall to the grains: -(force . v + torque . w) */
+    /* W, from the wall to the grains: -(force . v + torque . w), and the power of friction on a
+       surface that moves in itself (dem_wall_surface_velocity_set) */
+    dem_real power;
     int contacts;                  /* present number */
     int touched;                   /* 1 if a grain has touched the wall since it was added */
     /* All that follow except `rate` are sums since dem_wall_loads_reset. */
@@ -2496,7 +2517,8 @@ DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
 /* ---- rails ---- */
 /* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
-   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs and periodic cells that deform refuse rails. */
+   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs and periodic cells that deform refuse rails. It
+   is an error if the body is fixed, and in planar worlds to lock Z, SPIN_X or SPIN_Y. */
 
 /* The axes of the world that a rail locks, as a sum: of translation, then of rotation. */
 enum { DEM_RAIL_X = 1, DEM_RAIL_Y = 2, DEM_RAIL_Z = 4, DEM_RAIL_SPIN_X = 8, DEM_RAIL_SPIN_Y = 16,
@@ -2507,8 +2529,8 @@ typedef struct dem_rail_desc {
     dem_vec3 velocity;             /* m/s, along locked axes */
     dem_vec3 spin;                 /* rad/s, about locked axes */
     /* The body also has the velocity and spin of this wall along and about locked axes, as if it
-       were part of it, so any motion of a wall is a path for a body. Null, or a wall that is
-       removed, means none. */
+       were part of it, so any motion of a wall is a path for a body. Null means none, and so does
+       a wall that is removed later. */
     dem_wall wall;
 } dem_rail_desc;
 static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;
@@ -2699,11 +2721,17 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
 /* Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error
    message names that step; the steps before it are kept. The first step is not taken while the
    error message of a call that builds the scene is unread (dem_world_error_get). Errors:
+       DEM_ERROR_ARGUMENT   an unread message (above), or a scene that cannot run, such as a period
+                            that is too short, or rolling friction with a solver that ignores it
        DEM_ERROR_TIME_STEP  the step is too large for the contacts, or a body or wall would move by
                             more than the smallest radius (a body under impulses: by more than this
-                            and more than half the range below which contacts are solved)
-       DEM_ERROR_UNSTABLE   a position, velocity or force is not finite, or two bodies overlap by
-                            the smaller radius
+                            and more than half the range below which contacts are solved), a body
+                            that is not a sphere rotate by more than 1 rad, a cell strain by more
+                            than 0.01
+       DEM_ERROR_UNSTABLE   a position, velocity, force or number of a body is not finite, two
+                            bodies overlap by the smaller radius, a body and a wall by that of the
+                            body, or a motion or desc.growth returns impossible values
+       DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns
        DEM_ERROR_STOPPED    an output stopped the run; or desc.unsolved_stops is 1 and the sweeps of
                             a step did not reach the tolerance
        DEM_ERROR_MEMORY     The bodies may have moved already; the step then counts as taken. The
@@ -2771,8 +2799,9 @@ static const dem_cell_desc DEM_CELL_DESC_ZERO = DEM_ZERO;
    (>>stress). Further calls may change everything at any time; contact histories stay. Axes that
    move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
    Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with
-   walls, joints, rails, feeds and outlets. Fields and fills are an error while a cell is sheared.
-   */
+   walls, joints, rails, feeds and outlets. Fields, fills and selections by region are an error
+   while a cell is sheared. A step that would strain the cell by more than 0.01 fails with
+   DEM_ERROR_TIME_STEP. */
 DEM_API dem_result dem_cell_set(dem_world *world, const dem_cell_desc *desc);
 /* What the cell does. */
 typedef struct dem_cell_state {
@@ -2836,8 +2865,9 @@ DEM_API void dem_overlap_max_reset(dem_world *world);
    then holds the residual, and `residual` is 0. */
 typedef struct dem_ledger {
     double kinetic, rotational, elastic;    /* stored now */
-    /* supplied: work of gravity; of moving walls and motors; of force fields; of a cell that
-       deforms; kinetic energy of inserted bodies */
+    /* supplied: work of gravity; of moving walls, belts, motors and rails; of force fields; of a
+       cell that deforms; kinetic energy of inserted bodies, and its changes by dem_body_set and
+       other calls that set velocities, fix bodies or change masses */
     double gravity, walls, force, cell, inserted;
     /* dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential
        dashpots; by rolling resistance */
@@ -2961,13 +2991,17 @@ typedef struct dem_contact_info {
     dem_real overlap;                    /* m; < 0: a gap within the range of the law */
     dem_vec3 force;                      /* N, on a */
 } dem_contact_info;
-/* Writes the contacts of the present state, those with walls included, at most `capacity` of them,
-   and returns their number. `out` or null. The contact history does not change. A contact of two
-   polyhedra, or of one with a wall, is written as up to four (dem_shape_polyhedron_add). Returns -1
-   if bodies or walls have changed since the last step; then call dem_candidates_rebuild first. */
+/* Writes the contacts, those with walls included, at most `capacity` of them, and returns their
+   number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one
+   with a wall, is written as up to four (dem_shape_polyhedron_add). Contacts of two spheres are
+   those of the present state; all others, and with impulses all, are as the last computation of
+   forces has left them. After bodies, walls or materials have changed, call dem_contacts_each
+   first: it computes them. dem_candidates_rebuild makes only the list. Returns -1 if there is no
+   list: before the first step, and after bodies or walls have changed. */
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
-/* Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0
-   to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the
+/* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
+   pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
+   impulses: 11); vectors as seen from a. Values that the function writes there count from the
    next step on. */
 typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
 /* Calls `fn` for every contact, those with walls included, and returns their number. With a law
@@ -3120,7 +3154,8 @@ typedef struct dem_stress {
 } dem_stress;
 /* Computes stress and fabric of the present state in one pass over bodies and contacts. The domain
    must have an extent along all axes (planar: along x and y; its depth is desc.thickness). An error
-   if bodies or walls have changed since the last step; then call dem_candidates_rebuild first. */
+   if bodies or walls have changed since the last step; then call dem_contacts_each first (see
+   dem_contacts_get). */
 DEM_API dem_result dem_stress_get(const dem_world *world, dem_stress *stress);
 
 /* A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress
@@ -3128,7 +3163,9 @@ DEM_API dem_result dem_stress_get(const dem_world *world, dem_stress *stress);
    than grains need a long window; or it is spread about its centre by coarse graining (width).
    Begin with DEM_FIELD_DESC. */
 typedef struct dem_field_desc {
-    dem_box box;              /* m, required: what the cells divide */
+    /* m, required: what the cells divide. In planar worlds cells are desc.thickness deep, whatever
+       the extent of the box along z, which must contain 0. */
+    dem_box box;
     int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
     double start, end;        /* s, window of time; end 0 means no end */
     double interval;          /* s, between samples; 0 means every 100 steps */
@@ -3181,7 +3218,7 @@ typedef struct dem_field_cell {
     double grains_variance, solid_variance, density_variance, velocity_variance[3];
 } dem_field_cell;
 /* Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The
-   field chooses grains by material and radius only. */
+   field chooses grains by material, radius and group. */
 typedef struct dem_body_means {
     uint64_t samples;         /* number of samples; 0: all others are 0 */
     double velocity[3], velocity_variance[3];   /* m/s; m2/s2 */
@@ -3388,13 +3425,14 @@ DEM_API void dem_grains_free(dem_world *world, dem_grains *grains);
 DEM_API dem_result dem_grains_add(dem_world *world, dem_material material,
                                   const dem_grains *grains);
 
-/* The functions below, except the one for CSV, write to a temporary name and then rename the file,
-   so that it is complete or absent. Links are followed; a pipe or a terminal is an error. In all
-   files `id` is dem_body.slot less 1. */
+/* The functions below, except dem_wall_loads_csv_write, which appends, write to a temporary name
+   and then rename the file, so that it is complete or absent. Links are followed; a pipe or a
+   terminal is an error. In all files `id` is dem_body.slot less 1. */
 
 /* Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and
-   body_reals. If bodies have orientations, also the orientation (quaternion w x y z) and semi_axes
-   (m); a cluster is then one point per sphere, all with its id. To draw them in ParaView: Glyph, a
+   body_reals, with desc.groups also groups (bit id - 1: in that group). A cluster or union is one
+   point per sphere or piece, all with its id. If bodies have orientations, also the orientation of
+   the piece (quaternion w x y z) and its semi_axes (m). To draw them in ParaView: Glyph, a
    sphere of radius 1, scaled by semi_axes, rotated by orientation (quaternion). */
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 /* Writes the same as a legacy VTK file, binary. */
@@ -3503,10 +3541,11 @@ DEM_API dem_result dem_replay_close(dem_replay *replay);
    at a finite position and velocity; then an existing file stays. */
 DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 /* Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The
-   world must have been built like the one that wrote it, with the same desc, materials and walls.
-   Functions and user pointers are not stored. Number of threads, allocator, allow_large_dt
-   and user pointers may differ. Errors: a file that is cut short, damaged, or of another version or
-   precision; a file of another scene, for which the message names the first field that differs,
+   world must have been built like the one that wrote it, with the same desc, materials, pairs,
+   shapes, walls, fields, feeds and outlets. Functions and user pointers are not stored. Number of
+   threads, allocator, allow_large_dt, unsolved_stops, law_rows and user pointers may differ.
+   Errors: a file that is cut short, damaged, or of another version, precision, DEM_DOMAIN_BODIES or
+   memory layout; a file of another scene, for which the message names the first field that differs,
    with both values. */
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 /* The same for a world that differs from the one that wrote the file. allowed: words, each the name
@@ -3567,7 +3606,10 @@ typedef struct dem_output_desc {
     void *user;              /* passed to `values` and `function`; or null */
     dem_mixing_desc mixing;  /* CSV: see above */
     dem_field field;         /* FIELD_CSV: required */
-    dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
+    /* m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with
+       dem_output_every_add: over desc.thickness (planar), over desc.domain along z if it has an
+       extent, or else from the lowest to the highest body */
+    dem_real z0, z1;
     /* CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass,
        kg, as in dem_outlet_state */
     dem_outlet outlet;
@@ -16419,7 +16461,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
     demi_refuse(world, call, "bodies or walls were added or changed after the last step, so there "
-                "is no list of contacts; call dem_candidates_rebuild or dem_world_step first");
+                "is no list of contacts; first call dem_world_step, dem_contacts_each, which "
+                "computes the contacts, or dem_candidates_rebuild, which makes only the list");
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
@@ -29779,6 +29822,13 @@ typedef struct demi_grid {
     double volume, reach, norm;
     int axes;                           /* along which it spreads: 3; planar: 2 */
 } demi_grid;
+/* Volume of a cell, m3; in planar worlds cells are as deep as the discs. */
+static double demi_field_volume(const dem_world *w, const dem_box *box, const int cells[3]) {
+    const double x = (double)(box->hi.x - box->lo.x)/cells[0];
+    const double y = (double)(box->hi.y - box->lo.y)/cells[1];
+    return x*y*(w->desc.planar ? (double)w->desc.thickness
+                               : (double)(box->hi.z - box->lo.z)/cells[2]);
+}
 /* Computes the grid of field f. */
 static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     const demi_periods p = demi_periods_of(w);
@@ -29791,12 +29841,13 @@ static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     g.size[0] = ((double)d->box.hi.x - g.lo[0])/d->cells[0];
     g.size[1] = ((double)d->box.hi.y - g.lo[1])/d->cells[1];
     g.size[2] = ((double)d->box.hi.z - g.lo[2])/d->cells[2];
-    g.volume = g.size[0]*g.size[1]*g.size[2];
+    g.volume = demi_field_volume(w, &d->box, d->cells);
     for (k = 0; k < 3; k++)        /* the world of a slab has no period along a ring of slabs */
         g.period[k] = (double)DEMI_MAX(p.period[k], w->ring_period[k]);
     g.axes = w->desc.planar ? 2 : 3;
     g.reach = c = 2*(double)d->width;
-    g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*g.size[2]) : 105/(16*DEMI_PI*c*c*c);
+    g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*(double)w->desc.thickness)
+                                        : 105/(16*DEMI_PI*c*c*c);
     return g;
 }
 /* Adds n numbers, times weight, to the cell of indices `at` in a block that has n per cell. */
@@ -29871,12 +29922,11 @@ static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i)
 }
 /* Adds grain i: volume, mass, momentum and number; with desc.stress the flux m v v. */
 static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
-    const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
+    const double m = (double)w->bodies.mass[i];
     const double v[3] = {(double)w->bodies.vel[4*i], (double)w->bodies.vel[4*i + 1],
                          (double)w->bodies.vel[4*i + 2]};
     double sum[DEMI_FLUX], flux[6];
-    sum[DEMI_SOLID] = (w->desc.planar ? DEMI_PI*r*r*g->size[2]
-        : m/(double)w->materials[w->bodies.material[i] - 1].density)/g->volume;
+    sum[DEMI_SOLID] = m/(double)w->materials[w->bodies.material[i] - 1].density/g->volume;
     sum[DEMI_MASS] = m;
     sum[2] = m*v[0];
     sum[3] = m*v[1];
@@ -30154,9 +30204,7 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     if (!d.samples) return DEM_OK;
     c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);
     n = (double)d.samples;
-    volume = (double)(d.box.hi.x - d.box.lo.x)*(double)(d.box.hi.y - d.box.lo.y)*
-             (double)(d.box.hi.z - d.box.lo.z)/
-             ((double)d.cells[0]*(double)d.cells[1]*(double)d.cells[2]);
+    volume = demi_field_volume(w, &d.box, d.cells);
     out->grains = d.grains[c]/n;
     out->solid = d.solid[c]/n;
     out->density = d.mass[c]/n/volume;
@@ -32187,29 +32235,30 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
 }
 /* Brings the contacts up to date if the scene has changed since the last step: the time step, the
    neighbour list if necessary, and forces at the present time. */
-static dem_result demi_contacts_settle(dem_world *w) {
+static dem_result demi_contacts_settle(dem_world *w, const char *call) {
     const demi_stages *s = &w->stage;
     dem_result result;
     demi_calling was;
     if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
+    if (w->look.calling.who && demi_barred(w, call)) return DEM_ERROR_ARGUMENT;
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);
     demi_called(w, was);
     return result;
 }
-/* The histories of sphere pairs are columns of the pruned neighbour list, so fn gets a copy that is
-   written back; a persistent contact hands over its own. If fn changes a value, forces are computed
-   again before the next step. */
-DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
-    if (demi_null(w, __func__, fn ? w : 0, "fn")) return -1;
+/* Calls fn for every contact, and returns their number, or -1. The histories of sphere pairs are
+   columns of the pruned neighbour list, so fn gets a copy that is written back; a persistent
+   contact hands over its own. If fn changes a value, forces are computed again before the next
+   step. */
+static int demi_contacts_visit(dem_world *w, const char *call, dem_contact_fn fn, void *user) {
     size_t stride;
     dem_contact_info info;
     dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
     int d, k, e, n = 0, changed = 0;
     demi_calling was_calling;
-    if (demi_contacts_settle(w) != DEM_OK) return -1;
-    was_calling = demi_calls(w, __func__, 0);
+    if (demi_contacts_settle(w, call) != DEM_OK) return -1;
+    was_calling = demi_calls(w, call, 0);
     stride = (size_t)w->near.stride;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -32239,6 +32288,10 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     demi_called(w, was_calling);
     if (changed) demi_scene_changed(w);
     return n;
+}
+DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
+    return demi_null(w, __func__, fn ? w : 0, "fn") ? -1
+                                                    : demi_contacts_visit(w, __func__, fn, user);
 }
 /* What dem_bonds_make passes to demi_bond_make: the user's function and its argument, the largest
    gap (m), and the number of pairs so far. */
@@ -35610,7 +35663,8 @@ static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) 
             demi_put(spin + 3*n, demi_at(b->spin + 4*i));
             id[n] = (int32_t)b->slot[i];
             material[n] = b->material[i];
-            for (e = 0; e < 4 && orient; e++) orient[4*n + e] = b->orient[4*i + e];
+            if (orient) demi_quat_put(orient + 4*n, demi_shape_of(w, i) ? p.q
+                                                    : demi_quat_at(b->orient + 4*i));
             if (axes) {
                 axes[3*n] = demi_shape_rows[p.kind].drawn(&p, demi_v(1, 0, 0)).x;
                 axes[3*n + 1] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 1, 0)).y;
@@ -35709,7 +35763,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     int k, n, length;
     memset(&l, 0, sizeof l);
     l.w = world;
-    n = dem_contacts_each(world, demi_line_put, &l);
+    n = demi_contacts_visit(world, __func__, demi_line_put, &l);
     if (n < 0) return DEM_ERROR_ARGUMENT;
     l.count = 0;
     l.stride = demi_memory_told(world);
@@ -35728,7 +35782,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     }
     demi_columns_range(&s, "Lines", "connectivity", 2*(int64_t)n, 0, 1);
     demi_columns_range(&s, "Lines", "offsets", n, 2, 2);
-    if (!s.failed) dem_contacts_each(world, demi_line_put, &l);
+    if (!s.failed) demi_contacts_visit(world, __func__, demi_line_put, &l);
     return demi_vtp(&s, path, 0, n, 0);
 }
 
@@ -36190,11 +36244,11 @@ DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path) {
     demi_out o;
     dem_result result;
     if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_contacts_settle(world);
+    result = demi_contacts_settle(world, __func__);
     if (result == DEM_OK) result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     fputs("a,b,wall,x,y,z,nx,ny,nz,overlap,fx,fy,fz\n", o.file);
-    dem_contacts_each(world, demi_table_contact, &o);
+    demi_contacts_visit(world, __func__, demi_table_contact, &o);
     return demi_out_close(&o);
 }
 DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path) {
@@ -38164,6 +38218,25 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
+/* Writes walls. If z0 and z1 are equal, profiles are extruded over the depth of the discs or the
+   domain, or else over that of the bodies. */
+static dem_result demi_output_walls(dem_world *w, const dem_output_desc *d, const char *path) {
+    dem_real z0 = d->z0, z1 = d->z1;
+    int i;
+    if (!(z0 < z1)) {
+        z0 = w->desc.planar ? -w->desc.thickness/2 : w->desc.domain.lo.z;
+        z1 = w->desc.planar ? w->desc.thickness/2 : w->desc.domain.hi.z;
+    }
+    if (!(z0 < z1)) {
+        z0 = (dem_real)DEMI_FARTHEST;
+        z1 = -z0;
+        for (i = 0; i < w->bodies.count; i++) {
+            z0 = DEMI_MIN(z0, w->bodies.pos[4*i + 2] - w->bodies.pos[4*i + 3]);
+            z1 = DEMI_MAX(z1, w->bodies.pos[4*i + 2] + w->bodies.pos[4*i + 3]);
+        }
+    }
+    return dem_walls_vtp_write(w, path, z0 < z1 ? z0 : 0, z0 < z1 ? z1 : 1);
+}
 /* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the kinds
    that demi_output_write handles itself. */
 static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
@@ -38191,7 +38264,7 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
     sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
     result = d->kind == DEM_OUTPUT_CSV ? demi_output_line(w, o, path)
-        : d->kind == DEM_OUTPUT_WALLS ? dem_walls_vtp_write(w, path, d->z0, d->z1)
+        : d->kind == DEM_OUTPUT_WALLS ? demi_output_walls(w, d, path)
         : d->kind == DEM_OUTPUT_FIELD_CSV ? dem_field_csv_write(w, d->field, path)
         : demi_output_writers[d->kind](w, path);
     demi_free(w, path);

@@ -990,8 +990,9 @@ class Response(enum.IntEnum):
     # Soft contacts: forces grow with the overlap, by the laws above. A time step is a fiftieth of a contact time.
     SPRINGS = 0
     # Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The laws above do not act;
-    # restitution, friction, static friction and, with Gauss-Seidel, rolling friction of the materials do. A time step
-    # is as long as the flow allows, 1e-3 s for grains of some millimetres.
+    # restitution, friction and static friction of the materials do, and cohesion and compliance of pairs. Rolling and
+    # spinning friction need Gauss-Seidel; with another solver a step fails. A time step is as long as the flow
+    # allows, 1e-3 s for grains of some millimetres.
     IMPULSES = 1
 
 
@@ -1661,7 +1662,8 @@ class Body(Id):
         velocity: m/s, along locked axes
         spin: rad/s, about locked axes
         wall: The body also has the velocity and spin of this wall along and about locked axes, as if it were part of
-            it, so any motion of a wall is a path for a body. Null, or a wall that is removed, means none.
+            it, so any motion of a wall is a path for a body. Null means none, and so does a wall that is removed
+            later.
         """
         desc = RailDesc(axes=axes, velocity=velocity, spin=spin, wall=wall)
         self.world._ok(_lib.dem_body_rail_set(self.world._at, self, desc))
@@ -1940,7 +1942,7 @@ def _wrap_dem_law_rate_fn(function, context, struct):
 
 
 LawRateFn = Function(_wrap_dem_law_rate_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real))
-LawRateFn.__doc__ = 'For laws that change user-defined numbers (law_who): bounds the time step. rates[0] receives how fast this contact alone makes a number of body a approach that of its partner, rates[1] the same for body b: 1/s, >= 0, the largest of several numbers. Both are 0 when it is called. A step is stable while dt times the sum over the contacts of a body is below 1. In *c only overlap, range, normal, r_eff, m_eff, dt, user, material_a, material_b, wall and `who` (without point and rates) are set; velocities and coefficients are 0.'
+LawRateFn.__doc__ = 'For laws that change user-defined numbers (law_who): bounds the time step. rates[0] receives how fast this contact alone makes a number of body a approach that of its partner, rates[1] the same for body b: 1/s, >= 0, the largest of several numbers. Both are 0 when it is called. A step is stable while dt times the sum over the contacts of a body is below 1. In *c only overlap, range, normal, r_eff, m_eff, dt, user, material_a, material_b, wall and `who` (without point and rates; its radii are those of bounding spheres, of a wall 0) are set; velocities and coefficients are 0.'
 
 
 @_struct
@@ -2005,7 +2007,7 @@ GrowthFn.__doc__ = 'Returns the rate of the radius of a body, m/s (desc.growth):
 
 
 ForceFn = Function(None, ctypes.c_void_p)
-ForceFn.__doc__ = 'A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m) and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of the coming step. It is called once per body and step, from several threads.'
+ForceFn.__doc__ = 'A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m) and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of the coming step. It is called once per body and step, and again whenever forces are computed without a step (after a change of the scene, by dem_contacts_each, by the report), from several threads.'
 
 
 def _wrap_dem_body_force_fn(function, context, struct):
@@ -2092,7 +2094,9 @@ class WorldDesc(Struct):
         ('force_user', ctypes.c_void_p, 'passed to both'),
         ('integrator', Integrator, ''),
         ('dt', Real, 's, the time step; 0 means chosen from the scene, see dem_step_advice_get'),
-        ('allow_large_dt', ctypes.c_int, '1 allows dt above t_c/20, to show what happens then'),
+        ('allow_large_dt', ctypes.c_int,
+         '1 allows dt above the stable limit, to show what happens then. It switches off all checks of the '
+         'step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either.'),
         ('impact_speed', Real,
          'm/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness from '
          "Young's modulus depend on it. 0 means the largest speed expected from grains, walls and height of "
@@ -2170,9 +2174,9 @@ class Pair(Struct):
     __slots__ = ()
     c_name = 'dem_pair'
     rows = [
-        ('young_eff', Real, 'Pa, E*'),
+        ('young_eff', Real, "Pa, E*, > 0; where a material's young may be 0, it may, too"),
         ('shear_eff', Real, 'Pa, G*'),
-        ('restitution', Real, '> 0 and <= 1: e'),
+        ('restitution', Real, '> 0 and <= 1: e; may be 0 with impulses'),
         ('friction', Real, 'sliding friction mu, >= 0'),
         ('friction_static', Real,
          'mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both materials'
@@ -2214,7 +2218,8 @@ class Coefficients(Struct):
         ('kt', Real, ""),
         ('ct', Real, ""),
         ('kun', Real, 'N/m, hysteretic law; otherwise 0'),
-        ('damping_ratio', Real, 'beta = -ln e / sqrt(pi^2 + ln^2 e)'),
+        ('damping_ratio', Real,
+         'beta = -ln e / sqrt(pi^2 + ln^2 e); larger with DEM_TENSION_COMPENSATED; 0 with impulses'),
         ('contact_time', Real, 's, at the impact speed; hysteretic law: [ALK07] eq 2.45'),
         ('kad', Real, 'kad'),
     ]
@@ -2300,7 +2305,8 @@ class Bodies(Struct):
         ('materials', View(ctypes.c_int32, 'count', const=True), 'count: ids of dem_material'),
         ('orientations', View(Real, 'count', 4, const=True),
          'count x 4: w, x, y, z, from principal axes to the world; null if none is followed'),
-        ('shapes', View(ctypes.c_int32, 'count', const=True), 'count: ids of dem_shape, 0: sphere; null if all are'),
+        ('shapes', View(ctypes.c_int32, 'count', const=True),
+         'count: ids of dem_shape, 0: sphere; null if orientations is'),
         ('real_count', ctypes.c_int, 'numbers per body (desc.body_reals)'),
         ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; null if there are none'),
         ('rates', View(Real, 'count', 'real_count', const=True),
@@ -2378,14 +2384,14 @@ class ShapeInfo(Struct):
     c_name = 'dem_shape_info'
     rows = [
         ('spheres', ctypes.c_int, 'of a cluster; otherwise 0'),
-        ('corners', ctypes.c_int, 'of a polyhedron; otherwise 0'),
+        ('corners', ctypes.c_int, 'of a polyhedron, or the prism of a polygon; otherwise 0'),
         ('faces', ctypes.c_int, ""),
         ('volume', Real, 'm3'),
         ('centre', Vec3, 'm, centre of mass in the frame in which the shape was given'),
         ('frame', Quat, 'rotates the principal axes into that frame'),
         ('inertia', Vec3, 'm5, principal moments of inertia per density'),
         ('semi_axes', Vec3, 'm, of the ellipsoid with the same moments'),
-        ('radius', Real, 'm, of the smallest sphere about the centre that contains it'),
+        ('radius', Real, 'm, of the smallest sphere about the centre that contains it (a polygon: its prism)'),
         ('pieces', ctypes.c_int, 'of a union; otherwise 0'),
     ]
 
@@ -2459,7 +2465,7 @@ def _wrap_dem_motion_fn(function, context, struct):
 
 
 MotionFn = Function(_wrap_dem_motion_fn, None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)
-MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step (for its end and its middle; with impulses also for the end of the next step), from one thread. dem_world_check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
+MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step, for its end and its middle (with impulses for its end, and for the middle and the end of the next step), from one thread. dem_world_check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
 
 
 @_struct
@@ -2574,7 +2580,9 @@ class WallLoads(Struct):
         ('force', Vec3, 'N, of the last step'),
         ('torque', Vec3, 'N m, of the last step'),
         ('torque_axial', Real, 'N m, component along the axis of its motion'),
-        ('power', Real, 'W, from the wall to the grains: -(force . v + torque . w)'),
+        ('power', Real,
+         'W, from the wall to the grains: -(force . v + torque . w), and the power of friction on a surface '
+         'that moves in itself (dem_wall_surface_velocity_set)'),
         ('contacts', ctypes.c_int, 'present number'),
         ('touched', ctypes.c_int, '1 if a grain has touched the wall since it was added'),
         ('impulse', ctypes.c_double*3, 'All that follow except `rate` are sums since dem_wall_loads_reset.'),
@@ -2662,7 +2670,8 @@ class RailDesc(Struct):
         ('spin', Vec3, 'rad/s, about locked axes'),
         ('wall', Wall,
          'The body also has the velocity and spin of this wall along and about locked axes, as if it were part'
-         ' of it, so any motion of a wall is a path for a body. Null, or a wall that is removed, means none.'),
+         ' of it, so any motion of a wall is a path for a body. Null means none, and so does a wall that is '
+         'removed later.'),
     ]
 
 
@@ -2955,8 +2964,9 @@ class Ledger(Struct):
         ('rotational', ctypes.c_double, ""),
         ('elastic', ctypes.c_double, ""),
         ('gravity', ctypes.c_double,
-         'supplied: work of gravity; of moving walls and motors; of force fields; of a cell that deforms; '
-         'kinetic energy of inserted bodies'),
+         'supplied: work of gravity; of moving walls, belts, motors and rails; of force fields; of a cell that'
+         ' deforms; kinetic energy of inserted bodies, and its changes by dem_body_set and other calls that '
+         'set velocities, fix bodies or change masses'),
         ('walls', ctypes.c_double, ""),
         ('force', ctypes.c_double, ""),
         ('cell', ctypes.c_double, ""),
@@ -3287,7 +3297,9 @@ class FieldDesc(Struct):
     __slots__ = ()
     c_name = 'dem_field_desc'
     rows = [
-        ('box', Box, 'm, required: what the cells divide'),
+        ('box', Box,
+         'm, required: what the cells divide. In planar worlds cells are desc.thickness deep, whatever the '
+         'extent of the box along z, which must contain 0.'),
         ('cells', ctypes.c_int*3, 'required, >= 1: along each axis, at most 2^28 in all'),
         ('start', ctypes.c_double, 's, window of time; end 0 means no end'),
         ('end', ctypes.c_double, ""),
@@ -3362,7 +3374,7 @@ class FieldCell(Struct):
 @_struct
 class BodyMeans(Struct):
     """Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The field chooses
-    grains by material and radius only.
+    grains by material, radius and group.
     """
     __slots__ = ()
     c_name = 'dem_body_means'
@@ -3621,7 +3633,10 @@ class OutputDesc(Struct):
         ('user', ctypes.c_void_p, 'passed to `values` and `function`; or null'),
         ('mixing', MixingDesc, 'CSV: see above'),
         ('field', Field, 'FIELD_CSV: required'),
-        ('z0', Real, 'm, WALLS: profiles are extruded between them'),
+        ('z0', Real,
+         'm, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with '
+         'dem_output_every_add: over desc.thickness (planar), over desc.domain along z if it has an extent, or'
+         ' else from the lowest to the highest body'),
         ('z1', Real, ""),
         ('outlet', Outlet,
          'CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as '
@@ -3761,7 +3776,7 @@ def _wrap_dem_contact_fn(function, context, struct):
 
 
 ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ctypes.POINTER(Real), ctypes.c_void_p)
-ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0 to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the next step on.'
+ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 11); vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
 structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Group, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, Selection, BodiesMeans, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, RailDesc, RailState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, CellDesc, CellState, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Event, EventsDesc, Impacts, Wear, Servo, Stress, FieldDesc, FieldData, FieldCell, BodyMeans, MixingDesc, Mixing, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
@@ -3824,7 +3839,8 @@ class World(WorldBase):
         body_force: force and torque on a body; null means none
         force_user: passed to both
         dt: s, the time step; 0 means chosen from the scene, see dem_step_advice_get
-        allow_large_dt: 1 allows dt above t_c/20, to show what happens then
+        allow_large_dt: 1 allows dt above the stable limit, to show what happens then. It switches off all checks of
+            the step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either.
         impact_speed: m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness from
             Young's modulus depend on it. 0 means the largest speed expected from grains, walls and height of fall for
             the time step, and 1 m/s for the stiffness.
@@ -3876,7 +3892,10 @@ class World(WorldBase):
 
     @property
     def desc(self):
-        """Returns the desc in force: zeros are replaced by the values that were chosen."""
+        """Returns the desc as given, with the present gravity, domain and dt, the search and integrator in use, and
+        thickness and threads where they were 0. skin is the present one: 0 before the first list, and where desc.skin
+        is below 0. Other zeros stay 0, such as laws, sweeps and tolerance.
+        """
         found = _lib.dem_world_desc_get(self._at)
         self._ok(0)
         return self._with(found)
@@ -3920,9 +3939,9 @@ class World(WorldBase):
         """Replaces the contact properties of two materials, in both orders. Start from dem_pair_get.
 
         Fields that are not given stay as they are.
-        young_eff: Pa, E*
+        young_eff: Pa, E*, > 0; where a material's young may be 0, it may, too
         shear_eff: Pa, G*
-        restitution: > 0 and <= 1: e
+        restitution: > 0 and <= 1: e; may be 0 with impulses
         friction: sliding friction mu, >= 0
         friction_static: mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
             materials leave it 0.
@@ -3962,7 +3981,9 @@ class World(WorldBase):
         return out
 
     def pairs_print(self, out=None):
-        """Prints the contact properties of all pairs of materials, one line per pair."""
+        """Prints contact properties of all pairs of materials, one line per pair: moduli, restitution, friction and
+        stiffness; with impulses also spinning friction, cohesion and compliance.
+        """
         return self._print(_lib.dem_pairs_print, out, self._at)
 
     def sphere(self, material, radius, position):
@@ -4225,7 +4246,8 @@ class World(WorldBase):
     def body(self, material, shape, position, orientation=(1, 0, 0, 0)):
         """Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by orientation (any length
         but 0) from the frame in which the shape was given. It is an error if a wall has no contact with this shape:
-        DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind) have none with ellipsoids and polyhedra.
+        DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind) have none with ellipsoids and polyhedra; sieves,
+        cones and other surfaces of revolution have none with polygons.
         """
         return self._id(_lib.dem_body_add(self._at, material, shape, position, orientation))
 
@@ -4274,7 +4296,7 @@ class World(WorldBase):
         cone, a disc with a hole, a tube with a funnel or a drum with its ends. Both sides repel. In an inner corner a
         grain touches both pieces; at an outer corner and at a rim it touches the ring. A grain too wide for a narrow
         part touches one side of it only. Ellipsoids and, with springs, polyhedra touch facets in its place
-        (>>tessellate).
+        (>>tessellate). Polygons have no contact with it; use a profile.
         """
         radii = _array(radii, Real)
         count = _count(radii, 1, 'radii')
@@ -4451,13 +4473,18 @@ class World(WorldBase):
     def step(self, steps):
         """Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error message names that
         step; the steps before it are kept. The first step is not taken while the error message of a call that builds
-        the scene is unread (dem_world_error_get). Errors: DEM_ERROR_TIME_STEP the step is too large for the contacts,
-        or a body or wall would move by more than the smallest radius (a body under impulses: by more than this and
-        more than half the range below which contacts are solved) DEM_ERROR_UNSTABLE a position, velocity or force is
-        not finite, or two bodies overlap by the smaller radius DEM_ERROR_STOPPED an output stopped the run; or
-        desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance DEM_ERROR_MEMORY The bodies may
-        have moved already; the step then counts as taken. The next call completes it first, here or in a world that
-        has read a checkpoint written meanwhile. The bits are those of a run without the interruption.
+        the scene is unread (dem_world_error_get). Errors: DEM_ERROR_ARGUMENT an unread message (above), or a scene
+        that cannot run, such as a period that is too short, or rolling friction with a solver that ignores it
+        DEM_ERROR_TIME_STEP the step is too large for the contacts, or a body or wall would move by more than the
+        smallest radius (a body under impulses: by more than this and more than half the range below which contacts
+        are solved), a body that is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01
+        DEM_ERROR_UNSTABLE a position, velocity, force or number of a body is not finite, two bodies overlap by the
+        smaller radius, a body and a wall by that of the body, or a motion or desc.growth returns impossible values
+        DEM_ERROR_FILE, DEM_ERROR_FORMAT an output cannot be written; its CSV has other columns DEM_ERROR_STOPPED an
+        output stopped the run; or desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance
+        DEM_ERROR_MEMORY The bodies may have moved already; the step then counts as taken. The next call completes it
+        first, here or in a world that has read a checkpoint written meanwhile. The bits are those of a run without
+        the interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._at, steps) if self._context.kept else
             _lib.dem_world_step(self._at, steps))
@@ -4507,7 +4534,8 @@ class World(WorldBase):
         follows from the contacts (>>stress). Further calls may change everything at any time; contact histories stay.
         Axes that move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
         Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with walls, joints,
-        rails, feeds and outlets. Fields and fills are an error while a cell is sheared.
+        rails, feeds and outlets. Fields, fills and selections by region are an error while a cell is sheared. A step
+        that would strain the cell by more than 0.01 fails with DEM_ERROR_TIME_STEP.
 
         rate: 1/s, strain rate of each axis; positive: the cell becomes longer
         shear: 1/s, shear rate: change of the velocity along x with y
@@ -4642,10 +4670,12 @@ class World(WorldBase):
 
     @property
     def contacts(self):
-        """Writes the contacts of the present state, those with walls included, at most `capacity` of them, and returns
-        their number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one with a
-        wall, is written as up to four (dem_shape_polyhedron_add). Returns -1 if bodies or walls have changed since
-        the last step; then call dem_candidates_rebuild first.
+        """Writes the contacts, those with walls included, at most `capacity` of them, and returns their number. `out` or
+        null. The contact history does not change. A contact of two polyhedra, or of one with a wall, is written as up
+        to four (dem_shape_polyhedron_add). Contacts of two spheres are those of the present state; all others, and
+        with impulses all, are as the last computation of forces has left them. After bodies, walls or materials have
+        changed, call dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the list. Returns
+        -1 if there is no list: before the first step, and after bodies or walls have changed.
         """
         capacity = self._number(_lib.dem_contacts_get(self._at, None, 0))
         out = (ContactInfo*max(capacity, 1))()
@@ -4733,7 +4763,7 @@ class World(WorldBase):
     def stress(self):
         """Computes stress and fabric of the present state in one pass over bodies and contacts. The domain must have an
         extent along all axes (planar: along x and y; its depth is desc.thickness). An error if bodies or walls have
-        changed since the last step; then call dem_candidates_rebuild first.
+        changed since the last step; then call dem_contacts_each first (see dem_contacts_get).
         """
         stress = Stress()
         self._ok(_lib.dem_stress_get(self._at, stress))
@@ -4744,7 +4774,8 @@ class World(WorldBase):
             radius_max=0, stress=0, width=0, group=None, variance=0, bodies=0):
         """Adds a field, and returns its id. Steps sample it from then on.
 
-        box: m, required: what the cells divide
+        box: m, required: what the cells divide. In planar worlds cells are desc.thickness deep, whatever the extent
+            of the box along z, which must contain 0.
         cells: required, >= 1: along each axis, at most 2^28 in all
         start: s, window of time; end 0 means no end
         interval: s, between samples; 0 means every 100 steps
@@ -4932,10 +4963,11 @@ class World(WorldBase):
         self._ok(_lib.dem_grains_add(self._at, material, grains))
 
     def vtp_write(self, path):
-        """Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and body_reals. If
-        bodies have orientations, also the orientation (quaternion w x y z) and semi_axes (m); a cluster is then one
-        point per sphere, all with its id. To draw them in ParaView: Glyph, a sphere of radius 1, scaled by semi_axes,
-        rotated by orientation (quaternion).
+        """Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and body_reals, with
+        desc.groups also groups (bit id - 1: in that group). A cluster or union is one point per sphere or piece, all
+        with its id. If bodies have orientations, also the orientation of the piece (quaternion w x y z) and its
+        semi_axes (m). To draw them in ParaView: Glyph, a sphere of radius 1, scaled by semi_axes, rotated by
+        orientation (quaternion).
         """
         self._ok(_lib.dem_vtp_write(self._at, os.fsencode(path)))
 
@@ -5017,9 +5049,10 @@ class World(WorldBase):
 
     def checkpoint_read(self, path):
         """Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The world must have
-        been built like the one that wrote it, with the same desc, materials and walls. Functions and user pointers
-        are not stored. Number of threads, allocator, allow_large_dt and user pointers may differ. Errors: a file that
-        is cut short, damaged, or of another version or precision; a file of another scene, for which the message
+        been built like the one that wrote it, with the same desc, materials, pairs, shapes, walls, fields, feeds and
+        outlets. Functions and user pointers are not stored. Number of threads, allocator, allow_large_dt,
+        unsolved_stops, law_rows and user pointers may differ. Errors: a file that is cut short, damaged, or of
+        another version, precision, DEM_DOMAIN_BODIES or memory layout; a file of another scene, for which the message
         names the first field that differs, with both values.
         """
         self._ok(_lib.dem_checkpoint_read(self._at, os.fsencode(path)))
@@ -5069,7 +5102,9 @@ class World(WorldBase):
         user: passed to `values` and `function`; or null
         mixing: CSV: see above
         field: FIELD_CSV: required
-        z0: m, WALLS: profiles are extruded between them
+        z0: m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with dem_output_every_add:
+            over desc.thickness (planar), over desc.domain along z if it has an extent, or else from the lowest to the
+            highest body
         outlet: CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as in
             dem_outlet_state
         """

@@ -259,8 +259,9 @@ typedef enum dem_response {
        a contact time. */
     DEM_RESPONSE_SPRINGS = 0,
     /* Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The
-       laws above do not act; restitution, friction, static friction and, with Gauss-Seidel, rolling
-       friction of the materials do. A time step is as long as the flow allows, 1e-3 s for grains of
+       laws above do not act; restitution, friction and static friction of the materials do, and
+       cohesion and compliance of pairs. Rolling and spinning friction need Gauss-Seidel; with
+       another solver a step fails. A time step is as long as the flow allows, 1e-3 s for grains of
        some millimetres. */
     DEM_RESPONSE_IMPULSES
 } dem_response;
@@ -475,7 +476,8 @@ typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_f
    for body b: 1/s, >= 0, the largest of several numbers. Both are 0 when it is called. A step is
    stable while dt times the sum over the contacts of a body is below 1.
    In *c only overlap, range, normal, r_eff, m_eff, dt, user, material_a, material_b, wall and `who`
-   (without point and rates) are set; velocities and coefficients are 0. */
+   (without point and rates; its radii are those of bounding spheres, of a wall 0) are set;
+   velocities and coefficients are 0. */
 typedef void (*dem_law_rate_fn)(const dem_contact *c, dem_real *rates);
 
 /* Rotates a tangent vector of the contact history with the contact plane over the last step: with
@@ -794,7 +796,9 @@ DEM_INLINE void dem_law_twist(const dem_contact *c, dem_real *memory, dem_contac
 
 /* A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m)
    and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of
-   the coming step. It is called once per body and step, from several threads. */
+   the coming step. It is called once per body and step, and again whenever forces are computed
+   without a step (after a change of the scene, by dem_contacts_each, by the report), from several
+   threads. */
 typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass,
                                  double time, void *user);
@@ -821,11 +825,11 @@ typedef dem_real (*dem_growth_fn)(const dem_body_state *body, dem_body id, doubl
 
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
-   derivatives of position and rotation. It is called twice per step (for its end and its middle;
-   with impulses also for the end of the next step), from one thread. dem_world_check calls it too,
-   also for later times, and reports a velocity or spin that is not the derivative. A pose that is
-   not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with
-   DEM_ERROR_UNSTABLE. */
+   derivatives of position and rotation. It is called twice per step, for its end and its middle
+   (with impulses for its end, and for the middle and the end of the next step), from one thread.
+   dem_world_check calls it too, also for later times, and reports a velocity or spin that is not
+   the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s,
+   rad/s) stops the run with DEM_ERROR_UNSTABLE. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
 /* Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if

@@ -6,7 +6,9 @@
 
 /* ---- walls ---- */
 /* Walls repel grains and move as prescribed; grains do not move them. Functions that add a wall
-   copy their data. */
+   copy their data. In a periodic world a finite wall that is not longer than the period repeats
+   along that axis. A longer one does not: it must extend beyond both faces by the largest radius
+   and the range of the law, or the next step fails. */
 
 /* The kind of a wall's motion. */
 typedef enum dem_motion_kind {
@@ -94,7 +96,8 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, 
    be a finite cylinder, a cone, a disc with a hole, a tube with a funnel or a drum with its ends.
    Both sides repel. In an inner corner a grain touches both pieces; at an outer corner and at a rim
    it touches the ring. A grain too wide for a narrow part touches one side of it only. Ellipsoids
-   and, with springs, polyhedra touch facets in its place (>>tessellate). */
+   and, with springs, polyhedra touch facets in its place (>>tessellate). Polygons have no contact
+   with it; use a profile. */
 enum { DEM_RINGS = 12 };
 DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
@@ -190,7 +193,9 @@ typedef struct dem_wall_loads {
     dem_vec3 force;                /* N, of the last step */
     dem_vec3 torque;               /* N m, of the last step */
     dem_real torque_axial;         /* N m, component along the axis of its motion */
-    dem_real power;                /* W, from the wall to the grains: -(force . v + torque . w) */
+    /* W, from the wall to the grains: -(force . v + torque . w), and the power of friction on a
+       surface that moves in itself (dem_wall_surface_velocity_set) */
+    dem_real power;
     int contacts;                  /* present number */
     int touched;                   /* 1 if a grain has touched the wall since it was added */
     /* All that follow except `rate` are sums since dem_wall_loads_reset. */
@@ -272,7 +277,8 @@ DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
 /* ---- rails ---- */
 /* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
-   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs and periodic cells that deform refuse rails. */
+   prescribed. It needs DEM_RESPONSE_SPRINGS. Slabs and periodic cells that deform refuse rails. It
+   is an error if the body is fixed, and in planar worlds to lock Z, SPIN_X or SPIN_Y. */
 
 /* The axes of the world that a rail locks, as a sum: of translation, then of rotation. */
 enum { DEM_RAIL_X = 1, DEM_RAIL_Y = 2, DEM_RAIL_Z = 4, DEM_RAIL_SPIN_X = 8, DEM_RAIL_SPIN_Y = 16,
@@ -283,8 +289,8 @@ typedef struct dem_rail_desc {
     dem_vec3 velocity;             /* m/s, along locked axes */
     dem_vec3 spin;                 /* rad/s, about locked axes */
     /* The body also has the velocity and spin of this wall along and about locked axes, as if it
-       were part of it, so any motion of a wall is a path for a body. Null, or a wall that is
-       removed, means none. */
+       were part of it, so any motion of a wall is a path for a body. Null means none, and so does
+       a wall that is removed later. */
     dem_wall wall;
 } dem_rail_desc;
 static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;

@@ -74,8 +74,9 @@
    --- 3. The world and its options ---
 
    A world is created from a dem_world_desc. Start from DEM_WORLD_DESC, which is all zero, and set
-   only the fields you need. Zero means "absent" or "default". dem_world_desc_get returns the values
-   in force, and dem_world_report prints most of them. An effect that is absent costs nothing.
+   only the fields you need. Zero means "absent" or "default". dem_world_desc_get returns the
+   present time step and other choices of dem.h, and dem_world_report prints most of them. An effect
+   that is absent costs nothing.
 
        dem_world_desc desc = DEM_WORLD_DESC;
        desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
@@ -346,23 +347,25 @@
    only where you call a function that prints.
 
    Laws, force fields, motions, regions, progress functions and observers may call every function
-   that takes the world as const. Calls that change the world fail there and leave it as it is; make
-   them between runs. Progress functions, functions given to dem_contacts_each or dem_events_record
-   and functions that compute a value of a CSV output may also write files and replay frames. The
+   that takes the world as const; within a step dem_bodies_select and dem_bodies_means_get fail.
+   Calls that change the world fail there and leave it as it is; make
+   them between runs. Progress functions (except that of dem_trials_run), functions given to
+   dem_contacts_each or dem_events_record and functions that compute a value of a CSV output may
+   also write files and replay frames. The
    function of an output of kind DEM_OUTPUT_CALL may change the world, but not step or destroy it.
    Laws, force fields and body_reals_fn are called from several threads.
 
    The same program and input give the same bits for any number of threads: how many work groups
    there are depends only on the numbers of spheres and of other bodies, and every sum has a fixed
-   order. Compile with
-   -ffp-contract=off to get the same bits from other compilers, systems and processors. Slabs
-   (dem_slabs_create) distribute a scene to threads, or to processes over MPI or any other
-   transport: docs/parallel.md.
+   order. Compile with -ffp-contract=off to get the same bits from other compilers, systems and
+   processors. Slabs (dem_slabs_create) distribute a scene to threads, or to processes over MPI or
+   any other transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
    read one world by functions that take it as const, while none changes it. Exceptions, which write
-   to the world, are calls that fail, dem_world_error_get, dem_progress_print, dem_world_report,
-   dem_contacts_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
+   to the world or allocate, are calls that fail, dem_world_error_get, dem_progress_print,
+   dem_world_report, dem_contacts_get, dem_stress_get, dem_mixing_get, dem_bodies_select,
+   dem_bodies_means_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
    dem_bodies_get, which wraps positions into the box.
 
    --- 14. Compile-time options, extensions ---

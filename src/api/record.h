@@ -132,13 +132,14 @@ DEM_API void dem_grains_free(dem_world *world, dem_grains *grains);
 DEM_API dem_result dem_grains_add(dem_world *world, dem_material material,
                                   const dem_grains *grains);
 
-/* The functions below, except the one for CSV, write to a temporary name and then rename the file,
-   so that it is complete or absent. Links are followed; a pipe or a terminal is an error. In all
-   files `id` is dem_body.slot less 1. */
+/* The functions below, except dem_wall_loads_csv_write, which appends, write to a temporary name
+   and then rename the file, so that it is complete or absent. Links are followed; a pipe or a
+   terminal is an error. In all files `id` is dem_body.slot less 1. */
 
 /* Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and
-   body_reals. If bodies have orientations, also the orientation (quaternion w x y z) and semi_axes
-   (m); a cluster is then one point per sphere, all with its id. To draw them in ParaView: Glyph, a
+   body_reals, with desc.groups also groups (bit id - 1: in that group). A cluster or union is one
+   point per sphere or piece, all with its id. If bodies have orientations, also the orientation of
+   the piece (quaternion w x y z) and its semi_axes (m). To draw them in ParaView: Glyph, a
    sphere of radius 1, scaled by semi_axes, rotated by orientation (quaternion). */
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 /* Writes the same as a legacy VTK file, binary. */
@@ -247,10 +248,11 @@ DEM_API dem_result dem_replay_close(dem_replay *replay);
    at a finite position and velocity; then an existing file stays. */
 DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 /* Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The
-   world must have been built like the one that wrote it, with the same desc, materials and walls.
-   Functions and user pointers are not stored. Number of threads, allocator, allow_large_dt
-   and user pointers may differ. Errors: a file that is cut short, damaged, or of another version or
-   precision; a file of another scene, for which the message names the first field that differs,
+   world must have been built like the one that wrote it, with the same desc, materials, pairs,
+   shapes, walls, fields, feeds and outlets. Functions and user pointers are not stored. Number of
+   threads, allocator, allow_large_dt, unsolved_stops, law_rows and user pointers may differ.
+   Errors: a file that is cut short, damaged, or of another version, precision, DEM_DOMAIN_BODIES or
+   memory layout; a file of another scene, for which the message names the first field that differs,
    with both values. */
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 /* The same for a world that differs from the one that wrote the file. allowed: words, each the name
@@ -311,7 +313,10 @@ typedef struct dem_output_desc {
     void *user;              /* passed to `values` and `function`; or null */
     dem_mixing_desc mixing;  /* CSV: see above */
     dem_field field;         /* FIELD_CSV: required */
-    dem_real z0, z1;         /* m, WALLS: profiles are extruded between them */
+    /* m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with
+       dem_output_every_add: over desc.thickness (planar), over desc.domain along z if it has an
+       extent, or else from the lowest to the highest body */
+    dem_real z0, z1;
     /* CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass,
        kg, as in dem_outlet_state */
     dem_outlet outlet;

@@ -69,11 +69,17 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
 /* Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error
    message names that step; the steps before it are kept. The first step is not taken while the
    error message of a call that builds the scene is unread (dem_world_error_get). Errors:
+       DEM_ERROR_ARGUMENT   an unread message (above), or a scene that cannot run, such as a period
+                            that is too short, or rolling friction with a solver that ignores it
        DEM_ERROR_TIME_STEP  the step is too large for the contacts, or a body or wall would move by
                             more than the smallest radius (a body under impulses: by more than this
-                            and more than half the range below which contacts are solved)
-       DEM_ERROR_UNSTABLE   a position, velocity or force is not finite, or two bodies overlap by
-                            the smaller radius
+                            and more than half the range below which contacts are solved), a body
+                            that is not a sphere rotate by more than 1 rad, a cell strain by more
+                            than 0.01
+       DEM_ERROR_UNSTABLE   a position, velocity, force or number of a body is not finite, two
+                            bodies overlap by the smaller radius, a body and a wall by that of the
+                            body, or a motion or desc.growth returns impossible values
+       DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns
        DEM_ERROR_STOPPED    an output stopped the run; or desc.unsolved_stops is 1 and the sweeps of
                             a step did not reach the tolerance
        DEM_ERROR_MEMORY     The bodies may have moved already; the step then counts as taken. The
@@ -141,8 +147,9 @@ static const dem_cell_desc DEM_CELL_DESC_ZERO = DEM_ZERO;
    (>>stress). Further calls may change everything at any time; contact histories stay. Axes that
    move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
    Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with
-   walls, joints, rails, feeds and outlets. Fields and fills are an error while a cell is sheared.
-   */
+   walls, joints, rails, feeds and outlets. Fields, fills and selections by region are an error
+   while a cell is sheared. A step that would strain the cell by more than 0.01 fails with
+   DEM_ERROR_TIME_STEP. */
 DEM_API dem_result dem_cell_set(dem_world *world, const dem_cell_desc *desc);
 /* What the cell does. */
 typedef struct dem_cell_state {
@@ -206,8 +213,9 @@ DEM_API void dem_overlap_max_reset(dem_world *world);
    then holds the residual, and `residual` is 0. */
 typedef struct dem_ledger {
     double kinetic, rotational, elastic;    /* stored now */
-    /* supplied: work of gravity; of moving walls and motors; of force fields; of a cell that
-       deforms; kinetic energy of inserted bodies */
+    /* supplied: work of gravity; of moving walls, belts, motors and rails; of force fields; of a
+       cell that deforms; kinetic energy of inserted bodies, and its changes by dem_body_set and
+       other calls that set velocities, fix bodies or change masses */
     double gravity, walls, force, cell, inserted;
     /* dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential
        dashpots; by rolling resistance */
@@ -331,13 +339,17 @@ typedef struct dem_contact_info {
     dem_real overlap;                    /* m; < 0: a gap within the range of the law */
     dem_vec3 force;                      /* N, on a */
 } dem_contact_info;
-/* Writes the contacts of the present state, those with walls included, at most `capacity` of them,
-   and returns their number. `out` or null. The contact history does not change. A contact of two
-   polyhedra, or of one with a wall, is written as up to four (dem_shape_polyhedron_add). Returns -1
-   if bodies or walls have changed since the last step; then call dem_candidates_rebuild first. */
+/* Writes the contacts, those with walls included, at most `capacity` of them, and returns their
+   number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one
+   with a wall, is written as up to four (dem_shape_polyhedron_add). Contacts of two spheres are
+   those of the present state; all others, and with impulses all, are as the last computation of
+   forces has left them. After bodies, walls or materials have changed, call dem_contacts_each
+   first: it computes them. dem_candidates_rebuild makes only the list. Returns -1 if there is no
+   list: before the first step, and after bodies or walls have changed. */
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
-/* Receives one contact and its history. memory: as many reals as desc.law_memory (built-in laws: 0
-   to 9; impulses: 11), vectors as seen from a. Values that the function writes there count from the
+/* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
+   pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
+   impulses: 11); vectors as seen from a. Values that the function writes there count from the
    next step on. */
 typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
 /* Calls `fn` for every contact, those with walls included, and returns their number. With a law
@@ -490,7 +502,8 @@ typedef struct dem_stress {
 } dem_stress;
 /* Computes stress and fabric of the present state in one pass over bodies and contacts. The domain
    must have an extent along all axes (planar: along x and y; its depth is desc.thickness). An error
-   if bodies or walls have changed since the last step; then call dem_candidates_rebuild first. */
+   if bodies or walls have changed since the last step; then call dem_contacts_each first (see
+   dem_contacts_get). */
 DEM_API dem_result dem_stress_get(const dem_world *world, dem_stress *stress);
 
 /* A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress
@@ -498,7 +511,9 @@ DEM_API dem_result dem_stress_get(const dem_world *world, dem_stress *stress);
    than grains need a long window; or it is spread about its centre by coarse graining (width).
    Begin with DEM_FIELD_DESC. */
 typedef struct dem_field_desc {
-    dem_box box;              /* m, required: what the cells divide */
+    /* m, required: what the cells divide. In planar worlds cells are desc.thickness deep, whatever
+       the extent of the box along z, which must contain 0. */
+    dem_box box;
     int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
     double start, end;        /* s, window of time; end 0 means no end */
     double interval;          /* s, between samples; 0 means every 100 steps */
@@ -551,7 +566,7 @@ typedef struct dem_field_cell {
     double grains_variance, solid_variance, density_variance, velocity_variance[3];
 } dem_field_cell;
 /* Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The
-   field chooses grains by material and radius only. */
+   field chooses grains by material, radius and group. */
 typedef struct dem_body_means {
     uint64_t samples;         /* number of samples; 0: all others are 0 */
     double velocity[3], velocity_variance[3];   /* m/s; m2/s2 */

@@ -97,7 +97,9 @@ typedef struct dem_world_desc {
     dem_integrator integrator;
     /* s, the time step; 0 means chosen from the scene, see dem_step_advice_get */
     dem_real dt;
-    int allow_large_dt;            /* 1 allows dt above t_c/20, to show what happens then */
+    /* 1 allows dt above the stable limit, to show what happens then. It switches off all checks of
+       the step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either. */
+    int allow_large_dt;
     /* m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness
        from Young's modulus depend on it. 0 means the largest speed expected from grains, walls and
        height of fall for the time step, and 1 m/s for the stiffness. */
@@ -146,8 +148,9 @@ typedef struct dem_world_desc {
 static const dem_world_desc DEM_WORLD_DESC_ZERO = DEM_ZERO;
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
-/* Creates an empty world. Returns null if a value of desc is out of range or memory runs out;
-   dem_world_create_error_get(desc) says why. */
+/* Creates an empty world. Returns null if a value of desc is out of range
+   (dem_world_create_error_get(desc) says why), if memory runs out, or if version or DEM_REAL differ
+   from those of the implementation; then it returns "". */
 static inline dem_world *dem_world_create(const dem_world_desc *desc);
 /* Returns the reason why dem_world_create refuses desc, or "" if it accepts desc. */
 DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
@@ -163,7 +166,9 @@ DEM_API void dem_world_destroy(dem_world *world);
 DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
-/* Returns the desc in force: zeros are replaced by the values that were chosen. */
+/* Returns the desc as given, with the present gravity, domain and dt, the search and integrator in
+   use, and thickness and threads where they were 0. skin is the present one: 0 before the first
+   list, and where desc.skin is below 0. Other zeros stay 0, such as laws, sweeps and tolerance. */
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
@@ -218,9 +223,9 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
      the given one if E* is unknown because a material has no young;
    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
-    dem_real young_eff;            /* Pa, E* */
+    dem_real young_eff;            /* Pa, E*, > 0; where a material's young may be 0, it may, too */
     dem_real shear_eff;            /* Pa, G* */
-    dem_real restitution;          /* > 0 and <= 1: e */
+    dem_real restitution;          /* > 0 and <= 1: e; may be 0 with impulses */
     dem_real friction;             /* sliding friction mu, >= 0 */
     /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
        materials leave it 0. */
@@ -262,7 +267,8 @@ typedef struct dem_coefficients {
     dem_real r_eff, m_eff;         /* m, kg: effective radius and mass */
     dem_real kn, cn, kt, ct;       /* see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v */
     dem_real kun;                  /* N/m, hysteretic law; otherwise 0 */
-    dem_real damping_ratio;        /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
+    /* beta = -ln e / sqrt(pi^2 + ln^2 e); larger with DEM_TENSION_COMPENSATED; 0 with impulses */
+    dem_real damping_ratio;
     dem_real contact_time;         /* s, at the impact speed; hysteretic law: [ALK07] eq 2.45 */
     DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)                /* kad */
 } dem_coefficients;
@@ -271,7 +277,8 @@ typedef struct dem_coefficients {
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out);
-/* Prints the contact properties of all pairs of materials, one line per pair. */
+/* Prints contact properties of all pairs of materials, one line per pair: moduli, restitution,
+   friction and stiffness; with impulses also spinning friction, cohesion and compliance. */
 DEM_API void dem_pairs_print(const dem_world *world, FILE *out);
 
 /* ---- grains ---- */
@@ -438,7 +445,7 @@ typedef struct dem_bodies {
     const int32_t *materials;      /* count: ids of dem_material */
     /* count x 4: w, x, y, z, from principal axes to the world; null if none is followed */
     const dem_real *orientations;
-    const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if all are */
+    const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if orientations is */
     int real_count;                /* numbers per body (desc.body_reals) */
     const dem_real *reals;         /* count x real_count; null if there are none */
     const dem_real *rates;         /* count x real_count, per s, of the last step; null likewise */
@@ -578,13 +585,14 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_r
 /* Properties of a shape. */
 typedef struct dem_shape_info {
     int spheres;                   /* of a cluster; otherwise 0 */
-    int corners, faces;            /* of a polyhedron; otherwise 0 */
+    int corners, faces;            /* of a polyhedron, or the prism of a polygon; otherwise 0 */
     dem_real volume;               /* m3 */
     dem_vec3 centre;               /* m, centre of mass in the frame in which the shape was given */
     dem_quat frame;                /* rotates the principal axes into that frame */
     dem_vec3 inertia;              /* m5, principal moments of inertia per density */
     dem_vec3 semi_axes;            /* m, of the ellipsoid with the same moments */
-    dem_real radius;               /* m, of the smallest sphere about the centre that contains it */
+    /* m, of the smallest sphere about the centre that contains it (a polygon: its prism) */
+    dem_real radius;
     int pieces;                    /* of a union; otherwise 0 */
 } dem_shape_info;
 /* Writes the properties of a shape to info. */
@@ -593,7 +601,8 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 /* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
    orientation (any length but 0) from the frame in which the shape was given. It is an error if a
    wall has no contact with this shape: DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind)
-   have none with ellipsoids and polyhedra. */
+   have none with ellipsoids and polyhedra; sieves, cones and other surfaces of revolution have none
+   with polygons. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:

@@ -170,6 +170,25 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     demi_csv_line(line, w->clock.time, value, count);
     return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
+/* Writes walls. If z0 and z1 are equal, profiles are extruded over the depth of the discs or the
+   domain, or else over that of the bodies. */
+static dem_result demi_output_walls(dem_world *w, const dem_output_desc *d, const char *path) {
+    dem_real z0 = d->z0, z1 = d->z1;
+    int i;
+    if (!(z0 < z1)) {
+        z0 = w->desc.planar ? -w->desc.thickness/2 : w->desc.domain.lo.z;
+        z1 = w->desc.planar ? w->desc.thickness/2 : w->desc.domain.hi.z;
+    }
+    if (!(z0 < z1)) {
+        z0 = (dem_real)DEMI_FARTHEST;
+        z1 = -z0;
+        for (i = 0; i < w->bodies.count; i++) {
+            z0 = DEMI_MIN(z0, w->bodies.pos[4*i + 2] - w->bodies.pos[4*i + 3]);
+            z1 = DEMI_MAX(z1, w->bodies.pos[4*i + 2] + w->bodies.pos[4*i + 3]);
+        }
+    }
+    return dem_walls_vtp_write(w, path, z0 < z1 ? z0 : 0, z0 < z1 ? z1 : 1);
+}
 /* The function that writes a file of each kind, in the order of dem_output_kind. 0 for the kinds
    that demi_output_write handles itself. */
 static dem_result (*const demi_output_writers[])(dem_world *w, const char *path) = {
@@ -197,7 +216,7 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
     sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
     result = d->kind == DEM_OUTPUT_CSV ? demi_output_line(w, o, path)
-        : d->kind == DEM_OUTPUT_WALLS ? dem_walls_vtp_write(w, path, d->z0, d->z1)
+        : d->kind == DEM_OUTPUT_WALLS ? demi_output_walls(w, d, path)
         : d->kind == DEM_OUTPUT_FIELD_CSV ? dem_field_csv_write(w, d->field, path)
         : demi_output_writers[d->kind](w, path);
     demi_free(w, path);

@@ -77,11 +77,11 @@ DEM_API dem_result dem_contacts_csv_write(dem_world *world, const char *path) {
     demi_out o;
     dem_result result;
     if (demi_null_write(world, __func__, world, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_contacts_settle(world);
+    result = demi_contacts_settle(world, __func__);
     if (result == DEM_OK) result = demi_out_open(&o, world, __func__, path);
     if (result != DEM_OK) return result;
     fputs("a,b,wall,x,y,z,nx,ny,nz,overlap,fx,fy,fz\n", o.file);
-    dem_contacts_each(world, demi_table_contact, &o);
+    demi_contacts_visit(world, __func__, demi_table_contact, &o);
     return demi_out_close(&o);
 }
 DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const char *path) {

@@ -310,7 +310,8 @@ static void demi_grain_columns(demi_columns *s, dem_world *w, const char *call) 
             demi_put(spin + 3*n, demi_at(b->spin + 4*i));
             id[n] = (int32_t)b->slot[i];
             material[n] = b->material[i];
-            for (e = 0; e < 4 && orient; e++) orient[4*n + e] = b->orient[4*i + e];
+            if (orient) demi_quat_put(orient + 4*n, demi_shape_of(w, i) ? p.q
+                                                    : demi_quat_at(b->orient + 4*i));
             if (axes) {
                 axes[3*n] = demi_shape_rows[p.kind].drawn(&p, demi_v(1, 0, 0)).x;
                 axes[3*n + 1] = demi_shape_rows[p.kind].drawn(&p, demi_v(0, 1, 0)).y;
@@ -409,7 +410,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     int k, n, length;
     memset(&l, 0, sizeof l);
     l.w = world;
-    n = dem_contacts_each(world, demi_line_put, &l);
+    n = demi_contacts_visit(world, __func__, demi_line_put, &l);
     if (n < 0) return DEM_ERROR_ARGUMENT;
     l.count = 0;
     l.stride = demi_memory_told(world);
@@ -428,7 +429,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
     }
     demi_columns_range(&s, "Lines", "connectivity", 2*(int64_t)n, 0, 1);
     demi_columns_range(&s, "Lines", "offsets", n, 2, 2);
-    if (!s.failed) dem_contacts_each(world, demi_line_put, &l);
+    if (!s.failed) demi_contacts_visit(world, __func__, demi_line_put, &l);
     return demi_vtp(&s, path, 0, n, 0);
 }
 

@@ -49,6 +49,13 @@ typedef struct demi_grid {
     double volume, reach, norm;
     int axes;                           /* along which it spreads: 3; planar: 2 */
 } demi_grid;
+/* Volume of a cell, m3; in planar worlds cells are as deep as the discs. */
+static double demi_field_volume(const dem_world *w, const dem_box *box, const int cells[3]) {
+    const double x = (double)(box->hi.x - box->lo.x)/cells[0];
+    const double y = (double)(box->hi.y - box->lo.y)/cells[1];
+    return x*y*(w->desc.planar ? (double)w->desc.thickness
+                               : (double)(box->hi.z - box->lo.z)/cells[2]);
+}
 /* Computes the grid of field f. */
 static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     const demi_periods p = demi_periods_of(w);
@@ -61,12 +68,13 @@ static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
     g.size[0] = ((double)d->box.hi.x - g.lo[0])/d->cells[0];
     g.size[1] = ((double)d->box.hi.y - g.lo[1])/d->cells[1];
     g.size[2] = ((double)d->box.hi.z - g.lo[2])/d->cells[2];
-    g.volume = g.size[0]*g.size[1]*g.size[2];
+    g.volume = demi_field_volume(w, &d->box, d->cells);
     for (k = 0; k < 3; k++)        /* the world of a slab has no period along a ring of slabs */
         g.period[k] = (double)DEMI_MAX(p.period[k], w->ring_period[k]);
     g.axes = w->desc.planar ? 2 : 3;
     g.reach = c = 2*(double)d->width;
-    g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*g.size[2]) : 105/(16*DEMI_PI*c*c*c);
+    g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*(double)w->desc.thickness)
+                                        : 105/(16*DEMI_PI*c*c*c);
     return g;
 }
 /* Adds n numbers, times weight, to the cell of indices `at` in a block that has n per cell. */
@@ -141,12 +149,11 @@ static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i)
 }
 /* Adds grain i: volume, mass, momentum and number; with desc.stress the flux m v v. */
 static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
-    const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
+    const double m = (double)w->bodies.mass[i];
     const double v[3] = {(double)w->bodies.vel[4*i], (double)w->bodies.vel[4*i + 1],
                          (double)w->bodies.vel[4*i + 2]};
     double sum[DEMI_FLUX], flux[6];
-    sum[DEMI_SOLID] = (w->desc.planar ? DEMI_PI*r*r*g->size[2]
-        : m/(double)w->materials[w->bodies.material[i] - 1].density)/g->volume;
+    sum[DEMI_SOLID] = m/(double)w->materials[w->bodies.material[i] - 1].density/g->volume;
     sum[DEMI_MASS] = m;
     sum[2] = m*v[0];
     sum[3] = m*v[1];
@@ -424,9 +431,7 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     if (!d.samples) return DEM_OK;
     c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);
     n = (double)d.samples;
-    volume = (double)(d.box.hi.x - d.box.lo.x)*(double)(d.box.hi.y - d.box.lo.y)*
-             (double)(d.box.hi.z - d.box.lo.z)/
-             ((double)d.cells[0]*(double)d.cells[1]*(double)d.cells[2]);
+    volume = demi_field_volume(w, &d.box, d.cells);
     out->grains = d.grains[c]/n;
     out->solid = d.solid[c]/n;
     out->density = d.mass[c]/n/volume;

@@ -60,29 +60,30 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
 }
 /* Brings the contacts up to date if the scene has changed since the last step: the time step, the
    neighbour list if necessary, and forces at the present time. */
-static dem_result demi_contacts_settle(dem_world *w) {
+static dem_result demi_contacts_settle(dem_world *w, const char *call) {
     const demi_stages *s = &w->stage;
     dem_result result;
     demi_calling was;
     if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
+    if (w->look.calling.who && demi_barred(w, call)) return DEM_ERROR_ARGUMENT;
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);
     demi_called(w, was);
     return result;
 }
-/* The histories of sphere pairs are columns of the pruned neighbour list, so fn gets a copy that is
-   written back; a persistent contact hands over its own. If fn changes a value, forces are computed
-   again before the next step. */
-DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
-    if (demi_null(w, __func__, fn ? w : 0, "fn")) return -1;
+/* Calls fn for every contact, and returns their number, or -1. The histories of sphere pairs are
+   columns of the pruned neighbour list, so fn gets a copy that is written back; a persistent
+   contact hands over its own. If fn changes a value, forces are computed again before the next
+   step. */
+static int demi_contacts_visit(dem_world *w, const char *call, dem_contact_fn fn, void *user) {
     size_t stride;
     dem_contact_info info;
     dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
     int d, k, e, n = 0, changed = 0;
     demi_calling was_calling;
-    if (demi_contacts_settle(w) != DEM_OK) return -1;
-    was_calling = demi_calls(w, __func__, 0);
+    if (demi_contacts_settle(w, call) != DEM_OK) return -1;
+    was_calling = demi_calls(w, call, 0);
     stride = (size_t)w->near.stride;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -112,6 +113,10 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     demi_called(w, was_calling);
     if (changed) demi_scene_changed(w);
     return n;
+}
+DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
+    return demi_null(w, __func__, fn ? w : 0, "fn") ? -1
+                                                    : demi_contacts_visit(w, __func__, fn, user);
 }
 /* What dem_bonds_make passes to demi_bond_make: the user's function and its argument, the largest
    gap (m), and the number of pairs so far. */

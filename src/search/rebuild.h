@@ -527,7 +527,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
     demi_refuse(world, call, "bodies or walls were added or changed after the last step, so there "
-                "is no list of contacts; call dem_candidates_rebuild or dem_world_step first");
+                "is no list of contacts; first call dem_world_step, dem_contacts_each, which "
+                "computes the contacts, or dem_candidates_rebuild, which makes only the list");
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {

@@ -658,6 +658,24 @@ static void quarter(double time, dem_pose *pose, void *user) {
     pose->rotation[3] = pose->rotation[8] = 1;
 }
 
+/* Contacts written by a function that a run or dem_contacts_each calls. */
+typedef struct contacts_writer { dem_world *world; int calls, failed; } contacts_writer;
+static int contacts_during(const dem_world *world, double done, double left, void *user) {
+    contacts_writer *by = (contacts_writer *)user;
+    (void)world; (void)done; (void)left;
+    by->calls++;
+    by->failed += dem_contacts_csv_write(by->world, "build/tmp/contacts_during.csv") != DEM_OK;
+    by->failed += dem_contacts_vtp_write(by->world, "build/tmp/contacts_during.vtp") != DEM_OK;
+    return 0;
+}
+static void contacts_within(const dem_contact_info *contact, dem_real *memory, void *user) {
+    contacts_writer *by = (contacts_writer *)user;
+    (void)contact; (void)memory;
+    by->calls++;
+    by->failed += dem_contacts_csv_write(by->world, "build/tmp/contacts_within.csv") != DEM_OK;
+    by->failed += dem_contacts_vtp_write(by->world, "build/tmp/contacts_within.vtp") != DEM_OK;
+}
+
 static void walls(void) {
     dem_world *world = world_make(0);
     dem_material steel = material_make(world);
@@ -739,6 +757,79 @@ static void walls(void) {
         }
         free(numbers);
         free(data);
+        dem_world_destroy(w);
+    }
+    TEST("functions that a run calls write its contacts, and read the same afterwards") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        contacts_writer by;
+        dem_material m;
+        int k;
+        desc.gravity = at(0, 0, -9.81);
+        by.world = dem_world_create(&desc);
+        m = scene_material(by.world, 1e7, 0.5, 0.5, 0);
+        dem_wall_plane_add(by.world, m, at(0, 0, 0), at(0, 0, 1));
+        for (k = 0; k < 3; k++) dem_sphere_add(by.world, m, DEM_R(0.01), at(0.0199*k, 0, 0.01));
+        by.calls = by.failed = 0;
+        CHECK_EQ(dem_world_run(by.world, 1e-3, contacts_during, &by), DEM_OK);
+        CHECK(by.calls > 0);
+        CHECK_EQ(by.failed, 0);
+        by.calls = 0;
+        CHECK_EQ(dem_contacts_each(by.world, contacts_within, &by), 5);
+        CHECK_EQ(by.calls, 5);
+        CHECK_EQ(by.failed, 0);
+        CHECK_EQ(dem_contacts_csv_write(by.world, "build/tmp/contacts_after.csv"), DEM_OK);
+        CHECK_EQ(dem_contacts_vtp_write(by.world, "build/tmp/contacts_after.vtp"), DEM_OK);
+        for (k = 0; k < 4; k++) {
+            size_t sizes[2];
+            char name[2][64], *text[2];
+            int i;
+            for (i = 0; i < 2; i++) {
+                sprintf(name[i], "build/tmp/contacts_%s.%s", i ? "after" : k < 2 ? "during" : "within", k%2 ? "vtp" : "csv");
+                text[i] = file_get(name[i], &sizes[i]);
+            }
+            CHECK(text[0] && text[1] && sizes[0] > 100 && sizes[0] == sizes[1] && !memcmp(text[0], text[1], sizes[0]));
+            free(text[0]);
+            free(text[1]);
+        }
+        dem_world_destroy(by.world);
+    }
+    TEST("a union is written as one body per piece, each with its position, orientation and half axes") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        const dem_quat piece = dem_quat_make(DEM_R(0.8), 0, 0, DEM_R(0.6)), body = dem_quat_make(DEM_R(0.6), DEM_R(0.8), 0, 0);
+        const dem_real places[6] = {DEM_R(-0.01), 0, 0, DEM_R(0.01), 0, 0}, turns[8] = {1, 0, 0, 0, DEM_R(0.8), 0, 0, DEM_R(0.6)};
+        dem_world *w = dem_world_create(&desc);
+        dem_material m = scene_material(w, 1e7, 0.5, 0, 0);
+        dem_shape egg[2], both;
+        dem_vec3 u[2];
+        char *text;
+        int k, j;
+        egg[0] = egg[1] = dem_shape_ellipsoid_add(w, at(0.002, 0.004, 0.006));
+        both = dem_shape_union_add(w, 2, egg, places, turns);
+        dem_body_add(w, m, both, at(0, 0, 0), body);
+        dem_sphere_add(w, m, DEM_R(0.003), at(1, 0, 0));
+        CHECK_EQ(dem_xyz_write(w, "build/tmp/union.xyz"), DEM_OK);
+        text = file_get("build/tmp/union.xyz", &size);
+        CHECK(text != 0);
+        if (text) {
+            const char *line = strchr(text, '\n');
+            for (k = 0; k < 3; k++) {
+                const dem_quat expected = k == 2 ? dem_quat_make(1, 0, 0, 0) : k ? dem_quat_multiply(body, piece) : body;
+                double x[14] = {0}, axis[3] = {0.002, 0.004, 0.006};
+                line = line ? strchr(line + 1, '\n') : 0;
+                CHECK(line != 0);
+                if (!line) break;
+                CHECK_EQ(sscanf(line, " H %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", x, x + 1, x + 2, x + 3, x + 4,
+                                x + 5, x + 6, x + 7, x + 8, x + 9, x + 10, x + 11, x + 12, x + 13), 14);
+                for (j = 0; j < 3; j++) {      /* axes of the body as drawn, not the sign of its quaternion */
+                    const dem_quat q = dem_quat_make((dem_real)x[10], (dem_real)x[7], (dem_real)x[8], (dem_real)x[9]);
+                    u[0] = dem_quat_rotate(q, at(j == 0, j == 1, j == 2));
+                    u[1] = dem_quat_rotate(expected, at(j == 0, j == 1, j == 2));
+                    CHECK_NEAR((double)demi_length(demi_sub(u[0], u[1])), 0, 1e-5);
+                    CHECK_NEAR(x[11 + j], k == 2 ? 0.003 : axis[j], 1e-8);
+                }
+            }
+        }
+        free(text);
         dem_world_destroy(w);
     }
     TEST("profiles cannot be drawn with z1 below z0") {

@@ -178,6 +178,44 @@ static int returns_and_stops(dem_world *world, int64_t number, void *user) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
+    TEST("walls with profiles are written on a schedule by kind, path and interval alone") {
+        int k;
+        for (k = 0; k < 4; k++) {       /* planar; a domain with a depth; bodies; nothing */
+            static const double depth[4][2] = {{-0.1, 0.1}, {-3, 4}, {0.25, 0.85}, {0, 1}};
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_real corners[4] = {0, 0, 1, 0}, at_z[4];
+            int32_t ends[2] = {0, 1};
+            dem_profile line;
+            dem_world *w;
+            dem_material m;
+            const char *data;
+            char *text;
+            size_t n;
+            int i;
+            desc.dt = DEM_R(1e-4);
+            desc.planar = k == 0;
+            desc.thickness = k ? 0 : DEM_R(0.2);
+            if (k == 1) desc.domain = box_of(-1, -1, -3, 1, 1, 4);
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e6, 0.5, 0.5, 0);
+            line.vertex_count = 2; line.vertices = corners;
+            line.segment_count = 1; line.segments = ends;
+            dem_wall_profile_add(w, m, &line, DEM_EDGE_RESOLVED);
+            if (k != 3) dem_sphere_add(w, m, DEM_R(0.05), at(0.5, 0.5, k == 0 ? 0 : 0.3));
+            if (k != 3) dem_sphere_add(w, m, DEM_R(0.1), at(0.5, 0.9, k == 0 ? 0 : 0.75));
+            CHECK(dem_output_every_add(w, DEM_OUTPUT_WALLS, "build/tmp/output_profile_##.vtp", 1e-3).id != 0);
+            CHECK_EQ(dem_world_run(w, 1e-3, 0, 0), DEM_OK);
+            text = file_text("profile", "_01.vtp", &n);
+            data = text ? strstr(text, "<AppendedData encoding=\"raw\">\n_") : 0;
+            CHECK(data != 0);
+            for (i = 0; i < 4 && data; i++)
+                memcpy(&at_z[i], data + strlen("<AppendedData encoding=\"raw\">\n_") + 8 + (size_t)(3*i + 2)*sizeof(dem_real),
+                       sizeof(dem_real));
+            for (i = 0; i < 4 && data; i++) CHECK_NEAR((double)at_z[i], depth[k][i >= 2], 1e-3);
+            free(text);
+            dem_world_destroy(w);
+        }
+    }
     TEST("the function of an output removes any output, also its own, and no other output misses a call") {
         static int (*const functions[4])(dem_world *, int64_t, void *) = {count_first, count_second, count_third, count_fourth};
         int victim, k;

@@ -177,6 +177,44 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("in planar worlds the depth of the box along z changes no field, and a square counts with its area") {
+        int k;
+        for (k = 0; k < 4; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            const dem_real square[8] = {0, 0, DEM_R(0.2), 0, DEM_R(0.2), DEM_R(0.2), 0, DEM_R(0.2)};
+            const double deep = k%2 ? 0.25 : 1, thick = k/2 ? 0.1 : 1, r = 0.05, area = 0.04 + DEMI_PI*r*r;
+            dem_world *w;
+            dem_material m;
+            dem_field f, spread;
+            dem_field_cell cell;
+            dem_field_data d, e;
+            dem_contact_info c[2];
+            double sum = 0;
+            int i;
+            desc.planar = 1;
+            desc.thickness = (dem_real)thick;
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e7, 0.5, 0.5, 0);
+            dem_body_add(w, m, dem_shape_polygon_add(w, 4, square), at(0.45, 0.5, 0), dem_quat_make(1, 0, 0, 0));
+            dem_sphere_add(w, m, (dem_real)r, at(0.599, 0.5, 0));
+            f = field_of(w, box_of(0, 0, -deep/2, 1, 1, deep/2), 1, 1, 1, 1e-9, 0);
+            spread = field_of(w, box_of(0, 0, -deep/2, 1, 1, deep/2), 40, 40, 1, 1e-9, 0.06);
+            CHECK_EQ(scene_step(w, 1), DEM_OK);
+            CHECK_EQ(dem_field_cell_get(w, f, 0, 0, 0, &cell), DEM_OK);
+            CHECK_REL(cell.solid, area, 1e-5);
+            CHECK_REL(cell.density, 2500*area, 1e-5);
+            dem_field_get(w, f, &d);
+            CHECK_REL(d.solid[0], area, 1e-5);
+            CHECK_REL(d.mass[0], 2500*area*thick, 1e-5);
+            CHECK(dem_contacts_get(w, c, 2) >= 1);
+            CHECK_REL(d.stress[0]*thick, fabs((double)c[0].force.x)*0.149, 0.02);
+            dem_field_get(w, spread, &e);
+            for (i = 0; i < 1600; i++) sum += e.solid[i]/1600;
+            CHECK_REL(sum, area, 5e-3);
+            dem_world_destroy(w);
+        }
+    }
+
     TEST("fields with bad widths and classes are rejected with the value named") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);
