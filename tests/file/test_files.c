@@ -666,6 +666,13 @@ static int contacts_during(const dem_world *world, double done, double left, voi
     by->calls++;
     by->failed += dem_contacts_csv_write(by->world, "build/tmp/contacts_during.csv") != DEM_OK;
     by->failed += dem_contacts_vtp_write(by->world, "build/tmp/contacts_during.vtp") != DEM_OK;
+    by->failed += dem_vtp_write(by->world, "build/tmp/during.vtp") != DEM_OK;
+    by->failed += dem_vtk_write(by->world, "build/tmp/during.vtk") != DEM_OK;
+    by->failed += dem_xyz_write(by->world, "build/tmp/during.xyz") != DEM_OK;
+    by->failed += dem_surfaces_vtp_write(by->world, "build/tmp/during.vtp") != DEM_OK;
+    by->failed += dem_walls_vtp_write(by->world, "build/tmp/during.vtp", 0, 1) != DEM_OK;
+    by->failed += dem_bodies_csv_write(by->world, "build/tmp/during.csv") != DEM_OK;
+    by->failed += dem_checkpoint_write(by->world, "build/tmp/during.checkpoint") != DEM_OK;
     return 0;
 }
 static void contacts_within(const dem_contact_info *contact, dem_real *memory, void *user) {
@@ -759,7 +766,7 @@ static void walls(void) {
         free(data);
         dem_world_destroy(w);
     }
-    TEST("functions that a run calls write its contacts, and read the same afterwards") {
+    TEST("functions that a run calls write every kind of file, and the contacts that are written afterwards") {
         dem_world_desc desc = DEM_WORLD_DESC;
         contacts_writer by;
         dem_material m;
