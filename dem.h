@@ -32240,7 +32240,11 @@ static dem_result demi_contacts_settle(dem_world *w, const char *call) {
     dem_result result;
     demi_calling was;
     if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
-    if (w->look.calling.who && demi_barred(w, call)) return DEM_ERROR_ARGUMENT;
+    if (w->look.calling.who)
+        return demi_refuse(w, call, "the scene has changed since the last step, so contacts must "
+                           "be computed again, which a function that %s calls cannot do; make this "
+                           "call before the change or after %s has returned", w->look.calling.who,
+                           w->look.calling.who);
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);
@@ -38372,7 +38376,7 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
         "if each output goes to a separate file";
     if (d->kind == DEM_OUTPUT_WALLS && !(d->z1 >= d->z0))
         return "z1 is below z0 or not a number; give z0 < z1 (m), between which profiles are "
-            "extruded";
+            "extruded, or leave both 0 for the depth of the scene";
     if (d->kind == DEM_OUTPUT_FIELD_CSV && (d->field.id < 1 || d->field.id > w->field_count))
         return "field does not exist; give an id that dem_field_add returned";
     if (d->kind != DEM_OUTPUT_CSV) return 0;

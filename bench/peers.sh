@@ -8,8 +8,8 @@
 # machine; two cores are two bound threads of dem.h against two bound MPI ranks.
 # Inputs are bench/peers/CODE_SCENE.in or .py, with the skin, newton setting and style that made that code fastest. Start
 # states of bed, drum, gas, clumps and cubes are in bench/data; build/beside --settle makes those of mixture, clumps3,
-# clumps10 and clumps30 (once, minutes). The others read them from build/peers. A code that is compiled for the machine may be faster
-# than a distribution's package: name yours with LAMMPS=, LIGGGHTS=, YADE=.
+# clumps10 and clumps30 (once, minutes). The others read them from build/peers. A code that is compiled for the machine may
+# be faster than a distribution's package: name yours with LAMMPS=, LIGGGHTS=, YADE=.
 # YADE does one step of cubes in 25, and is given 25 times its time. clumps.unshared is dem.h with
 # DEM_CLUSTER_CONTACTS_SEPARATE, the law of the others: every two spheres that touch are a contact. mixture.lammpslaw is
 # LAMMPS with the law of dem.h, slower than its style gran/hertz/history. servo_plane and servo_mesh compare dem.h with itself:

@@ -324,7 +324,7 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
         "if each output goes to a separate file";
     if (d->kind == DEM_OUTPUT_WALLS && !(d->z1 >= d->z0))
         return "z1 is below z0 or not a number; give z0 < z1 (m), between which profiles are "
-            "extruded";
+            "extruded, or leave both 0 for the depth of the scene";
     if (d->kind == DEM_OUTPUT_FIELD_CSV && (d->field.id < 1 || d->field.id > w->field_count))
         return "field does not exist; give an id that dem_field_add returned";
     if (d->kind != DEM_OUTPUT_CSV) return 0;

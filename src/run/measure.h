@@ -65,7 +65,11 @@ static dem_result demi_contacts_settle(dem_world *w, const char *call) {
     dem_result result;
     demi_calling was;
     if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
-    if (w->look.calling.who && demi_barred(w, call)) return DEM_ERROR_ARGUMENT;
+    if (w->look.calling.who)
+        return demi_refuse(w, call, "the scene has changed since the last step, so contacts must "
+                           "be computed again, which a function that %s calls cannot do; make this "
+                           "call before the change or after %s has returned", w->look.calling.who,
+                           w->look.calling.who);
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);

@@ -683,6 +683,23 @@ static void contacts_within(const dem_contact_info *contact, dem_real *memory, v
     by->failed += dem_contacts_vtp_write(by->world, "build/tmp/contacts_within.vtp") != DEM_OK;
 }
 
+static int contacts_change(dem_world *world, int64_t number, void *user) {
+    dem_body_state state;
+    (void)number; (void)user;
+    dem_body_get(world, dem_body_id_get(world, 0), &state);
+    state.velocity.x += DEM_R(0.01);
+    return dem_body_set(world, dem_body_id_get(world, 0), &state) != DEM_OK;
+}
+static contacts_writer *contacts_late_by;
+static void contacts_late(const dem_world *world, double *values, void *user) {
+    contacts_writer *by = contacts_late_by;
+    (void)world; (void)user;
+    values[0] = ++by->calls;
+    by->failed += dem_contacts_csv_write(by->world, "build/tmp/contacts_late.csv") != DEM_OK;
+    CHECK_STR(dem_world_error_get(by->world), "dem_contacts_csv_write: the scene has changed since the last step");
+    by->failed += dem_contacts_vtp_write(by->world, "build/tmp/contacts_late.vtp") != DEM_OK;
+}
+
 static void walls(void) {
     dem_world *world = world_make(0);
     dem_material steel = material_make(world);
@@ -798,6 +815,32 @@ static void walls(void) {
             free(text[0]);
             free(text[1]);
         }
+        dem_world_destroy(by.world);
+    }
+    TEST("a function that a run calls after the scene has changed cannot write contacts, says why, and leaves no file") {
+        dem_output_desc change = DEM_OUTPUT_DESC, late = DEM_OUTPUT_DESC;
+        contacts_writer by;
+        FILE *none[2];
+        by.world = three_make(0);
+        by.calls = by.failed = 0;
+        contacts_late_by = &by;
+        change.kind = DEM_OUTPUT_CALL;
+        change.function = contacts_change;
+        change.start = late.start = 5e-5;
+        change.interval = late.interval = 1;
+        late.kind = DEM_OUTPUT_CSV;
+        late.path = "build/tmp/late.csv";
+        late.columns = "calls";
+        late.values = contacts_late;
+        remove("build/tmp/contacts_late.csv");
+        remove("build/tmp/contacts_late.vtp");
+        CHECK(dem_output_add(by.world, &change).id && dem_output_add(by.world, &late).id);
+        CHECK_EQ(dem_world_run(by.world, 1e-4, 0, 0), DEM_OK);
+        CHECK_EQ(by.calls, 1);
+        CHECK_EQ(by.failed, 2);
+        none[0] = fopen("build/tmp/contacts_late.csv", "rb");
+        none[1] = fopen("build/tmp/contacts_late.vtp", "rb");
+        CHECK(!none[0] && !none[1]);
         dem_world_destroy(by.world);
     }
     TEST("a union is written as one body per piece, each with its position, orientation and half axes") {
