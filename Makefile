@@ -216,15 +216,10 @@ recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use t
 	@CC="$(CC)" sh tests/recipes.sh
 
 snippets: build/dem.o ## compile the programs in dem.h's manual and in the pages; run those of docs/how_to*.md and compare what they print
-	@rm -rf build/snippets && mkdir -p build/snippets/examples/data && cp examples/data/hopper.stl build/snippets/examples/data
+	@rm -rf build/snippets && mkdir -p build/snippets
 	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md docs/laws.md docs/replay.md \
 	    docs/own_law.md docs/parallel.md docs/impulses.md docs/shapes.md docs/how_to.md docs/how_to_shapes.md docs/how_to_more.md
-	@for f in build/snippets/*_program.c; do test -f $$f || continue; echo "$$f"; \
-	    $(COMPILE) -O0 -o $${f%.c} $$f $$(grep -q DEM_IMPLEMENTATION $$f || echo build/dem.o) $(LINK) || exit 1; done
-	@for f in build/snippets/*_part.c; do test -f $$f || continue; echo "$$f"; \
-	    $(COMPILE) -O0 -c -o $${f%.c}.o $$f || exit 1; done
-	@cd build/snippets && ulimit -t 60 && for f in how_to*_program; do OMP_WAIT_POLICY=passive ./$$f > $$f.log 2>&1 || { echo "$$f fails:"; cat $$f.log; exit 1; }; \
-	    test ! -f $$f.expected || awk -f ../../tests/printed.awk $$f.expected $$f.log || { echo "$$f does not print what its page shows"; exit 1; }; done
+	@JOBS=$(JOBS) COMPILE="$(COMPILE)" LINK="$(LINK)" sh tests/snippets.sh
 
 clean: ## remove build/
 	rm -rf build
