@@ -1206,7 +1206,7 @@ DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_c
     const dem_real loaded = c->overlap > before ? c->overlap : before;
     const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
     const dem_real depth = most < loaded ? most : loaded;
-    memory[0] = depth;
+    if (c->dt > 0) memory[0] = depth;
     f->elastic = kun*c->overlap - soft*depth;
     f->normal = f->elastic + c->cn*c->closing_speed;
     f->slope = f->slope_step = kn;
@@ -4697,6 +4697,7 @@ typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end
 typedef struct demi_pair {
     dem_pair given;
     double damping;                /* damping ratio that gives its restitution */
+    int own;                       /* 1: dem_pair_set has set it, so it is no mixture */
 } demi_pair;
 
 /* The laws in force, and where in the contact history the reals of each law begin (those of
@@ -4759,6 +4760,8 @@ typedef struct demi_stages {
     int synced;                    /* no half kick is pending: see demi_finish */
     int grown;                     /* 1: radii have changed since the last forces: >>growth */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
+    int quiet;                     /* isolated bodies are known (>>near): the scene has not changed
+                                      since the pruned list was made */
     /* 1: a rebuild that ran out of memory had chosen the skin, or the span of the pruned list. The
        next try keeps them, because the counts behind the choice may be lost */
     int skin_chosen, near_chosen;
@@ -4803,8 +4806,8 @@ typedef struct demi_booked {       /* >>ledger: totals and maxima since the begi
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
     double overlap_max, speed_max; /* relative to the radius; m/s */
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
-    double due[4];                 /* J: energies that the impulses and walls will take in the next
-                                      step, see demi_impulses_tell */
+    double due[5];                 /* J: energies that impulses, walls and force fields will take
+                                      or give in the next step, see demi_impulses_tell */
     double residual, residual_rms; /* m/s, of the last solve: largest, rms */
     uint64_t unsolved;             /* solves that did not reach their tolerance */
     int sweeps, none;              /* of the last solve; padding, 0 */
@@ -5855,6 +5858,7 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
     DEMI_N(stage.synced, 'i', DEMI_FIRSTS), DEMI_N(stage.near_stale, 'i', 0),
+    DEMI_N(stage.quiet, 'i', 0),
     DEMI_N(stage.skin_chosen, 'i', 0), DEMI_N(stage.near_chosen, 'i', 0),
     DEMI_N(margin.skin, 'd', DEMI_FROM | DEMI_DEALT), DEMI_N(margin.step_gone, 'd', 0),
     DEMI_N(margin.gone, 'd', DEMI_FROM | DEMI_HEADS), DEMI_N(margin.age, 'd', DEMI_FROM),
@@ -6285,7 +6289,8 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_MIX)
     /* twice the springs in series, so that equal materials give their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
-        p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
+        p.stiffness = (dem_real)(2*((double)a->stiffness*(double)b->stiffness)/
+                                 ((double)a->stiffness + (double)b->stiffness));
     /* one material has only a modulus, the other only a stiffness */
     else if (p.young_eff <= 0)
         p.stiffness = DEMI_MAX(a->stiffness, b->stiffness);
@@ -6333,7 +6338,7 @@ static void demi_pairs_changed(dem_world *w) {
    once, because it may need a bisection (demi_damping_for). */
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
-    pair->given = *p;
+    pair->given = *p;                           /* `own` stays */
     pair->damping = demi_response_is(w, DEMI_LASTING)
         ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
@@ -6412,12 +6417,8 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
     if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     for (i = 0; i < w->material_count; i++) {
-        const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
         const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
-        /* values that dem_pair_set has set stay; the last field, an int, has padding behind it */
-        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, offsetof(dem_pair, ignored)) &&
-            !w->pairs[i*DEMI_MATERIALS + m].given.ignored)
-            demi_pair_put(w, i, m, &now);
+        if (!w->pairs[i*DEMI_MATERIALS + m].own) demi_pair_put(w, i, m, &now);
     }
     demi_pairs_changed(w);
     demi_built(w, __func__);
@@ -7055,7 +7056,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     demi_moments m;
     dem_shape none;
     dem_vec3 about = demi_v(0, 0, 0);
-    dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
+    dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX, most;
     int i;
     none.id = 0;
     if (demi_shape_planar(w, __func__) || !demi_cluster_check(w, desc)) return none;
@@ -7078,9 +7079,12 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
         return none;
     }
     demi_shape_principal(&shape, &m);
-    if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0)) {
+    most = DEMI_MAX(shape.inertia.x, DEMI_MAX(shape.inertia.y, shape.inertia.z));
+    if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0) ||
+        2*most > (shape.inertia.x + shape.inertia.y + shape.inertia.z)*DEM_R(1.00001)) {
         demi_shape_free(w, &shape);
-        demi_refuse(w, __func__, "a principal moment of inertia is not > 0; %s",
+        demi_refuse(w, __func__, "a principal moment of inertia is not > 0, or above the "
+                    "sum of the other two; %s",
                     desc->mass == DEM_CLUSTER_GIVEN ? "the given off-diagonal moments are too large"
                     : "use more rays");
         return none;
@@ -7106,7 +7110,7 @@ static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
 /* Returns the semi-axes, m, of the ellipsoid with the same moments of inertia. */
 static dem_vec3 demi_shape_alike(const demi_shape *s) {
     const dem_vec3 I = s->inertia;
-    if (s->kind == DEMI_ELLIPSOID) return s->axes;
+    if (s->kind == DEMI_ELLIPSOID && !s->pieces) return s->axes;
     return demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
@@ -9348,11 +9352,11 @@ static double demi_body_energy(const dem_world *w, int i) {
         (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
-/* Marks the time step as outdated, or forces and half-step velocities too, after a change of the
-   scene. */
+/* Marks the time step as outdated, or forces, half-step velocities and isolated bodies too, after a
+   change of the scene. */
 static void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
 static void demi_scene_changed(dem_world *w) {
-    w->stage.forces_valid = w->stage.primed = 0;
+    w->stage.forces_valid = w->stage.primed = w->stage.quiet = 0;
     demi_dt_outdated(w);
 }
 /* Prepares a world without bodies. */
@@ -11115,6 +11119,7 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const int last = m->table_count - 1;
     const double end = m->table[last].time;
+    const int early = t < 0;       /* a table that repeats has a slope at its first row */
     double x[7], v[7], size = 0, along = 0, h, u, R[9], w[3];
     dem_vec3 arm, at;
     int k = 0, c;
@@ -11127,7 +11132,7 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
         const double a = demi_row_number(m, k, c), b = demi_row_number(m, k + 1, c);
         const double p = h*demi_row_slope(m, k, c), q = h*demi_row_slope(m, k + 1, c);
         x[c] = a + u*(p + u*(3*(b - a) - 2*p - q + u*(2*(a - b) + p + q)));
-        v[c] = (p + u*(2*(3*(b - a) - 2*p - q) + u*3*(2*(a - b) + p + q)))/h;
+        v[c] = early ? 0 : (p + u*(2*(3*(b - a) - 2*p - q) + u*3*(2*(a - b) + p + q)))/h;
     }
     for (c = 3; c < 7; c++) size += x[c]*x[c];
     size = sqrt(size);
@@ -11550,7 +11555,9 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
         return id;
     }
     for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* also those that feeds will insert */
-        const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
+        const dem_feed_desc *feed = &w->feeds[i/DEM_CLASSES].desc;
+        const int used = i%DEM_CLASSES < feed->class_count;
+        const int shape = used ? feed->shapes[i%DEM_CLASSES].id : 0;
         const int part = demi_shape_strange(w, wall, shape ? &w->shapes[shape - 1] : 0);
         if (part < 0) continue;
         demi_strangers(w, call, wall, (int)demi_wall_next(w, demi_wall_vacant(w)).id, -1, part);
@@ -12246,19 +12253,28 @@ static int demi_join_member(const dem_world *w, int wall, int lead, int per) {
     return demi_faceted(m) && m->group == w->walls[lead].group && per == demi_wall_per(m) &&
         !memcmp(m->repeats, w->walls[lead].repeats, sizeof m->repeats);
 }
-/* True if a wall stays at rest relative to its image along an axis. */
-static int demi_wall_keeps(const demi_wall *wall, int axis) {
-    const dem_motion *m = &wall->motion;
-    const dem_vec3 n = demi_unit(m->axis), e = demi_v(axis == 0, axis == 1, axis == 2);
-    return wall->repeats[axis] && (m->kind != DEM_MOTION_ROTATING ||
-                                   demi_length(demi_cross(n, e)) <= DEM_R(1e-6));
+/* True if a wall stays at rest relative to its image along an axis: it does not turn, or only about
+   this axis. A wall that a function moves counts as one that does not turn. */
+static int demi_wall_keeps(const dem_world *w, const demi_wall *wall, int axis) {
+    /* a surface has no table; it moves as its first wall */
+    const dem_motion *m = demi_tabled(&wall->motion) && !wall->motion.table
+        ? &w->walls[wall->lead].motion : &wall->motion;
+    const dem_vec3 e = demi_v(axis == 0, axis == 1, axis == 2);
+    int k, keeps = wall->repeats[axis];
+    if (m->kind == DEM_MOTION_ROTATING)
+        keeps = keeps && demi_length(demi_cross(demi_unit(m->axis), e)) <= DEM_R(1e-6);
+    for (k = 0; k < m->table_count && demi_tabled(m); k++) {
+        const dem_quat q = m->table[k].rotation;
+        keeps = keeps && !(demi_length(demi_cross(demi_v(q.x, q.y, q.z), e)) > DEM_R(1e-6));
+    }
+    return keeps;
 }
 /* Sets *by, m, to the displacement of the n-th periodic image (0 .. 26; 13 is the wall itself).
    Returns 0 if the wall does not repeat there. */
 static int demi_join_shift(const dem_world *w, const demi_wall *wall, int n, demi_d3 *by) {
     const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
     int k, use = n != 13;
-    for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(wall, k));
+    for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(w, wall, k));
     *by = demi_d3_of(demi_wall_shift(w, s[0], s[1], s[2]));
     return use;
 }
@@ -13574,6 +13590,20 @@ static dem_vec3 demi_cell_shift(const demi_wall *s, int32_t cell, dem_vec3 at) {
     u += 65536*floor((((double)at.x - v*skew)/wide - u)/65536 + 0.5);
     return demi_v((dem_real)(u*wide + v*skew), (dem_real)(v*(double)s->step[1].y), 0);
 }
+/* Upper bound of the speed, m/s, of what lists hold of wall i; -1 if there is no bound. A rotation
+   about its axis of symmetry leaves a wall in place, but not the facets of its tessellations. */
+static double demi_wall_pace(const dem_world *w, int i) {
+    const demi_wall *wall = &w->walls[i];
+    const double turn = (double)demi_length(wall->pose.spin);
+    double pace = demi_wall_speed(wall);
+    int k;
+    for (k = 0; k < w->surface_count && wall->symmetric && turn > 0 && pace >= 0; k++) {
+        const demi_wall *s = &w->surfaces[k];
+        if (!s->scale || s->lead != i) continue;
+        pace = s->step[0].x > 0 ? -1 : DEMI_MAX(pace, turn*(double)s->extent);
+    }
+    return pace;
+}
 /* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
    scales. Returns 0 if memory ran out. */
 static int demi_tessellation_make(dem_world *w, int wall, int scale) {
@@ -13705,6 +13735,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
         if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
         demi_surfaces_outdated(w);
     }
+    w->pairs[i*DEMI_MATERIALS + j].own = 1;
     demi_pair_put(w, i, j, p);
     demi_pairs_changed(w);
     demi_built(w, __func__);
@@ -15840,6 +15871,11 @@ static void demi_domain_quiet(dem_world *w, int d) {
     for (k = 0; k < domain->walls; k++)
         demi_quiet_at(w, d, w->wall_body[d*w->wall_stride + k])->restless = 2;
 }
+/* Marks the blocks of all work groups, if bodies can be isolated, for the present lists. */
+static void demi_quiet_mark(dem_world *w) {
+    w->stage.quiet = demi_quiet_possible(w);
+    if (w->stage.quiet) demi_domains_do(w, demi_domain_quiet);
+}
 
 /* Chooses span and slack of the next pruned list. The cost is estimated from counts, not from time,
    so that every run makes the same choice: 1 for a force, and for building the list 0.15 for each
@@ -15923,8 +15959,7 @@ static int demi_near_make(dem_world *w, int fresh) {
         return 0;
     }
     demi_domains_do(w, demi_domain_adopt);
-    if (!fresh && demi_quiet_possible(w))
-        demi_domains_do(w, demi_domain_quiet);
+    if (!fresh) demi_quiet_mark(w);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */
@@ -16005,6 +16040,16 @@ static int demi_clustered(const dem_world *w) {
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count && !w->shapes[k].lone;
     return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
 }
+/* Returns the largest speed of the bodies that can move, m/s. */
+static double demi_fastest(const dem_world *w) {
+    double most = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++)
+        if (w->bodies.inv_mass[i] > 0)
+            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
+                                                   demi_at(w->bodies.vel + 4*i)));
+    return sqrt(most);
+}
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
@@ -16037,6 +16082,8 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
+    if (demi_reach_free(w))                     /* velocities may be new since the last step */
+        w->booked.speed_max = DEMI_MAX(w->booked.speed_max, demi_fastest(w));
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -16207,7 +16254,9 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     int k, leading = 0;
     w->domains[last].end = i + 1;
     if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
-    if (count >= w->join_room || demi_scale_missing(w, i)) return 0;
+    if (count >= w->join_room || demi_scale_missing(w, i) ||
+        w->bodies.pos[4*i + 3] > w->effects.radius_max)
+        return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
         const int a = found[k], d = demi_domain_of(w, a);
@@ -16228,7 +16277,6 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
         ? 1 + last*w->wall_stride + walls : 0;
     demi_quiet_at(w, last, i)->restless = 2;
     w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
-    w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
     return 1;
 }
 
@@ -16442,8 +16490,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     w->stage.near_chosen = 1;
     if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
-    if (demi_quiet_possible(w))
-        demi_domains_do(w, demi_domain_quiet);
+    demi_quiet_mark(w);
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
@@ -17681,7 +17728,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
     demi_recall(t, q, 0, keep, m);
     w->desc.law(c, m, &f);
     demi_keep(t, q, 0, keep, m);
-    t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
+    if (same->at_sliding < DEMI_MEMORY) t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
     if (!r->ledger) return;                        /* energies that the law returned */
     demi_normal_energy(t, q, &f);
@@ -17770,6 +17817,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     for (e = 0; e < DEM_LAW_MEMORY; e++) c.memory[e] = t->memory[e];
     c.normal_force = t->repulsion;
     c.slides = t->memory[same.at_sliding];
+    if (same.at_sliding == DEMI_MEMORY) memset(c.slides, 0, sizeof t->memory[0]);   /* of no pair */
     for (e = 0; e < 7; e++) c.energy[e] = r->ledger ? t->part[energies[e]] : 0;
     demi_own_rows(w)(&c);
     demi_answer_choose(r, 1)(t, r, full);
@@ -18747,6 +18795,9 @@ static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap)
    the contact. tests/contact/test_convex.c checks this against all separating planes, and against
    portals.
    --------------------------------------------------------------------------------------------- */
+
+/* Two bodies touch if their gap is 0 but for rounding, up to this part of their size below 0. */
+#define DEMI_TOUCHING (DEMI_SINGLE ? 1e-5 : 1e-9)
 
 /* A support vertex, that is a corner of D: corner b of B minus corner a of A. */
 typedef struct demi_lead { demi_d3 x; int a, b; } demi_lead;
@@ -20115,7 +20166,11 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             t->shift = g->shift[e];
             for (e = 1; e <= pressed; e++)
                 if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
-            if (e <= pressed || (pressing && !(t->overlap < 0))) break;
+            /* at gap 0 nothing presses, but a law with a range is called */
+            if (e <= pressed || (pressing &&
+                                 !(t->overlap < (dem_real)DEMI_TOUCHING*demi_part_thin(part))))
+                break;
+            if (pressing) t->overlap = DEMI_MIN(t->overlap, 0);
             count++;
         }
     }
@@ -21556,7 +21611,8 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const
         const double l = t->to[k], both = t->both[k];
         const double ra = demi_part_round(w, p, l*both), rb = demi_part_round(w, q, (1 - l)*both);
         c->r_eff = (dem_real)(ra*rb/(ra + rb));
-        c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
+        /* across a gap there is no chord */
+        c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD && t->w0[k] < 1
             ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
     }
 }
@@ -21637,6 +21693,8 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     at = demi_d3_real(near);
     n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
     at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
+    if (W0 > 1 && !((double)demi_length(at)*(1 - 1/W0) <
+                    (double)demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
@@ -21667,6 +21725,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
     demi_simplex tells;
     demi_solid a, b;
+    double least;
     int k, nearest = 0;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
@@ -21677,12 +21736,13 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
     if (!demi_response_is(w, DEMI_PRESSING)) return 1;
     for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
+    least = spots->gap[nearest];
     for (k = 0; k < 4; k++) {
         spots->x[k] = spots->x[nearest];
-        spots->gap[k] = spots->gap[nearest];
+        spots->gap[k] = DEMI_MAX(least, 0);     /* below 0 by rounding: they touch */
     }
     spots->count = 4;
-    return spots->gap[0] > 0;
+    return least > -DEMI_TOUCHING*(ra + rb);
 }
 /* Two polyhedra by their common volume. c becomes the first of four contact points. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
@@ -23486,7 +23546,8 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
         if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* 0 until merged */
         if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
         for (e = 0; e < keep; e++)
-            if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
+            if (w->laws.vectors >> e & 1 || e == w->laws.at_twisting)
+                m->t.rows.memory[e][q] *= held/now;
     }
 }
 /* Copies the coefficients that differ from pair to pair. first: all of them, for a whole tile. */
@@ -24089,7 +24150,11 @@ static void demi_impulses_meet(dem_world *w, int d) {
             m->a = a;
             m->b = b;
             m++->home = p;
-        } else for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
+            continue;
+        }
+        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
+        if (!(l2 > 0) && s->movers[a].inv + s->movers[b].inv > 0 && !demi_joined(w, a, b, -1))
+            domain->overlap = 2;                /* at the same position: there is no normal */
     }
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *k = w->kept_next + w->kept_first[d] + i;
@@ -24204,7 +24269,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     } else {
         const demi_kept *k = w->kept_next + w->kept_first[d] + ~m->home;
         o.normal = k->normal;
-        o.gap = -k->overlap;
+        o.gap = -k->overlap/k->slope;           /* along the normal, m, whatever overlap means */
         o.arm_a = k->arm_a;
         o.arm_b = k->arm_b;
         o.r_eff = k->r_eff;
@@ -25929,16 +25994,22 @@ static void demi_impulses_lift(dem_world *w, int index) {
     }
 }
 /* Sets forces and torques of a domain's bodies to those that produce the solved velocities in the
-   coming step. Gravity is not part of them. */
+   coming step. Gravity is not part of them. Before, they are those of force fields, whose work, as
+   that of impulses, is exact with the mean of the velocities before and after the step. */
 static void demi_movers_force(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
+    const int fields = w->desc.ledger && (w->desc.force || w->desc.body_force);
+    double work = 0;
     int i, k;
     for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
         const demi_mover *m = s->movers + i;
         const demi_lane b = demi_lane_move(w, i);
         dem_real *torque = w->bodies.torque + 4*i;
         if (!(m->inv > 0)) continue;
+        for (k = 0; k < 3 && fields; k++)
+            work += (double)b.f[k]*(double)(b.v[k] + m->v[k]) +
+                (double)torque[k]*(double)(w->bodies.spin[4*i + k] + m->w[k]);
         for (k = 0; k < 3; k++) b.f[k] = ((m->v[k] - b.v[k])*per - b.g[k])/m->inv;
         if (w->bodies.shaped && w->bodies.shape[i]) {
             const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
@@ -25950,6 +26021,7 @@ static void demi_movers_force(dem_world *w, int d) {
             for (k = 0; k < 3; k++)
                 torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
+    w->domains[d].energy[DEMI_E_FORCE] = work*(double)s->dt/2;
 }
 /* Notes a solved contact for events. old: it had an impulse before; energy: J, lost by its normal
    impulse, slip and rolling. */
@@ -26134,6 +26206,7 @@ static void demi_impulses(dem_world *w) {
     w->booked.due[1] = demi_sum_energy(w, DEMI_E_SLIDE);
     w->booked.due[2] = demi_sum_energy(w, DEMI_E_ROLL);
     w->booked.due[3] = 0;
+    w->booked.due[4] = demi_sum_energy(w, DEMI_E_FORCE);
     if (!w->stage.forces_valid) return;         /* forces only, no step */
     for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
     for (i = 0; i < w->bodies.count; i++) {
@@ -26220,11 +26293,12 @@ static void demi_impulses_due(dem_world *w) {
 }
 /* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
 static void demi_due_book(dem_world *w) {
-    static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
+    static const int flows[5] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS,
+                                 DEMI_E_FORCE};
     int i;
-    for (i = 0; i < 4; i++) w->booked.energy[flows[i]] += w->booked.due[i];
+    for (i = 0; i < 5; i++) w->booked.energy[flows[i]] += w->booked.due[i];
     w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
-    w->booked.throughput += fabs(w->booked.due[3]);
+    w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
 }
 /* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
    *out and *gap unless out is null: see demi_response_row. */
@@ -26685,7 +26759,7 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
         to->size[k] = side - 2*off;
         if (period > 0 && side >= period*(1 - 1e-6)) {
             to->size[k] = period;
-            lo[k] = p.lo[k];
+            lo[k] = from->cylinder ? lo[k] + (dem_real)((side - period)/2) : p.lo[k];
         } else lo[k] += (dem_real)off;
         if (k == 2 && w->desc.planar) {
             to->size[k] = 0;
@@ -27623,8 +27697,13 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
         joins = demi_list_join(w, i, found, count);
         w->stage.pairs_changed |= !joins;             /* then lists are rebuilt */
     }
-    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0)
+    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0) {
+        v = demi_at(w->bodies.vel + 4*i);       /* the open half kick is not due to this grain */
+        demi_finish(w);
+        demi_put(w->bodies.vel + 4*i, v);
+        demi_put(w->bodies.half_vel + 4*i, v);
         demi_scene_changed(w);                  /* forces may act on it */
+    }
     /* it touches nothing, so no force acts on it yet */
     else if (w->stage.primed) demi_prime_body(w, i);
     demi_feed_count(f);
@@ -28696,16 +28775,6 @@ static int demi_outgrown(const dem_world *w) {
     return demi_response_is(w, DEMI_LASTING) && !(w->desc.impact_speed > 0) &&
         w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
-/* Returns the largest speed of the bodies that can move, m/s. */
-static double demi_fastest(const dem_world *w) {
-    double most = 0;
-    int i;
-    for (i = 0; i < w->bodies.count; i++)
-        if (w->bodies.inv_mass[i] > 0)
-            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
-                                                   demi_at(w->bodies.vel + 4*i)));
-    return sqrt(most);
-}
 /* Returns the largest speed, m/s, that a body may have in the next step by the present forces: a
    bound, with the midpoint rule the exact speed. */
 static double demi_fastest_next(const dem_world *w) {
@@ -28981,16 +29050,19 @@ DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_
 static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
     const double v = demi_pose_speed(wall);
     return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
-        (!(v > 0) || w->asked.dt > 0 || v <= w->clock.assumed_speed);
+        (!(v > 0) || w->desc.dt > 0 || v <= w->clock.assumed_speed);
 }
-/* True if a program leads a wall: its old motion `from` began at most DEMI_LED steps ago, or has
-   yet to begin, and the new motion starts exactly at the present pose. A new rotation may start
-   there with rounding errors. */
-static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_wall *to) {
-    if (w->clock.time - from->motion.start > DEMI_LED*(double)w->clock.dt) return 0;
+/* True if a wall stays where it is when its new motion `to` begins. A rotation may start there with
+   rounding errors. A motion with a phase, by a table or by a function may begin elsewhere. */
+static int demi_wall_stays(const demi_wall *from, const demi_wall *to) {
     return to->motion.kind == DEM_MOTION_ROTATING ||
         (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
          !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
+}
+/* True if a program leads a wall that stays: its old motion began at most DEMI_LED steps ago, or
+   has yet to begin. */
+static int demi_wall_led(const dem_world *w, const demi_wall *from) {
+    return w->clock.time - from->motion.start <= DEMI_LED*(double)w->clock.dt;
 }
 DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
     if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
@@ -29005,7 +29077,8 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (result != DEM_OK) return result;
     /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
        decides which of its periodic images are at rest relative to it */
-    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
+    alone = demi_wall_stays(&w->walls[i], &next) &&
+        demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
         (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
                            next.motion.kind != DEM_MOTION_ROTATING));
     dropped = alone || demi_list_drop(w);
@@ -29014,7 +29087,7 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, __func__);
     if (!alone) demi_surfaces_outdated(w);
-    if (!alone || !demi_wall_led(w, &w->walls[i], &next))
+    if (!alone || !demi_wall_led(w, &w->walls[i]))
         w->stage.forces_valid = w->stage.primed = 0;
     demi_wall_before(w, i);
     w->walls[i] = next;
@@ -29090,7 +29163,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
-            if (c->b >= 0 || walls[c->wall].group != walls[of].group ||
+            if (c->b >= 0 || !demi_walls_together(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
             demi_kept_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
@@ -29128,6 +29201,13 @@ static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double 
     if (fabs(s->travel + s->speed*dt) > far)
         s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
 }
+/* Returns the first wall of the piston of wall i. */
+static int demi_servo_leader(const dem_world *first, int i) {
+    int k = 0;
+    while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
+                     !demi_walls_together(&first->walls[k], &first->walls[i]))) k++;
+    return k;
+}
 /* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
 static dem_result demi_servos_lead(dem_world *h) {
     dem_world *first = demi_member(h, 0);
@@ -29138,7 +29218,8 @@ static dem_result demi_servos_lead(dem_world *h) {
         demi_wall *wall = &first->walls[i];
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
             h->clock.time < wall->motion.start) continue;
-        if (wall->group != i) { wall->servo = first->walls[wall->group].servo; continue; }
+        k = demi_servo_leader(first, i);
+        if (k != i) { wall->servo = first->walls[k].servo; continue; }
         result = demi_servo_sum(h, i, sums);
         if (result != DEM_OK) break;
         before = wall->servo.speed;
@@ -29190,6 +29271,8 @@ typedef struct demi_rail {
     dem_rail_state state;
     dem_quat start;                /* other shapes: orientation and spin of the step, above */
     dem_vec3 turn;
+    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
+                                      periodic face; as it was */
 } demi_rail;
 
 #define DEMI_OF dem_rail_desc
@@ -29214,6 +29297,25 @@ static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
             return &w->rails[k];
     return 0;
 }
+/* The position of body i, with a rail, as if its path had crossed no periodic face, m. */
+static dem_vec3 demi_rail_place(const dem_world *w, const demi_rail *r, int i) {
+    const demi_periods p = demi_periods_of(w);
+    return demi_add(r->at, demi_nearest(&p, demi_sub(demi_at(w->bodies.pos + 4*i), r->at)));
+}
+/* Between two steps only dem_body_set moves a body. The coordinates that it has changed count as
+   given, not as those of an image across a periodic face. */
+static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
+    dem_real by[3], now[3], at[3];
+    int k;
+    demi_put(by, demi_nearest(&p, demi_sub(x, r->seen)));
+    demi_put(now, x);
+    demi_put(at, demi_rail_place(w, r, i));
+    for (k = 0; k < 3; k++)                     /* wrapping leaves a rounding error */
+        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
+    r->at = demi_at(at);
+}
 /* Gives the velocity and spin that a rail prescribes for body i, in the middle of the next step
    (ahead) or now; of axes that are not locked, any numbers. */
 static void demi_rail_wants(const dem_world *w, const demi_rail *r, int i, int ahead, dem_real *v,
@@ -29222,7 +29324,7 @@ static void demi_rail_wants(const dem_world *w, const demi_rail *r, int i, int a
     dem_vec3 velocity = d->velocity, spin = d->spin;
     if (d->wall.id && demi_wall_there(w, d->wall)) {
         const demi_wall *wall = &w->walls[demi_wall_place(d->wall)];
-        const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
+        const dem_vec3 x = demi_rail_place(w, r, i);
         const dem_vec3 now = demi_surface_at(&wall->pose, x);
         velocity = demi_add(velocity, now);
         spin = demi_add(spin, wall->pose.spin);
@@ -29297,7 +29399,10 @@ static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
     const dem_real none[3] = {0, 0, 0};
     const dem_real *spun = stepping && (halves || demi_shape_of(w, i)) ? w->bodies.half_spin + 4*i
         : w->bodies.spin + 4*i;
+    if (!stepping) demi_rail_given(w, r, i);
     demi_rail_wants(w, r, i, 1, v, s);
+    r->at = demi_rail_place(w, r, i);
+    r->seen = demi_at(w->bodies.pos + 4*i);
     r->state.power = demi_rail_push(locked, w->bodies.mass[i], halves ? b.half : b.v, v, h, b.g,
                                     b.f, force);
     if (demi_shape_of(w, i) && locked >> 3) {
@@ -29332,7 +29437,12 @@ static void demi_rails_act(dem_world *w) {
     int k;
     for (k = 0; k < w->rail_count && w->clock.dt > 0; k++) {
         const int i = demi_rail_body(w, &w->rails[k]);
+        dem_rail_state *state = &w->rails[k].state;
         if (i >= 0) demi_rail_act(w, &w->rails[k], i);
+        else {
+            state->force = state->torque = demi_v(0, 0, 0);
+            state->power = 0;
+        }
     }
 }
 /* After the move of a step: rotates bodies that are not spheres about free axes alone. */
@@ -29359,6 +29469,12 @@ static void demi_rails_move(dem_world *w) {
         }
         if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
+}
+/* Returns the number of rails whose bodies still exist. */
+static int demi_rails_in_force(const dem_world *w) {
+    int k, n = 0;
+    for (k = 0; k < w->rail_count; k++) n += demi_joint_body(w, w->rails[k].body) >= 0;
+    return n;
 }
 /* Removes the rails of bodies that were removed, and that of `body`. */
 static void demi_rails_drop(dem_world *w, dem_body body) {
@@ -29398,6 +29514,7 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     memset(r, 0, sizeof *r);
     r->body = body;
     r->state.desc = *d;
+    r->at = r->seen = demi_at(w->bodies.pos + 4*i);
     demi_rail_wants(w, r, i, 0, v, s);
     dem_body_get(w, body, &state);
     demi_put(own, state.velocity);
@@ -29501,7 +29618,8 @@ static dem_result demi_member_grow(dem_world *w) {
     dem_result result = radius ? DEM_OK : demi_no_memory(w, "dem_world_step");
     double mass = 0;
     int i, grown = 0;
-    for (i = 0; i < n && result == DEM_OK; i++) {
+    demi_finish(w);                             /* the function receives complete velocities, */
+    for (i = 0; i < n && result == DEM_OK; i++) {   /* and the open half kick the old masses */
         const dem_body id = dem_body_id_get(w, i);
         const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
         dem_body_state state;
@@ -29518,7 +29636,6 @@ static dem_result demi_member_grow(dem_world *w) {
                                (double)r, (double)radius[i], (double)rate);
     }
     if (result == DEM_OK && grown) {
-        demi_finish(w);                         /* the open half kick belongs to the old masses */
         if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
     }
     for (i = 0; i < n && result == DEM_OK && grown; i++)
@@ -30029,7 +30146,8 @@ static DEMI_APART void demi_means_add(const dem_world *w, int i) {
 }
 /* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
-    return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
+    return f->used && w->clock.time >= f->next - 1e-6*(double)w->clock.dt &&
+        !(f->desc.end > 0 && w->clock.time > f->desc.end);
 }
 /* Samples all fields that are due. Contacts come first, while velocities are still the predicted
    ones: the present forces were computed from them, and slabs have exchanged them. demi_finish then
@@ -30087,6 +30205,11 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     }
     if (demi_box_empty(w, __func__, d->box, 0)) return id;
+    if (w->desc.planar && (d->box.lo.z > 0 || d->box.hi.z < 0)) {
+        demi_refuse(w, __func__, "box is from z = %g to %g m, must contain 0, where all bodies of "
+                    "a planar world are", (double)d->box.lo.z, (double)d->box.hi.z);
+        return id;
+    }
     if (demi_group_check(w, __func__, d->group, 0) != DEM_OK ||
         (d->material.id && demi_material_index(w, __func__, d->material, &k) != DEM_OK))
         return id;
@@ -30432,8 +30555,10 @@ static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_
     if (wall)
         v = demi_sub(v, demi_surface_at(&wall->pose, demi_add(demi_add(centre, arm),
                                                               noted->shift)));
-    else {
+    if (wall && wall->glides) v = demi_sub(v, demi_glide_at(wall, &wall->pose, normal));
+    if (!wall) {
         v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(arm, way)));
+        if (m->cell.on) v = demi_sub(v, demi_cell_flow(m, way));
         inv += b->inv_mass[n->b];
     }
     slip = demi_sub(v, demi_scale(normal, demi_dot(v, normal)));
@@ -30658,14 +30783,15 @@ static void demi_events_index(dem_world *w) {
         e->last[i] = e->turn;                   /* before the next turn */
     }
 }
-/* Copies the recording of another world. Returns 0 if memory ran out. */
+/* Copies the recording of another world. Returns 0 if memory ran out; then the old one stays. */
 static int demi_events_copy(dem_world *to, const dem_world *from) {
     const demi_events *f = &from->events;
     demi_events *e = &to->events;
-    if (!e->n.on) e->desc = f->desc;
+    const demi_event_counts old = e->n;
     e->n = f->n;
+    if (f->n.on && !demi_events_reserve(to)) { e->n = old; return 0; }
+    if (!old.on) e->desc = f->desc;
     if (!f->n.on) return 1;
-    if (!demi_events_reserve(to)) { memset(&e->n, 0, sizeof e->n); return 0; }
     if (e->n.open) memcpy(e->open, f->open, (size_t)e->n.open*sizeof *e->open);
     if (e->n.open) memcpy(e->sums, f->sums, (size_t)e->n.open*sizeof *e->sums);
     if (e->n.pending) memcpy(e->pending, f->pending, (size_t)e->n.pending*sizeof *e->pending);
@@ -30780,6 +30906,7 @@ static dem_result demi_events_tell(dem_world *w, const char *call) {
                          (unsigned long long)w->clock.steps);
     }
     if (!e->n.pending) return DEM_OK;
+    if (e->desc.function) demi_all(w, demi_member_finish);  /* it may look at velocities */
     qsort(e->pending, (size_t)e->n.pending, sizeof *e->pending, demi_event_compare);
     for (i = 0; i < e->n.pending && e->desc.function; i++) {
         const demi_calling was = demi_calls(w, call, 0);
@@ -30862,6 +30989,7 @@ static double demi_volume(const dem_world *w) {
 static int demi_cell_refuse(dem_world *w, const char *call) {
     const int slides = w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || w->cell.offset < 0 ||
         w->cell.offset > 0;
+    const int rails = demi_rails_in_force(w);
     int i, walls = 0;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (walls)
@@ -30869,14 +30997,10 @@ static int demi_cell_refuse(dem_world *w, const char *call) {
                     "not: a grain and its image would touch the same wall at different velocities; "
                     "remove the walls, or press with a servo wall instead of the cell", walls,
                     walls == 1 ? "" : "s");
-    else if (w->joint_count)
-        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d joint%s, whose "
-                    "anchors would follow the flow of the cell at both ends; remove the joints",
-                    w->joint_count, w->joint_count == 1 ? "" : "s");
-    else if (w->rail_count)
+    else if (rails)
         demi_refuse(w, call, "the periodic cell deforms, and %d bod%s on rails: velocities in the "
                     "cell are relative to its flow, those of rails are not; remove the rails (axes "
-                    "0)", w->rail_count, w->rail_count == 1 ? "y is" : "ies are");
+                    "0)", rails, rails == 1 ? "y is" : "ies are");
     else if (w->feed_count || w->outlet_count)
         demi_refuse(w, call, "the periodic cell deforms, and the regions of %d feeds and %d "
                     "outlets would not; fill the cell before it deforms", w->feed_count,
@@ -31232,7 +31356,7 @@ static void demi_domain_move(dem_world *w, int d) {
     memset(&pace, 0, sizeof pace);
     domain->speed2 = domain->acceleration2 = domain->check = 0;
     domain->turn = domain->turn_speed = domain->turn_rate = 0;
-    if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
+    if (w->stage.quiet) demi_quiet_move(w, d, turning, &pace);
     else for (i = domain->begin; i < domain->end; i += some)
         demi_some_move(w, domain, i, DEMI_MIN(i + some, domain->end), turning, &pace);
     for (i = 0; i < DEMI_LANES; i++) {
@@ -31279,6 +31403,12 @@ static void demi_domain_fields(dem_world *w, int d) {
                                                               body.spin))*(double)w->clock.dt;
     }
 }
+/* Discs stay in the plane z = 0 and rotate about z only. */
+static void demi_domain_flatten(dem_world *w, int d) {
+    int i;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++)
+        w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
+}
 /* Starts the sums of forces and torques of work group d: with 0, or with the force fields. The move
    of a step has already set forces to 0. */
 static void demi_domain_clear(dem_world *w, int d) {
@@ -31303,6 +31433,7 @@ static void demi_domain_clear(dem_world *w, int d) {
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
+    if (w->desc.planar && (w->desc.force || w->desc.body_force)) demi_domain_flatten(w, d);
     if (w->cell.on) demi_cell_drag(w, domain);
 }
 /* Computes the forces of all contacts that work group d owns. Forces on its own bodies are added
@@ -31334,10 +31465,7 @@ static void demi_domain_gather(dem_world *w, int d) {
             sum += fabs((double)w->bodies.rates[i]) + fabs((double)w->bodies.reals[i]);
         w->domains[d].check = sum;
     }
-    if (!w->desc.planar) return;
-    /* discs stay in the plane z = 0 */
-    for (i = w->domains[d].begin; i < w->domains[d].end; i++)
-        w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
+    if (w->desc.planar) demi_domain_flatten(w, d);
 }
 /* Sums the rates, per second, of the walls' user-defined numbers over the work groups, in order. */
 static void demi_walls_rates(dem_world *w) {
@@ -31351,6 +31479,25 @@ static void demi_walls_rates(dem_world *w) {
             for (d = 0; d < w->domain_count; d++)
                 c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
         }
+}
+/* Adds force f, N, and power, W, of a time dt, s, to the sums of a wall's loads. */
+static void demi_loads_add(dem_wall_loads *c, const double *f, double power, double dt) {
+    int k;
+    for (k = 0; k < 3; k++) c->impulse[k] += f[k]*dt;
+    c->torque_impulse += (double)c->torque_axial*dt;
+    c->work += power*dt;
+    c->time += dt;
+}
+/* Impulses: adds the loads of the step whose bodies have just moved. They were solved before, and
+   again if the scene had changed since. */
+static void demi_walls_bear(dem_world *w) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        dem_wall_loads *c = &w->walls[i].loads;
+        const double f[3] = {(double)c->force.x, (double)c->force.y, (double)c->force.z};
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            demi_loads_add(c, f, (double)c->power, (double)w->clock.dt);
+    }
 }
 /* Computes the forces at the present positions and velocities, and the loads of walls. The
    persistent contacts found by touch become the present ones. If forces_valid is 0 the forces
@@ -31391,10 +31538,7 @@ static int demi_forces(dem_world *w) {
         c->torque_axial = demi_dot(c->torque, demi_unit(axis));
         c->power = (dem_real)power;
         c->touched |= c->contacts > 0;
-        for (k = 0; k < 3; k++) c->impulse[k] += f[k]*dt;
-        c->torque_impulse += (double)c->torque_axial*dt;
-        c->work += power*dt;
-        c->time += dt;
+        if (!demi_response_is(w, DEMI_MIDWAY)) demi_loads_add(c, f, power, dt);
     }
     if (demi_exchanges(w)) demi_walls_rates(w);
     for (d = 0; d < w->domain_count; d++)
@@ -31561,6 +31705,7 @@ static dem_result demi_step_move(dem_world *w) {
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt +
         w->cell.squeeze/2;
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
+    if (demi_response_is(w, DEMI_MIDWAY)) demi_walls_bear(w);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->booked.energy[DEMI_E_GRAVITY] += work;
@@ -31587,7 +31732,7 @@ static dem_result demi_step_move(dem_world *w) {
         }
         wall->pose = pose;
         wall->mid = mid;
-        speed = demi_wall_speed(wall);
+        speed = demi_wall_pace(w, i);
         if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: search in every step */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
@@ -31687,7 +31832,6 @@ static dem_result demi_member_forces(dem_world *w) {
 static dem_result demi_member_end(dem_world *w) {
     int d;
     demi_rails_act(w);
-    demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
@@ -31843,16 +31987,26 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
     demi_ahead_back(h);
     return result;
 }
+/* Integrates user-defined numbers at the end of a step. A user's function for that receives
+   complete velocities. */
+static dem_result demi_member_gain(dem_world *w) {
+    if (w->desc.body_reals_fn) demi_finish(w);
+    demi_reals_gain(w);
+    return DEM_OK;
+}
 /* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
+    dem_result result;
     if (!h->stage.moved) {
-        dem_result result = demi_servos_lead(h);
+        result = demi_servos_lead(h);
         if (result == DEM_OK && h->cell.on) result = demi_cell_lead(h);
         if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
     }
-    return demi_answer(h, demi_step_answer);
+    result = demi_answer(h, demi_step_answer);
+    if (!h->stage.moved && demi_member(h, 0)->bodies.real_count) demi_all(h, demi_member_gain);
+    return result;
 }
 
 /* demi_refresh at the positions of contact detection. */
@@ -31867,7 +32021,7 @@ static dem_result demi_refresh_answer(dem_world *h) {
     if (stale) result = demi_all_rebuild(h);
     h->stage.pairs_changed = 0;
     if (result == DEM_OK) result = demi_all(h, demi_member_look);
-    if (result == DEM_OK) result = demi_all_forces(h, 0);
+    if (result == DEM_OK) result = demi_all_forces(h, !stale);
     if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
     h->stage.forces_valid = result == DEM_OK;
     return result;
@@ -32310,10 +32464,13 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
     if (demi_null(w, __func__, make ? w : 0, "make")) return -1;
     demi_bonds b = {make, user, gap, 0};
     double least = -1, most;
-    int i;
-    for (i = 0; i < w->bodies.count; i++)
-        if (least < 0 || (double)w->bodies.pos[4*i + 3] < least)
-            least = (double)w->bodies.pos[4*i + 3];
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++)       /* parts meet, not their bodies */
+        for (k = demi_parts_count(w, i) - 1; k >= 0; k--) {
+            const double r = demi_shape_of(w, i) ? (double)demi_part_of(w, i, k).radius
+                : (double)w->bodies.pos[4*i + 3];
+            if (least < 0 || r < least) least = r;
+        }
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
         return demi_refuse(w, __func__, "gap is %g m, must be >= 0 and at most %g m, the "
@@ -33934,6 +34091,7 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
 DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_wall_part *parts, dem_wall *walls) {
     char sentence[sizeof w->error];
+    const int some = scale > 0 || scale < 0 || !demi_finite(scale);    /* 0: none is given */
     dem_result result = DEM_OK;
     demi_wall *made;
     dem_wall wall = demi_no_wall;
@@ -33946,8 +34104,7 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
     if (!made) return demi_no_memory(w, __func__);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall.id = w->wall_count + i + 1;
-        result = demi_part_make(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, wall,
-                                made + i);
+        result = demi_part_make(w, path, some ? scale : 1, parts + i, wall, made + i);
     }
     if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)w->wall_count + (size_t)count))
         result = demi_no_memory(w, __func__);
@@ -34919,7 +35076,7 @@ typedef struct demi_vtk_in {
     demi_layout *l;
     dem_grains *g;
     int binary, at_points;         /* 1: numbers are bytes; 1: the arrays now are those of points */
-    double points;                 /* their number; -1: not known yet */
+    double points, cells;          /* their number; -1: not known yet */
 } demi_vtk_in;
 /* Returns the current word as a count; -1 if it is none. */
 static double demi_vtk_count(demi_text *t) {
@@ -34989,7 +35146,12 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
         return demi_vtk_array(v, "points", 6, count, 3, t->word, t->length, 1);
     }
     if (demi_text_is(t, "point_data")) v->at_points = v->points >= 0;
-    if (demi_text_is(t, "cell_data")) v->at_points = 0;
+    if (demi_text_is(t, "cell_data")) {
+        v->at_points = 0;
+        demi_text_word(t);
+        v->cells = demi_vtk_count(t);
+        return DEM_OK;
+    }
     if (demi_text_is(t, "field")) {
         demi_text_word(t);
         demi_text_word(t);
@@ -35010,7 +35172,8 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
             demi_text look = *t;
             if (demi_text_line(&look) && demi_text_is(&look, "lookup_table")) *t = look;
         }
-        return demi_vtk_array(v, name, length, v->points, count, type, type_length, v->at_points);
+        return demi_vtk_array(v, name, length, v->at_points ? v->points : v->cells, count, type,
+                              type_length, v->at_points);
     }
     for (k = 0; v->binary && k < sizeof cells/sizeof *cells; k++) {     /* skip bytes of cells */
         if (!demi_text_is(t, cells[k])) continue;
@@ -35037,7 +35200,7 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
 }
 /* Reads grains from a legacy VTK file. t: at its beginning. */
 static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
-    demi_vtk_in v = {t, l, g, 0, 0, -1};
+    demi_vtk_in v = {t, l, g, 0, 0, -1, -1};
     dem_result result = DEM_OK;
     int k;
     for (k = 0; k < 2; k++) {                   /* skip version and title */
@@ -35327,11 +35490,11 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
         if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
-            (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
-            (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
+            (g->velocities && !demi_place(demi_at(g->velocities + 3*i))) ||
+            (g->spins && !demi_place(demi_at(g->spins + 3*i))))
             return demi_refuse(w, __func__, "grain %d has a radius of %g m; the radius must be > "
-                               "0, and position, velocity and spin must be finite; no grain was "
-                               "added", i, (double)g->radii[i]);
+                               "0, and position, velocity and spin must be finite and at most %g; "
+                               "no grain was added", i, (double)g->radii[i], DEMI_FARTHEST);
         if (demi_mass_refuse(w, __func__, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
@@ -37531,7 +37694,8 @@ static int demi_rails_check(const demi_reader *r) {
             a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
              demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
             !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
-            !demi_place(a->turn)) return demi_lie(r, "rail", i);
+            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen))
+            return demi_lie(r, "rail", i);
     }
     return 1;
 }
@@ -37610,8 +37774,9 @@ static int demi_events_check(const demi_reader *r) {
         if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
             e->walls[i].first < 0 || e->walls[i].count < 0 ||
             e->walls[i].count > e->n.facets - e->walls[i].first ||
-            (e->walls[i].id == t->walls[i].id && e->walls[i].count && e->walls[i].count !=
-             t->walls[i].element_count)) return demi_lie(r, "wear of wall", i);
+            (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
+             e->walls[i].count && e->walls[i].count != t->walls[i].element_count))
+            return demi_lie(r, "wear of wall", i);
     return 1;
 }
 
@@ -37708,6 +37873,7 @@ static int demi_twin_follow(dem_world *t) {
     t->touching_valid = 0;
     demi_cross_index(t);
     demi_domains_weigh(t);
+    t->stage.quiet = demi_quiet_possible(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
     return 1;
 }
@@ -37750,9 +37916,12 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
-/* Reads a checkpoint of `size` bytes in memory into the world. */
+/* Changes the twin before the world takes over its state. If it returns DEM_ERROR_MEMORY, the
+   caller provides the error message. */
+typedef dem_result (*demi_adapt_fn)(dem_world *twin, void *how);
+/* Reads a checkpoint of `size` bytes in memory into the world; adapt: null, or what changes it. */
 static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const char *data,
-                                        size_t size) {
+                                        size_t size, demi_adapt_fn adapt, void *how) {
     demi_checkpoint_head head;
     demi_reader r;
     unsigned char *seen = 0;
@@ -37769,6 +37938,7 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     w->facets_valid = 0;                        /* the twin computes the weights of shared walls */
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
+    if (result == DEM_OK && adapt) result = adapt(r.t, how);
     if (result == DEM_OK) {
         const int recording = w->events.n.on;
         demi_twin_adopt(w, r.t);
@@ -37825,7 +37995,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     size_t size = 0;
     dem_result result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_checkpoint_parse(w, path, bytes, size);
+        result = demi_checkpoint_parse(w, path, bytes, size, 0, 0);
     demi_free(w, bytes);
     return result;
 }
@@ -37852,6 +38022,7 @@ typedef struct demi_changes {
     demi_pair *pairs;              /* copy of its pairs; null unless they may differ */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
+    int ledger, growth;            /* 1: the file has an account of energy; its bodies grow */
 } demi_changes;
 
 /* True if the n characters at `word` are one of the words. */
@@ -37972,9 +38143,9 @@ static int demi_changes_arrays(dem_world *w) {
     w->bodies.booked = booked;
     return 1;
 }
-/* Continues with the world's own values after a restart with those of the file. ledger: 1 if the
-   file has an account of energy; growth: 1 if its bodies grow. */
-static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int ledger, int growth) {
+/* Gives the twin, which has read the file with the values of the file, the world's own values. */
+static dem_result demi_changes_apply(dem_world *w, void *how) {
+    const demi_changes *c = (const demi_changes *)how;
     int d, i, j;
     double kinetic, rotational;
     memcpy(w->changes, c->said, sizeof w->changes);
@@ -37990,18 +38161,20 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
     if (c->laws) w->filed.count = 0;            /* they mean something else */
     for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
     if (c->pairs) demi_surfaces_outdated(w);
-    if (w->desc.ledger && !ledger) {            /* its account begins now */
+    if (!w->desc.ledger) demi_events_clear(w);  /* without an account nothing is recorded */
+    if (w->desc.ledger && !c->ledger) {            /* its account begins now */
         demi_kinetic(w, &kinetic, &rotational);
         memset(w->booked.energy, 0, sizeof w->booked.energy);
         w->booked.inserted = kinetic + rotational;
         w->booked.removed = w->booked.throughput = 0;
     }
     w->stage.grown = w->desc.ledger;            /* what springs hold differently is booked there */
-    if (!growth) w->clock.grown = w->clock.time;    /* growth begins now */
+    if (!c->growth) w->clock.grown = w->clock.time;     /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);
     demi_scene_changed(w);
-    return DEM_OK;
+    /* now laws and histories agree, also in a checkpoint that is written before the next step */
+    return demi_effects_take(w) ? DEM_OK : DEM_ERROR_MEMORY;
 }
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
                                                const char *allowed) {
@@ -38013,7 +38186,6 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     demi_stream s;
     char *bytes = 0;
     size_t size = 0;
-    int ledger, growth;
     dem_result result = demi_changes_check(w, allowed);
     if (result == DEM_OK) result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK) result = demi_checkpoint_check(w, path, bytes, size, &head);
@@ -38033,11 +38205,10 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
         demi_changes_take(w, &c, &s);
         w->bodies.backward = demi_integrator_of(w)->backward;
         w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
-        ledger = w->desc.ledger;
-        growth = w->desc.growth != 0;
-        result = demi_checkpoint_parse(w, path, bytes, size);
-        if (result == DEM_OK) result = demi_changes_apply(w, &c, ledger, growth);
-        else {
+        c.ledger = w->desc.ledger;
+        c.growth = w->desc.growth != 0;
+        result = demi_checkpoint_parse(w, path, bytes, size, demi_changes_apply, &c);
+        if (result != DEM_OK) {
             demi_changes_back(w, &c);
             w->bodies.backward = demi_integrator_of(w)->backward;
             w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
@@ -38613,7 +38784,7 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
     const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
     dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
     double lowest = -1e300, floor = -1e300, speed = 0;
-    int i, moving = 0;
+    int i, moving = 0, driven = w->cell.on || w->desc.growth || w->feed_count;
     for (i = 0; i < w->bodies.count; i++) {
         const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
         if (w->bodies.inv_mass[i] <= 0) { floor = DEMI_MAX(floor, h); continue; }
@@ -38626,13 +38797,17 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
                   "for example with dem_spheres_fill");
         return;
     }
-    if (!pulled && !forced && !(speed > 0) && moving)
+    for (i = 0; i < w->wall_count; i++)
+        driven |= w->walls[i].kind != DEMI_WALL_NONE &&
+            (w->walls[i].motion.kind != DEM_MOTION_FIXED || w->walls[i].glides);
+    if (!pulled && !forced && !driven && !(speed > 0) && moving)
         demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
                   "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
-    if (pulled && moving && !forced && floor < lowest && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
+    if (pulled && moving && !forced && floor < lowest && !demi_joints_in_force(w) &&
+        !demi_rails_in_force(w) && !demi_outflows(w) && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
         w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
         w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
         w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
@@ -38744,6 +38919,16 @@ static void demi_check_walls(const dem_world *w, demi_findings *f) {
     }
 }
 
+/* True if a joint takes away the contact of bodies a and b. */
+static int demi_hinged(const dem_world *w, int a, int b) {
+    int k, found = 0;
+    for (k = 0; k < w->joint_count && !found; k++) {
+        const dem_joint_desc *j = &w->joints[k].desc;
+        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
+        found = !j->collide && ((p == a && q == b) || (p == b && q == a));
+    }
+    return found;
+}
 /* Checks for pairs of bodies that overlap by more than 1 % of the smaller radius; pairs of fixed
    bodies are exempt. Needs a valid neighbour list. */
 static void demi_check_pairs(const dem_world *w, demi_findings *f) {
@@ -38758,8 +38943,8 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
                 const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
                 const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
                                                               list->image[k], r)/r);
-                if (!(deep > 0.01) || (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0))
-                    continue;
+                if (!(deep > 0.01) || demi_hinged(w, a, b) ||
+                    (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0)) continue;
                 count++;
                 if (deep <= worst) continue;
                 worst = deep;
@@ -39895,15 +40080,34 @@ static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
 typedef struct demi_again { dem_world_desc desc; int memory, times; } demi_again;
 /* Switches an effect off in the copy t, or makes it call the user's functions through *own. */
 typedef void (*demi_leave_fn)(dem_world *t, demi_again *own);
-/* Rolling friction goes too: there are loops for neither, for friction, and for both. */
+/* Changes all pairs of materials of the copy by a function of one pair. */
+static void demi_leave_pairs(dem_world *t, void (*leave)(dem_pair *p)) {
+    int i, j;
+    for (i = 0; i < t->material_count; i++)
+        for (j = i; j < t->material_count; j++) {
+            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
+            leave(&p);
+            demi_pair_put(t, i, j, &p);
+        }
+}
+static void demi_leave_pair_rolling(dem_pair *p) { p->rolling_friction = p->spinning_friction = 0; }
+static void demi_leave_pair_friction(dem_pair *p) {
+    p->friction = p->friction_static = 0;
+    demi_leave_pair_rolling(p);
+}
+static void demi_leave_pair_adhesion(dem_pair *p) { p->stiffness_adhesion = p->cohesion = 0; }
+/* Rolling friction goes too: there are loops for neither, for friction, and for both. Impulses have
+   the coefficients only, no laws. */
 static void demi_leave_friction(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.tangent_law = DEM_TANGENT_NONE;
     t->desc.rolling_law = DEM_ROLLING_NONE;
+    if (!demi_response_is(t, DEMI_LASTING)) demi_leave_pairs(t, demi_leave_pair_friction);
 }
 static void demi_leave_rolling(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.rolling_law = DEM_ROLLING_NONE;
+    if (!demi_response_is(t, DEMI_LASTING)) demi_leave_pairs(t, demi_leave_pair_rolling);
 }
 static void demi_leave_growth(dem_world *t, demi_again *own) {
     (void)own;
@@ -39923,14 +40127,8 @@ static void demi_leave_orientations(dem_world *t, demi_again *own) {
     t->desc.orientations = t->bodies.orienting = 0;
 }
 static void demi_leave_adhesion(dem_world *t, demi_again *own) {
-    int i, j;
     (void)own;
-    for (i = 0; i < t->material_count; i++)
-        for (j = i; j < t->material_count; j++) {
-            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
-            p.stiffness_adhesion = p.cohesion = 0;
-            demi_pair_put(t, i, j, &p);
-        }
+    demi_leave_pairs(t, demi_leave_pair_adhesion);
 }
 static void demi_leave_motions(dem_world *t, demi_again *own) {
     dem_wall id;
@@ -40527,6 +40725,8 @@ static void demi_report(const dem_world *world, FILE *out) {
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
     char few[48] = "";
     dem_advice a;
+    int i, walls = 0;
+    for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     if (w->crew.best && w->crew.best < c.threads)
@@ -40562,7 +40762,7 @@ static void demi_report(const dem_world *world, FILE *out) {
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
                 ? "differ (coefficients per neighbour pair)"
-                : "of few species (coefficients per pair of species)", w->wall_count,
+                : "of few species (coefficients per pair of species)", walls,
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
     demi_idle_report(w, out);
@@ -41801,10 +42001,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_refuse(w, call, "contacts of this world are impulses, which cannot be split "
                            "into slabs; use threads");
-    if (w->rail_count)
+    if (demi_rails_in_force(w))
         return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs "
                            "do not pass on; use threads, or walls instead of these bodies",
-                           w->rail_count);
+                           demi_rails_in_force(w));
     if (w->cell.on || w->cell.side[0] > 0)
         return demi_refuse(w, call, "the periodic cell of this world has been deformed "
                            "(dem_cell_set), but borders of slabs do not move; use threads");
@@ -41933,8 +42133,11 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     int k, ok;
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
-    /* files the contact histories; the world keeps its list */
-    if (w->stage.list_valid && !demi_carry_collect(w)) {
+    /* files the contact histories, in the layout of the laws of the next step; the world keeps its
+       list if these are the present laws */
+    if (w->stage.pairs_changed || !w->stage.list_valid ||
+        w->effects.clustered != demi_clustered(w)
+        ? !demi_list_drop(w) || !demi_effects_take(w) : !demi_carry_collect(w)) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
@@ -42209,14 +42412,13 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                                    "afterwards", (unsigned)slot + 1, k);
         }
     }
-    if (h->events.n.on && !demi_events_copy(w, h)) return demi_no_memory(h, call);
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
     i = w->bodies.slot_count;
     if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)DEMI_MAX(s->slots - i, 0)))
         return demi_no_memory(h, call);
     demi_slabs_slots(s, w);
-    if (!demi_filed_reserve(w, add, &come)) {
+    if (!demi_filed_reserve(w, add, &come) || (h->events.n.on && !demi_events_copy(w, h))) {
         w->bodies.slot_count = i;
         return demi_no_memory(h, call);
     }
@@ -42893,7 +43095,8 @@ static const char *const demi_viewer[] = {
 typedef struct demi_seen {
     int32_t place[3];                /* position in units of the resolution */
     uint32_t generation, turn;       /* of the body; orientation as in the file */
-    float own;                       /* the user's number */
+    int32_t material, shape;
+    float own, radius;               /* the user's number; m */
     unsigned char speed, there;      /* as in the file; 1: there is a body */
 } demi_seen;
 struct dem_replay {
@@ -43131,7 +43334,18 @@ static void demi_film_walls(dem_replay *r) {
         }
     }
 }
-/* Appends the bodies that are gone, then the new ones, by slot. */
+/* True if the body in slot s is the one that was there, with the same radius, material and
+   shape. */
+static int demi_film_same(const dem_replay *r, const dem_bodies *b, int s) {
+    const demi_bodies *bodies = &r->world->bodies;
+    const demi_seen *old = &r->seen[s];
+    const int i = s < bodies->slot_count ? bodies->slot_index[s] : -1;
+    const float radius = i < 0 ? 0 : (float)b->positions[4*i + 3];
+    return i >= 0 && bodies->slot_generation[s] == old->generation &&
+        !memcmp(&radius, &old->radius, sizeof radius) && b->materials[i] == old->material &&
+        (b->shapes ? b->shapes[i] : 0) == old->shape;
+}
+/* Appends the bodies that are gone, then the new ones, by slot. One that has changed is both. */
 static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
     const demi_bodies *bodies = &r->world->bodies;
     uint32_t gone = 0, fresh = 0;
@@ -43140,8 +43354,7 @@ static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
         if (pass) demi_film_count(r, gone);
         for (s = 0; s < r->seen_count; s++) {
             demi_seen *old = &r->seen[s];
-            if (!old->there || (s < bodies->slot_count && bodies->slot_index[s] >= 0 &&
-                                bodies->slot_generation[s] == old->generation)) continue;
+            if (!old->there || demi_film_same(r, b, s)) continue;
             if (!pass) { gone++; continue; }
             old->there = 0;
             demi_film_count(r, (uint32_t)s);
@@ -43158,9 +43371,12 @@ static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
             memset(one, 0, sizeof *one);
             one->there = 1;
             one->generation = bodies->slot_generation[s];
+            one->material = b->materials[i];
+            one->shape = b->shapes ? b->shapes[i] : 0;
+            one->radius = (float)b->positions[4*i + 3];
             demi_film_count(r, (uint32_t)s);
-            demi_film_count(r, (uint32_t)b->materials[i]);
-            demi_film_count(r, b->shapes ? (uint32_t)b->shapes[i] : 0);
+            demi_film_count(r, (uint32_t)one->material);
+            demi_film_count(r, (uint32_t)one->shape);
             demi_film_real(r, (double)b->positions[4*i + 3]);
         }
     }
@@ -43232,6 +43448,7 @@ static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     dem_world *w = r->world;
     const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;
     const int count = due ? dem_contacts_get(w, 0, 0) : 0;
+    const demi_periods periods = demi_periods_of(w);
     double least = 0;
     uint32_t kept = 0;
     int k, c;
@@ -43254,15 +43471,15 @@ static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     for (k = 0; k < count && kept; k++) {
         const dem_contact_info *o = r->contacts + k;
         const double force = (double)demi_length(o->force);
-        dem_real point[3];
+        const dem_real *at = b->positions + 4*w->bodies.slot_index[o->a.slot - 1];
+        dem_real arm[3];
         uint16_t code;
         if (force < least) continue;
-        demi_put(point, o->point);
+        demi_put(arm, demi_nearest(&periods, demi_sub(o->point, demi_at(at))));
         demi_film_count(r, o->a.slot - 1);
         demi_film_count(r, o->b.slot);
         for (c = 0; c < 3 && !o->b.slot; c++) {
-            const dem_real *at = b->positions + 4*w->bodies.slot_index[o->a.slot - 1];
-            const double x = (double)(point[c] - at[c])/r->resolution;
+            const double x = (double)arm[c]/r->resolution;
             const int16_t from = (int16_t)floor(DEMI_MAX(-32767, DEMI_MIN(32767, x)) + 0.5);
             demi_film_put(r, &from, 2, 1);
         }

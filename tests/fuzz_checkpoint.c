@@ -113,7 +113,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     memcpy(bad + bytes - end, &sum, end);
     world = scene(1, 0);
     if (!world) abort();
-    result = demi_checkpoint_parse(world, "fuzz", bad, bytes);
+    result = demi_checkpoint_parse(world, "fuzz", bad, bytes, 0, 0);
     if (result != DEM_OK && !dem_world_error_get(world)[0]) abort();
     if (result != DEM_OK && dem_world_steps_get(world) != 1) abort();
     dem_world_hash_get(world);

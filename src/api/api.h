@@ -595,7 +595,7 @@ DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_c
     const dem_real loaded = c->overlap > before ? c->overlap : before;
     const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
     const dem_real depth = most < loaded ? most : loaded;
-    memory[0] = depth;
+    if (c->dt > 0) memory[0] = depth;
     f->elastic = kun*c->overlap - soft*depth;
     f->normal = f->elastic + c->cn*c->closing_speed;
     f->slope = f->slope_step = kn;

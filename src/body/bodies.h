@@ -266,11 +266,11 @@ static double demi_body_energy(const dem_world *w, int i) {
         (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
-/* Marks the time step as outdated, or forces and half-step velocities too, after a change of the
-   scene. */
+/* Marks the time step as outdated, or forces, half-step velocities and isolated bodies too, after a
+   change of the scene. */
 static void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
 static void demi_scene_changed(dem_world *w) {
-    w->stage.forces_valid = w->stage.primed = 0;
+    w->stage.forces_valid = w->stage.primed = w->stage.quiet = 0;
     demi_dt_outdated(w);
 }
 /* Prepares a world without bodies. */

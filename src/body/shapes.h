@@ -431,7 +431,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     demi_moments m;
     dem_shape none;
     dem_vec3 about = demi_v(0, 0, 0);
-    dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
+    dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX, most;
     int i;
     none.id = 0;
     if (demi_shape_planar(w, __func__) || !demi_cluster_check(w, desc)) return none;
@@ -454,9 +454,12 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
         return none;
     }
     demi_shape_principal(&shape, &m);
-    if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0)) {
+    most = DEMI_MAX(shape.inertia.x, DEMI_MAX(shape.inertia.y, shape.inertia.z));
+    if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0) ||
+        2*most > (shape.inertia.x + shape.inertia.y + shape.inertia.z)*DEM_R(1.00001)) {
         demi_shape_free(w, &shape);
-        demi_refuse(w, __func__, "a principal moment of inertia is not > 0; %s",
+        demi_refuse(w, __func__, "a principal moment of inertia is not > 0, or above the "
+                    "sum of the other two; %s",
                     desc->mass == DEM_CLUSTER_GIVEN ? "the given off-diagonal moments are too large"
                     : "use more rays");
         return none;
@@ -482,7 +485,7 @@ static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
 /* Returns the semi-axes, m, of the ellipsoid with the same moments of inertia. */
 static dem_vec3 demi_shape_alike(const demi_shape *s) {
     const dem_vec3 I = s->inertia;
-    if (s->kind == DEMI_ELLIPSOID) return s->axes;
+    if (s->kind == DEMI_ELLIPSOID && !s->pieces) return s->axes;
     return demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));

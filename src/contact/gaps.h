@@ -17,6 +17,9 @@
    portals.
    --------------------------------------------------------------------------------------------- */
 
+/* Two bodies touch if their gap is 0 but for rounding, up to this part of their size below 0. */
+#define DEMI_TOUCHING (DEMI_SINGLE ? 1e-5 : 1e-9)
+
 /* A support vertex, that is a corner of D: corner b of B minus corner a of A. */
 typedef struct demi_lead { demi_d3 x; int a, b; } demi_lead;
 /* Up to four corners of D. The point nearest to the origin is the sum of part x; the parts add up

@@ -48,7 +48,8 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const
         const double l = t->to[k], both = t->both[k];
         const double ra = demi_part_round(w, p, l*both), rb = demi_part_round(w, q, (1 - l)*both);
         c->r_eff = (dem_real)(ra*rb/(ra + rb));
-        c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD
+        /* across a gap there is no chord */
+        c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD && t->w0[k] < 1
             ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
     }
 }
@@ -129,6 +130,8 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     at = demi_d3_real(near);
     n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
     at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
+    if (W0 > 1 && !((double)demi_length(at)*(1 - 1/W0) <
+                    (double)demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
@@ -159,6 +162,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
     demi_simplex tells;
     demi_solid a, b;
+    double least;
     int k, nearest = 0;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
@@ -169,12 +173,13 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
     if (!demi_response_is(w, DEMI_PRESSING)) return 1;
     for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
+    least = spots->gap[nearest];
     for (k = 0; k < 4; k++) {
         spots->x[k] = spots->x[nearest];
-        spots->gap[k] = spots->gap[nearest];
+        spots->gap[k] = DEMI_MAX(least, 0);     /* below 0 by rounding: they touch */
     }
     spots->count = 4;
-    return spots->gap[0] > 0;
+    return least > -DEMI_TOUCHING*(ra + rb);
 }
 /* Two polyhedra by their common volume. c becomes the first of four contact points. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,

@@ -111,7 +111,8 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
         if (m->merged[q] || held > 0) m->t.rows.memory[at_grip][q] = now;   /* 0 until merged */
         if (!(held > 0) || !(now > held) || !demi_laws_keep(w)) continue;
         for (e = 0; e < keep; e++)
-            if (w->laws.vectors >> e & 1) m->t.rows.memory[e][q] *= held/now;
+            if (w->laws.vectors >> e & 1 || e == w->laws.at_twisting)
+                m->t.rows.memory[e][q] *= held/now;
     }
 }
 /* Copies the coefficients that differ from pair to pair. first: all of them, for a whole tile. */

@@ -50,7 +50,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
     demi_recall(t, q, 0, keep, m);
     w->desc.law(c, m, &f);
     demi_keep(t, q, 0, keep, m);
-    t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
+    if (same->at_sliding < DEMI_MEMORY) t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
     if (!r->ledger) return;                        /* energies that the law returned */
     demi_normal_energy(t, q, &f);
@@ -139,6 +139,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     for (e = 0; e < DEM_LAW_MEMORY; e++) c.memory[e] = t->memory[e];
     c.normal_force = t->repulsion;
     c.slides = t->memory[same.at_sliding];
+    if (same.at_sliding == DEMI_MEMORY) memset(c.slides, 0, sizeof t->memory[0]);   /* of no pair */
     for (e = 0; e < 7; e++) c.energy[e] = r->ledger ? t->part[energies[e]] : 0;
     demi_own_rows(w)(&c);
     demi_answer_choose(r, 1)(t, r, full);

@@ -351,7 +351,11 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             t->shift = g->shift[e];
             for (e = 1; e <= pressed; e++)
                 if (demi_dot(out[-e].normal, t->normal) > DEM_R(0.95)) break;
-            if (e <= pressed || (pressing && !(t->overlap < 0))) break;
+            /* at gap 0 nothing presses, but a law with a range is called */
+            if (e <= pressed || (pressing &&
+                                 !(t->overlap < (dem_real)DEMI_TOUCHING*demi_part_thin(part))))
+                break;
+            if (pressing) t->overlap = DEMI_MIN(t->overlap, 0);
             count++;
         }
     }

@@ -521,6 +521,7 @@ typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end
 typedef struct demi_pair {
     dem_pair given;
     double damping;                /* damping ratio that gives its restitution */
+    int own;                       /* 1: dem_pair_set has set it, so it is no mixture */
 } demi_pair;
 
 /* The laws in force, and where in the contact history the reals of each law begin (those of

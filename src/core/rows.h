@@ -181,6 +181,7 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
     DEMI_N(stage.synced, 'i', DEMI_FIRSTS), DEMI_N(stage.near_stale, 'i', 0),
+    DEMI_N(stage.quiet, 'i', 0),
     DEMI_N(stage.skin_chosen, 'i', 0), DEMI_N(stage.near_chosen, 'i', 0),
     DEMI_N(margin.skin, 'd', DEMI_FROM | DEMI_DEALT), DEMI_N(margin.step_gone, 'd', 0),
     DEMI_N(margin.gone, 'd', DEMI_FROM | DEMI_HEADS), DEMI_N(margin.age, 'd', DEMI_FROM),

@@ -43,6 +43,8 @@ typedef struct demi_stages {
     int synced;                    /* no half kick is pending: see demi_finish */
     int grown;                     /* 1: radii have changed since the last forces: >>growth */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
+    int quiet;                     /* isolated bodies are known (>>near): the scene has not changed
+                                      since the pruned list was made */
     /* 1: a rebuild that ran out of memory had chosen the skin, or the span of the pruned list. The
        next try keeps them, because the counts behind the choice may be lost */
     int skin_chosen, near_chosen;
@@ -87,8 +89,8 @@ typedef struct demi_booked {       /* >>ledger: totals and maxima since the begi
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
     double overlap_max, speed_max; /* relative to the radius; m/s */
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
-    double due[4];                 /* J: energies that the impulses and walls will take in the next
-                                      step, see demi_impulses_tell */
+    double due[5];                 /* J: energies that impulses, walls and force fields will take
+                                      or give in the next step, see demi_impulses_tell */
     double residual, residual_rms; /* m/s, of the last solve: largest, rms */
     uint64_t unsolved;             /* solves that did not reach their tolerance */
     int sweeps, none;              /* of the last solve; padding, 0 */

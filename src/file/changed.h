@@ -20,6 +20,7 @@ typedef struct demi_changes {
     demi_pair *pairs;              /* copy of its pairs; null unless they may differ */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
+    int ledger, growth;            /* 1: the file has an account of energy; its bodies grow */
 } demi_changes;
 
 /* True if the n characters at `word` are one of the words. */
@@ -140,9 +141,9 @@ static int demi_changes_arrays(dem_world *w) {
     w->bodies.booked = booked;
     return 1;
 }
-/* Continues with the world's own values after a restart with those of the file. ledger: 1 if the
-   file has an account of energy; growth: 1 if its bodies grow. */
-static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int ledger, int growth) {
+/* Gives the twin, which has read the file with the values of the file, the world's own values. */
+static dem_result demi_changes_apply(dem_world *w, void *how) {
+    const demi_changes *c = (const demi_changes *)how;
     int d, i, j;
     double kinetic, rotational;
     memcpy(w->changes, c->said, sizeof w->changes);
@@ -158,18 +159,20 @@ static dem_result demi_changes_apply(dem_world *w, const demi_changes *c, int le
     if (c->laws) w->filed.count = 0;            /* they mean something else */
     for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
     if (c->pairs) demi_surfaces_outdated(w);
-    if (w->desc.ledger && !ledger) {            /* its account begins now */
+    if (!w->desc.ledger) demi_events_clear(w);  /* without an account nothing is recorded */
+    if (w->desc.ledger && !c->ledger) {            /* its account begins now */
         demi_kinetic(w, &kinetic, &rotational);
         memset(w->booked.energy, 0, sizeof w->booked.energy);
         w->booked.inserted = kinetic + rotational;
         w->booked.removed = w->booked.throughput = 0;
     }
     w->stage.grown = w->desc.ledger;            /* what springs hold differently is booked there */
-    if (!growth) w->clock.grown = w->clock.time;    /* growth begins now */
+    if (!c->growth) w->clock.grown = w->clock.time;     /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);
     demi_scene_changed(w);
-    return DEM_OK;
+    /* now laws and histories agree, also in a checkpoint that is written before the next step */
+    return demi_effects_take(w) ? DEM_OK : DEM_ERROR_MEMORY;
 }
 DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
                                                const char *allowed) {
@@ -181,7 +184,6 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     demi_stream s;
     char *bytes = 0;
     size_t size = 0;
-    int ledger, growth;
     dem_result result = demi_changes_check(w, allowed);
     if (result == DEM_OK) result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK) result = demi_checkpoint_check(w, path, bytes, size, &head);
@@ -201,11 +203,10 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
         demi_changes_take(w, &c, &s);
         w->bodies.backward = demi_integrator_of(w)->backward;
         w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;
-        ledger = w->desc.ledger;
-        growth = w->desc.growth != 0;
-        result = demi_checkpoint_parse(w, path, bytes, size);
-        if (result == DEM_OK) result = demi_changes_apply(w, &c, ledger, growth);
-        else {
+        c.ledger = w->desc.ledger;
+        c.growth = w->desc.growth != 0;
+        result = demi_checkpoint_parse(w, path, bytes, size, demi_changes_apply, &c);
+        if (result != DEM_OK) {
             demi_changes_back(w, &c);
             w->bodies.backward = demi_integrator_of(w)->backward;
             w->bodies.booked = w->desc.ledger && demi_integrator_of(w)->predicts;

@@ -378,7 +378,7 @@ typedef struct demi_vtk_in {
     demi_layout *l;
     dem_grains *g;
     int binary, at_points;         /* 1: numbers are bytes; 1: the arrays now are those of points */
-    double points;                 /* their number; -1: not known yet */
+    double points, cells;          /* their number; -1: not known yet */
 } demi_vtk_in;
 /* Returns the current word as a count; -1 if it is none. */
 static double demi_vtk_count(demi_text *t) {
@@ -448,7 +448,12 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
         return demi_vtk_array(v, "points", 6, count, 3, t->word, t->length, 1);
     }
     if (demi_text_is(t, "point_data")) v->at_points = v->points >= 0;
-    if (demi_text_is(t, "cell_data")) v->at_points = 0;
+    if (demi_text_is(t, "cell_data")) {
+        v->at_points = 0;
+        demi_text_word(t);
+        v->cells = demi_vtk_count(t);
+        return DEM_OK;
+    }
     if (demi_text_is(t, "field")) {
         demi_text_word(t);
         demi_text_word(t);
@@ -469,7 +474,8 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
             demi_text look = *t;
             if (demi_text_line(&look) && demi_text_is(&look, "lookup_table")) *t = look;
         }
-        return demi_vtk_array(v, name, length, v->points, count, type, type_length, v->at_points);
+        return demi_vtk_array(v, name, length, v->at_points ? v->points : v->cells, count, type,
+                              type_length, v->at_points);
     }
     for (k = 0; v->binary && k < sizeof cells/sizeof *cells; k++) {     /* skip bytes of cells */
         if (!demi_text_is(t, cells[k])) continue;
@@ -496,7 +502,7 @@ static dem_result demi_vtk_section(demi_vtk_in *v) {
 }
 /* Reads grains from a legacy VTK file. t: at its beginning. */
 static dem_result demi_grains_vtk(demi_text *t, demi_layout *l, dem_grains *g) {
-    demi_vtk_in v = {t, l, g, 0, 0, -1};
+    demi_vtk_in v = {t, l, g, 0, 0, -1, -1};
     dem_result result = DEM_OK;
     int k;
     for (k = 0; k < 2; k++) {                   /* skip version and title */
@@ -786,11 +792,11 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
         if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
-            (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
-            (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
+            (g->velocities && !demi_place(demi_at(g->velocities + 3*i))) ||
+            (g->spins && !demi_place(demi_at(g->spins + 3*i))))
             return demi_refuse(w, __func__, "grain %d has a radius of %g m; the radius must be > "
-                               "0, and position, velocity and spin must be finite; no grain was "
-                               "added", i, (double)g->radii[i]);
+                               "0, and position, velocity and spin must be finite and at most %g; "
+                               "no grain was added", i, (double)g->radii[i], DEMI_FARTHEST);
         if (demi_mass_refuse(w, __func__, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;

@@ -715,6 +715,7 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
 DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_wall_part *parts, dem_wall *walls) {
     char sentence[sizeof w->error];
+    const int some = scale > 0 || scale < 0 || !demi_finite(scale);    /* 0: none is given */
     dem_result result = DEM_OK;
     demi_wall *made;
     dem_wall wall = demi_no_wall;
@@ -727,8 +728,7 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
     if (!made) return demi_no_memory(w, __func__);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall.id = w->wall_count + i + 1;
-        result = demi_part_make(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, wall,
-                                made + i);
+        result = demi_part_make(w, path, some ? scale : 1, parts + i, wall, made + i);
     }
     if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)w->wall_count + (size_t)count))
         result = demi_no_memory(w, __func__);

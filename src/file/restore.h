@@ -449,7 +449,8 @@ static int demi_rails_check(const demi_reader *r) {
             a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
              demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
             !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
-            !demi_place(a->turn)) return demi_lie(r, "rail", i);
+            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen))
+            return demi_lie(r, "rail", i);
     }
     return 1;
 }
@@ -528,8 +529,9 @@ static int demi_events_check(const demi_reader *r) {
         if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
             e->walls[i].first < 0 || e->walls[i].count < 0 ||
             e->walls[i].count > e->n.facets - e->walls[i].first ||
-            (e->walls[i].id == t->walls[i].id && e->walls[i].count && e->walls[i].count !=
-             t->walls[i].element_count)) return demi_lie(r, "wear of wall", i);
+            (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
+             e->walls[i].count && e->walls[i].count != t->walls[i].element_count))
+            return demi_lie(r, "wear of wall", i);
     return 1;
 }
 
@@ -626,6 +628,7 @@ static int demi_twin_follow(dem_world *t) {
     t->touching_valid = 0;
     demi_cross_index(t);
     demi_domains_weigh(t);
+    t->stage.quiet = demi_quiet_possible(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
     return 1;
 }
@@ -668,9 +671,12 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
-/* Reads a checkpoint of `size` bytes in memory into the world. */
+/* Changes the twin before the world takes over its state. If it returns DEM_ERROR_MEMORY, the
+   caller provides the error message. */
+typedef dem_result (*demi_adapt_fn)(dem_world *twin, void *how);
+/* Reads a checkpoint of `size` bytes in memory into the world; adapt: null, or what changes it. */
 static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const char *data,
-                                        size_t size) {
+                                        size_t size, demi_adapt_fn adapt, void *how) {
     demi_checkpoint_head head;
     demi_reader r;
     unsigned char *seen = 0;
@@ -687,6 +693,7 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     w->facets_valid = 0;                        /* the twin computes the weights of shared walls */
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
+    if (result == DEM_OK && adapt) result = adapt(r.t, how);
     if (result == DEM_OK) {
         const int recording = w->events.n.on;
         demi_twin_adopt(w, r.t);
@@ -743,7 +750,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     size_t size = 0;
     dem_result result = demi_load(w, __func__, path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_checkpoint_parse(w, path, bytes, size);
+        result = demi_checkpoint_parse(w, path, bytes, size, 0, 0);
     demi_free(w, bytes);
     return result;
 }

@@ -71,16 +71,22 @@ static void demi_impulses_lift(dem_world *w, int index) {
     }
 }
 /* Sets forces and torques of a domain's bodies to those that produce the solved velocities in the
-   coming step. Gravity is not part of them. */
+   coming step. Gravity is not part of them. Before, they are those of force fields, whose work, as
+   that of impulses, is exact with the mean of the velocities before and after the step. */
 static void demi_movers_force(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
+    const int fields = w->desc.ledger && (w->desc.force || w->desc.body_force);
+    double work = 0;
     int i, k;
     for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
         const demi_mover *m = s->movers + i;
         const demi_lane b = demi_lane_move(w, i);
         dem_real *torque = w->bodies.torque + 4*i;
         if (!(m->inv > 0)) continue;
+        for (k = 0; k < 3 && fields; k++)
+            work += (double)b.f[k]*(double)(b.v[k] + m->v[k]) +
+                (double)torque[k]*(double)(w->bodies.spin[4*i + k] + m->w[k]);
         for (k = 0; k < 3; k++) b.f[k] = ((m->v[k] - b.v[k])*per - b.g[k])/m->inv;
         if (w->bodies.shaped && w->bodies.shape[i]) {
             const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
@@ -92,6 +98,7 @@ static void demi_movers_force(dem_world *w, int d) {
             for (k = 0; k < 3; k++)
                 torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
+    w->domains[d].energy[DEMI_E_FORCE] = work*(double)s->dt/2;
 }
 /* Notes a solved contact for events. old: it had an impulse before; energy: J, lost by its normal
    impulse, slip and rolling. */
@@ -276,6 +283,7 @@ static void demi_impulses(dem_world *w) {
     w->booked.due[1] = demi_sum_energy(w, DEMI_E_SLIDE);
     w->booked.due[2] = demi_sum_energy(w, DEMI_E_ROLL);
     w->booked.due[3] = 0;
+    w->booked.due[4] = demi_sum_energy(w, DEMI_E_FORCE);
     if (!w->stage.forces_valid) return;         /* forces only, no step */
     for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
     for (i = 0; i < w->bodies.count; i++) {
@@ -362,11 +370,12 @@ static void demi_impulses_due(dem_world *w) {
 }
 /* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
 static void demi_due_book(dem_world *w) {
-    static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
+    static const int flows[5] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS,
+                                 DEMI_E_FORCE};
     int i;
-    for (i = 0; i < 4; i++) w->booked.energy[flows[i]] += w->booked.due[i];
+    for (i = 0; i < 5; i++) w->booked.energy[flows[i]] += w->booked.due[i];
     w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
-    w->booked.throughput += fabs(w->booked.due[3]);
+    w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
 }
 /* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
    *out and *gap unless out is null: see demi_response_row. */

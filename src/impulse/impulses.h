@@ -222,7 +222,11 @@ static void demi_impulses_meet(dem_world *w, int d) {
             m->a = a;
             m->b = b;
             m++->home = p;
-        } else for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
+            continue;
+        }
+        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
+        if (!(l2 > 0) && s->movers[a].inv + s->movers[b].inv > 0 && !demi_joined(w, a, b, -1))
+            domain->overlap = 2;                /* at the same position: there is no normal */
     }
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *k = w->kept_next + w->kept_first[d] + i;
@@ -337,7 +341,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     } else {
         const demi_kept *k = w->kept_next + w->kept_first[d] + ~m->home;
         o.normal = k->normal;
-        o.gap = -k->overlap;
+        o.gap = -k->overlap/k->slope;           /* along the normal, m, whatever overlap means */
         o.arm_a = k->arm_a;
         o.arm_b = k->arm_b;
         o.r_eff = k->r_eff;

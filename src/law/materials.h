@@ -88,7 +88,8 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_MIX)
     /* twice the springs in series, so that equal materials give their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
-        p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
+        p.stiffness = (dem_real)(2*((double)a->stiffness*(double)b->stiffness)/
+                                 ((double)a->stiffness + (double)b->stiffness));
     /* one material has only a modulus, the other only a stiffness */
     else if (p.young_eff <= 0)
         p.stiffness = DEMI_MAX(a->stiffness, b->stiffness);
@@ -136,7 +137,7 @@ static void demi_pairs_changed(dem_world *w) {
    once, because it may need a bisection (demi_damping_for). */
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
-    pair->given = *p;
+    pair->given = *p;                           /* `own` stays */
     pair->damping = demi_response_is(w, DEMI_LASTING)
         ? demi_damping_for((double)p->restitution, w->desc.tension) : 0;
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
@@ -215,12 +216,8 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
     if (!(desc->restitution > 0) && demi_response_is(w, DEMI_LASTING)) /* by the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     for (i = 0; i < w->material_count; i++) {
-        const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
         const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
-        /* values that dem_pair_set has set stay; the last field, an int, has padding behind it */
-        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, offsetof(dem_pair, ignored)) &&
-            !w->pairs[i*DEMI_MATERIALS + m].given.ignored)
-            demi_pair_put(w, i, m, &now);
+        if (!w->pairs[i*DEMI_MATERIALS + m].own) demi_pair_put(w, i, m, &now);
     }
     demi_pairs_changed(w);
     demi_built(w, __func__);

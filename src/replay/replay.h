@@ -37,7 +37,8 @@
 typedef struct demi_seen {
     int32_t place[3];                /* position in units of the resolution */
     uint32_t generation, turn;       /* of the body; orientation as in the file */
-    float own;                       /* the user's number */
+    int32_t material, shape;
+    float own, radius;               /* the user's number; m */
     unsigned char speed, there;      /* as in the file; 1: there is a body */
 } demi_seen;
 struct dem_replay {
@@ -275,7 +276,18 @@ static void demi_film_walls(dem_replay *r) {
         }
     }
 }
-/* Appends the bodies that are gone, then the new ones, by slot. */
+/* True if the body in slot s is the one that was there, with the same radius, material and
+   shape. */
+static int demi_film_same(const dem_replay *r, const dem_bodies *b, int s) {
+    const demi_bodies *bodies = &r->world->bodies;
+    const demi_seen *old = &r->seen[s];
+    const int i = s < bodies->slot_count ? bodies->slot_index[s] : -1;
+    const float radius = i < 0 ? 0 : (float)b->positions[4*i + 3];
+    return i >= 0 && bodies->slot_generation[s] == old->generation &&
+        !memcmp(&radius, &old->radius, sizeof radius) && b->materials[i] == old->material &&
+        (b->shapes ? b->shapes[i] : 0) == old->shape;
+}
+/* Appends the bodies that are gone, then the new ones, by slot. One that has changed is both. */
 static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
     const demi_bodies *bodies = &r->world->bodies;
     uint32_t gone = 0, fresh = 0;
@@ -284,8 +296,7 @@ static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
         if (pass) demi_film_count(r, gone);
         for (s = 0; s < r->seen_count; s++) {
             demi_seen *old = &r->seen[s];
-            if (!old->there || (s < bodies->slot_count && bodies->slot_index[s] >= 0 &&
-                                bodies->slot_generation[s] == old->generation)) continue;
+            if (!old->there || demi_film_same(r, b, s)) continue;
             if (!pass) { gone++; continue; }
             old->there = 0;
             demi_film_count(r, (uint32_t)s);
@@ -302,9 +313,12 @@ static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
             memset(one, 0, sizeof *one);
             one->there = 1;
             one->generation = bodies->slot_generation[s];
+            one->material = b->materials[i];
+            one->shape = b->shapes ? b->shapes[i] : 0;
+            one->radius = (float)b->positions[4*i + 3];
             demi_film_count(r, (uint32_t)s);
-            demi_film_count(r, (uint32_t)b->materials[i]);
-            demi_film_count(r, b->shapes ? (uint32_t)b->shapes[i] : 0);
+            demi_film_count(r, (uint32_t)one->material);
+            demi_film_count(r, (uint32_t)one->shape);
             demi_film_real(r, (double)b->positions[4*i + 3]);
         }
     }
@@ -376,6 +390,7 @@ static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     dem_world *w = r->world;
     const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;
     const int count = due ? dem_contacts_get(w, 0, 0) : 0;
+    const demi_periods periods = demi_periods_of(w);
     double least = 0;
     uint32_t kept = 0;
     int k, c;
@@ -398,15 +413,15 @@ static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     for (k = 0; k < count && kept; k++) {
         const dem_contact_info *o = r->contacts + k;
         const double force = (double)demi_length(o->force);
-        dem_real point[3];
+        const dem_real *at = b->positions + 4*w->bodies.slot_index[o->a.slot - 1];
+        dem_real arm[3];
         uint16_t code;
         if (force < least) continue;
-        demi_put(point, o->point);
+        demi_put(arm, demi_nearest(&periods, demi_sub(o->point, demi_at(at))));
         demi_film_count(r, o->a.slot - 1);
         demi_film_count(r, o->b.slot);
         for (c = 0; c < 3 && !o->b.slot; c++) {
-            const dem_real *at = b->positions + 4*w->bodies.slot_index[o->a.slot - 1];
-            const double x = (double)(point[c] - at[c])/r->resolution;
+            const double x = (double)arm[c]/r->resolution;
             const int16_t from = (int16_t)floor(DEMI_MAX(-32767, DEMI_MIN(32767, x)) + 0.5);
             demi_film_put(r, &from, 2, 1);
         }

@@ -155,7 +155,7 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
     const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
     dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
     double lowest = -1e300, floor = -1e300, speed = 0;
-    int i, moving = 0;
+    int i, moving = 0, driven = w->cell.on || w->desc.growth || w->feed_count;
     for (i = 0; i < w->bodies.count; i++) {
         const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
         if (w->bodies.inv_mass[i] <= 0) { floor = DEMI_MAX(floor, h); continue; }
@@ -168,13 +168,17 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
                   "for example with dem_spheres_fill");
         return;
     }
-    if (!pulled && !forced && !(speed > 0) && moving)
+    for (i = 0; i < w->wall_count; i++)
+        driven |= w->walls[i].kind != DEMI_WALL_NONE &&
+            (w->walls[i].motion.kind != DEM_MOTION_FIXED || w->walls[i].glides);
+    if (!pulled && !forced && !driven && !(speed > 0) && moving)
         demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
                   "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
-    if (pulled && moving && !forced && floor < lowest && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
+    if (pulled && moving && !forced && floor < lowest && !demi_joints_in_force(w) &&
+        !demi_rails_in_force(w) && !demi_outflows(w) && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
         w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
         w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
         w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
@@ -286,6 +290,16 @@ static void demi_check_walls(const dem_world *w, demi_findings *f) {
     }
 }
 
+/* True if a joint takes away the contact of bodies a and b. */
+static int demi_hinged(const dem_world *w, int a, int b) {
+    int k, found = 0;
+    for (k = 0; k < w->joint_count && !found; k++) {
+        const dem_joint_desc *j = &w->joints[k].desc;
+        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
+        found = !j->collide && ((p == a && q == b) || (p == b && q == a));
+    }
+    return found;
+}
 /* Checks for pairs of bodies that overlap by more than 1 % of the smaller radius; pairs of fixed
    bodies are exempt. Needs a valid neighbour list. */
 static void demi_check_pairs(const dem_world *w, demi_findings *f) {
@@ -300,8 +314,8 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
                 const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
                 const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
                                                               list->image[k], r)/r);
-                if (!(deep > 0.01) || (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0))
-                    continue;
+                if (!(deep > 0.01) || demi_hinged(w, a, b) ||
+                    (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0)) continue;
                 count++;
                 if (deep <= worst) continue;
                 worst = deep;

@@ -256,15 +256,34 @@ static dem_effect_state demi_look_events(const dem_world *w, dem_effect *e) {
 typedef struct demi_again { dem_world_desc desc; int memory, times; } demi_again;
 /* Switches an effect off in the copy t, or makes it call the user's functions through *own. */
 typedef void (*demi_leave_fn)(dem_world *t, demi_again *own);
-/* Rolling friction goes too: there are loops for neither, for friction, and for both. */
+/* Changes all pairs of materials of the copy by a function of one pair. */
+static void demi_leave_pairs(dem_world *t, void (*leave)(dem_pair *p)) {
+    int i, j;
+    for (i = 0; i < t->material_count; i++)
+        for (j = i; j < t->material_count; j++) {
+            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
+            leave(&p);
+            demi_pair_put(t, i, j, &p);
+        }
+}
+static void demi_leave_pair_rolling(dem_pair *p) { p->rolling_friction = p->spinning_friction = 0; }
+static void demi_leave_pair_friction(dem_pair *p) {
+    p->friction = p->friction_static = 0;
+    demi_leave_pair_rolling(p);
+}
+static void demi_leave_pair_adhesion(dem_pair *p) { p->stiffness_adhesion = p->cohesion = 0; }
+/* Rolling friction goes too: there are loops for neither, for friction, and for both. Impulses have
+   the coefficients only, no laws. */
 static void demi_leave_friction(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.tangent_law = DEM_TANGENT_NONE;
     t->desc.rolling_law = DEM_ROLLING_NONE;
+    if (!demi_response_is(t, DEMI_LASTING)) demi_leave_pairs(t, demi_leave_pair_friction);
 }
 static void demi_leave_rolling(dem_world *t, demi_again *own) {
     (void)own;
     t->desc.rolling_law = DEM_ROLLING_NONE;
+    if (!demi_response_is(t, DEMI_LASTING)) demi_leave_pairs(t, demi_leave_pair_rolling);
 }
 static void demi_leave_growth(dem_world *t, demi_again *own) {
     (void)own;
@@ -284,14 +303,8 @@ static void demi_leave_orientations(dem_world *t, demi_again *own) {
     t->desc.orientations = t->bodies.orienting = 0;
 }
 static void demi_leave_adhesion(dem_world *t, demi_again *own) {
-    int i, j;
     (void)own;
-    for (i = 0; i < t->material_count; i++)
-        for (j = i; j < t->material_count; j++) {
-            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
-            p.stiffness_adhesion = p.cohesion = 0;
-            demi_pair_put(t, i, j, &p);
-        }
+    demi_leave_pairs(t, demi_leave_pair_adhesion);
 }
 static void demi_leave_motions(dem_world *t, demi_again *own) {
     dem_wall id;

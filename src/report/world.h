@@ -341,6 +341,8 @@ static void demi_report(const dem_world *world, FILE *out) {
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
     char few[48] = "";
     dem_advice a;
+    int i, walls = 0;
+    for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     if (w->crew.best && w->crew.best < c.threads)
@@ -376,7 +378,7 @@ static void demi_report(const dem_world *world, FILE *out) {
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
                 ? "differ (coefficients per neighbour pair)"
-                : "of few species (coefficients per pair of species)", w->wall_count,
+                : "of few species (coefficients per pair of species)", walls,
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
     demi_idle_report(w, out);

@@ -691,16 +691,6 @@ static int demi_outgrown(const dem_world *w) {
     return demi_response_is(w, DEMI_LASTING) && !(w->desc.impact_speed > 0) &&
         w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
-/* Returns the largest speed of the bodies that can move, m/s. */
-static double demi_fastest(const dem_world *w) {
-    double most = 0;
-    int i;
-    for (i = 0; i < w->bodies.count; i++)
-        if (w->bodies.inv_mass[i] > 0)
-            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
-                                                   demi_at(w->bodies.vel + 4*i)));
-    return sqrt(most);
-}
 /* Returns the largest speed, m/s, that a body may have in the next step by the present forces: a
    bound, with the midpoint rule the exact speed. */
 static double demi_fastest_next(const dem_world *w) {

@@ -207,8 +207,10 @@ static void demi_event_begin(const dem_world *w, const dem_world *m, const demi_
     if (wall)
         v = demi_sub(v, demi_surface_at(&wall->pose, demi_add(demi_add(centre, arm),
                                                               noted->shift)));
-    else {
+    if (wall && wall->glides) v = demi_sub(v, demi_glide_at(wall, &wall->pose, normal));
+    if (!wall) {
         v = demi_sub(v, demi_velocity_at(b->vel, b->spin, n->b, demi_sub(arm, way)));
+        if (m->cell.on) v = demi_sub(v, demi_cell_flow(m, way));
         inv += b->inv_mass[n->b];
     }
     slip = demi_sub(v, demi_scale(normal, demi_dot(v, normal)));
@@ -433,14 +435,15 @@ static void demi_events_index(dem_world *w) {
         e->last[i] = e->turn;                   /* before the next turn */
     }
 }
-/* Copies the recording of another world. Returns 0 if memory ran out. */
+/* Copies the recording of another world. Returns 0 if memory ran out; then the old one stays. */
 static int demi_events_copy(dem_world *to, const dem_world *from) {
     const demi_events *f = &from->events;
     demi_events *e = &to->events;
-    if (!e->n.on) e->desc = f->desc;
+    const demi_event_counts old = e->n;
     e->n = f->n;
+    if (f->n.on && !demi_events_reserve(to)) { e->n = old; return 0; }
+    if (!old.on) e->desc = f->desc;
     if (!f->n.on) return 1;
-    if (!demi_events_reserve(to)) { memset(&e->n, 0, sizeof e->n); return 0; }
     if (e->n.open) memcpy(e->open, f->open, (size_t)e->n.open*sizeof *e->open);
     if (e->n.open) memcpy(e->sums, f->sums, (size_t)e->n.open*sizeof *e->sums);
     if (e->n.pending) memcpy(e->pending, f->pending, (size_t)e->n.pending*sizeof *e->pending);
@@ -555,6 +558,7 @@ static dem_result demi_events_tell(dem_world *w, const char *call) {
                          (unsigned long long)w->clock.steps);
     }
     if (!e->n.pending) return DEM_OK;
+    if (e->desc.function) demi_all(w, demi_member_finish);  /* it may look at velocities */
     qsort(e->pending, (size_t)e->n.pending, sizeof *e->pending, demi_event_compare);
     for (i = 0; i < e->n.pending && e->desc.function; i++) {
         const demi_calling was = demi_calls(w, call, 0);

@@ -256,7 +256,8 @@ static DEMI_APART void demi_means_add(const dem_world *w, int i) {
 }
 /* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
-    return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
+    return f->used && w->clock.time >= f->next - 1e-6*(double)w->clock.dt &&
+        !(f->desc.end > 0 && w->clock.time > f->desc.end);
 }
 /* Samples all fields that are due. Contacts come first, while velocities are still the predicted
    ones: the present forces were computed from them, and slabs have exchanged them. demi_finish then
@@ -314,6 +315,11 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     }
     if (demi_box_empty(w, __func__, d->box, 0)) return id;
+    if (w->desc.planar && (d->box.lo.z > 0 || d->box.hi.z < 0)) {
+        demi_refuse(w, __func__, "box is from z = %g to %g m, must contain 0, where all bodies of "
+                    "a planar world are", (double)d->box.lo.z, (double)d->box.hi.z);
+        return id;
+    }
     if (demi_group_check(w, __func__, d->group, 0) != DEM_OK ||
         (d->material.id && demi_material_index(w, __func__, d->material, &k) != DEM_OK))
         return id;

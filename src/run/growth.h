@@ -78,7 +78,8 @@ static dem_result demi_member_grow(dem_world *w) {
     dem_result result = radius ? DEM_OK : demi_no_memory(w, "dem_world_step");
     double mass = 0;
     int i, grown = 0;
-    for (i = 0; i < n && result == DEM_OK; i++) {
+    demi_finish(w);                             /* the function receives complete velocities, */
+    for (i = 0; i < n && result == DEM_OK; i++) {   /* and the open half kick the old masses */
         const dem_body id = dem_body_id_get(w, i);
         const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
         dem_body_state state;
@@ -95,7 +96,6 @@ static dem_result demi_member_grow(dem_world *w) {
                                (double)r, (double)radius[i], (double)rate);
     }
     if (result == DEM_OK && grown) {
-        demi_finish(w);                         /* the open half kick belongs to the old masses */
         if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
     }
     for (i = 0; i < n && result == DEM_OK && grown; i++)

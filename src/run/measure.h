@@ -135,10 +135,13 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
     if (demi_null(w, __func__, make ? w : 0, "make")) return -1;
     demi_bonds b = {make, user, gap, 0};
     double least = -1, most;
-    int i;
-    for (i = 0; i < w->bodies.count; i++)
-        if (least < 0 || (double)w->bodies.pos[4*i + 3] < least)
-            least = (double)w->bodies.pos[4*i + 3];
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++)       /* parts meet, not their bodies */
+        for (k = demi_parts_count(w, i) - 1; k >= 0; k--) {
+            const double r = demi_shape_of(w, i) ? (double)demi_part_of(w, i, k).radius
+                : (double)w->bodies.pos[4*i + 3];
+            if (least < 0 || r < least) least = r;
+        }
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
         return demi_refuse(w, __func__, "gap is %g m, must be >= 0 and at most %g m, the "

@@ -19,6 +19,8 @@ typedef struct demi_rail {
     dem_rail_state state;
     dem_quat start;                /* other shapes: orientation and spin of the step, above */
     dem_vec3 turn;
+    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
+                                      periodic face; as it was */
 } demi_rail;
 
 #define DEMI_OF dem_rail_desc
@@ -43,6 +45,25 @@ static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
             return &w->rails[k];
     return 0;
 }
+/* The position of body i, with a rail, as if its path had crossed no periodic face, m. */
+static dem_vec3 demi_rail_place(const dem_world *w, const demi_rail *r, int i) {
+    const demi_periods p = demi_periods_of(w);
+    return demi_add(r->at, demi_nearest(&p, demi_sub(demi_at(w->bodies.pos + 4*i), r->at)));
+}
+/* Between two steps only dem_body_set moves a body. The coordinates that it has changed count as
+   given, not as those of an image across a periodic face. */
+static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
+    dem_real by[3], now[3], at[3];
+    int k;
+    demi_put(by, demi_nearest(&p, demi_sub(x, r->seen)));
+    demi_put(now, x);
+    demi_put(at, demi_rail_place(w, r, i));
+    for (k = 0; k < 3; k++)                     /* wrapping leaves a rounding error */
+        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
+    r->at = demi_at(at);
+}
 /* Gives the velocity and spin that a rail prescribes for body i, in the middle of the next step
    (ahead) or now; of axes that are not locked, any numbers. */
 static void demi_rail_wants(const dem_world *w, const demi_rail *r, int i, int ahead, dem_real *v,
@@ -51,7 +72,7 @@ static void demi_rail_wants(const dem_world *w, const demi_rail *r, int i, int a
     dem_vec3 velocity = d->velocity, spin = d->spin;
     if (d->wall.id && demi_wall_there(w, d->wall)) {
         const demi_wall *wall = &w->walls[demi_wall_place(d->wall)];
-        const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
+        const dem_vec3 x = demi_rail_place(w, r, i);
         const dem_vec3 now = demi_surface_at(&wall->pose, x);
         velocity = demi_add(velocity, now);
         spin = demi_add(spin, wall->pose.spin);
@@ -126,7 +147,10 @@ static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
     const dem_real none[3] = {0, 0, 0};
     const dem_real *spun = stepping && (halves || demi_shape_of(w, i)) ? w->bodies.half_spin + 4*i
         : w->bodies.spin + 4*i;
+    if (!stepping) demi_rail_given(w, r, i);
     demi_rail_wants(w, r, i, 1, v, s);
+    r->at = demi_rail_place(w, r, i);
+    r->seen = demi_at(w->bodies.pos + 4*i);
     r->state.power = demi_rail_push(locked, w->bodies.mass[i], halves ? b.half : b.v, v, h, b.g,
                                     b.f, force);
     if (demi_shape_of(w, i) && locked >> 3) {
@@ -161,7 +185,12 @@ static void demi_rails_act(dem_world *w) {
     int k;
     for (k = 0; k < w->rail_count && w->clock.dt > 0; k++) {
         const int i = demi_rail_body(w, &w->rails[k]);
+        dem_rail_state *state = &w->rails[k].state;
         if (i >= 0) demi_rail_act(w, &w->rails[k], i);
+        else {
+            state->force = state->torque = demi_v(0, 0, 0);
+            state->power = 0;
+        }
     }
 }
 /* After the move of a step: rotates bodies that are not spheres about free axes alone. */
@@ -188,6 +217,12 @@ static void demi_rails_move(dem_world *w) {
         }
         if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
+}
+/* Returns the number of rails whose bodies still exist. */
+static int demi_rails_in_force(const dem_world *w) {
+    int k, n = 0;
+    for (k = 0; k < w->rail_count; k++) n += demi_joint_body(w, w->rails[k].body) >= 0;
+    return n;
 }
 /* Removes the rails of bodies that were removed, and that of `body`. */
 static void demi_rails_drop(dem_world *w, dem_body body) {
@@ -227,6 +262,7 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     memset(r, 0, sizeof *r);
     r->body = body;
     r->state.desc = *d;
+    r->at = r->seen = demi_at(w->bodies.pos + 4*i);
     demi_rail_wants(w, r, i, 0, v, s);
     dem_body_get(w, body, &state);
     demi_put(own, state.velocity);

@@ -64,7 +64,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
-            if (c->b >= 0 || walls[c->wall].group != walls[of].group ||
+            if (c->b >= 0 || !demi_walls_together(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
             demi_kept_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
@@ -102,6 +102,13 @@ static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double 
     if (fabs(s->travel + s->speed*dt) > far)
         s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
 }
+/* Returns the first wall of the piston of wall i. */
+static int demi_servo_leader(const dem_world *first, int i) {
+    int k = 0;
+    while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
+                     !demi_walls_together(&first->walls[k], &first->walls[i]))) k++;
+    return k;
+}
 /* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
 static dem_result demi_servos_lead(dem_world *h) {
     dem_world *first = demi_member(h, 0);
@@ -112,7 +119,8 @@ static dem_result demi_servos_lead(dem_world *h) {
         demi_wall *wall = &first->walls[i];
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
             h->clock.time < wall->motion.start) continue;
-        if (wall->group != i) { wall->servo = first->walls[wall->group].servo; continue; }
+        k = demi_servo_leader(first, i);
+        if (k != i) { wall->servo = first->walls[k].servo; continue; }
         result = demi_servo_sum(h, i, sums);
         if (result != DEM_OK) break;
         before = wall->servo.speed;

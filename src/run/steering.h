@@ -97,16 +97,19 @@ DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_
 static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
     const double v = demi_pose_speed(wall);
     return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
-        (!(v > 0) || w->asked.dt > 0 || v <= w->clock.assumed_speed);
+        (!(v > 0) || w->desc.dt > 0 || v <= w->clock.assumed_speed);
 }
-/* True if a program leads a wall: its old motion `from` began at most DEMI_LED steps ago, or has
-   yet to begin, and the new motion starts exactly at the present pose. A new rotation may start
-   there with rounding errors. */
-static int demi_wall_led(const dem_world *w, const demi_wall *from, const demi_wall *to) {
-    if (w->clock.time - from->motion.start > DEMI_LED*(double)w->clock.dt) return 0;
+/* True if a wall stays where it is when its new motion `to` begins. A rotation may start there with
+   rounding errors. A motion with a phase, by a table or by a function may begin elsewhere. */
+static int demi_wall_stays(const demi_wall *from, const demi_wall *to) {
     return to->motion.kind == DEM_MOTION_ROTATING ||
         (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
          !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
+}
+/* True if a program leads a wall that stays: its old motion began at most DEMI_LED steps ago, or
+   has yet to begin. */
+static int demi_wall_led(const dem_world *w, const demi_wall *from) {
+    return w->clock.time - from->motion.start <= DEMI_LED*(double)w->clock.dt;
 }
 DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
     if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
@@ -121,7 +124,8 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (result != DEM_OK) return result;
     /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
        decides which of its periodic images are at rest relative to it */
-    alone = demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
+    alone = demi_wall_stays(&w->walls[i], &next) &&
+        demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
         (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
                            next.motion.kind != DEM_MOTION_ROTATING));
     dropped = alone || demi_list_drop(w);
@@ -130,7 +134,7 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, __func__);
     if (!alone) demi_surfaces_outdated(w);
-    if (!alone || !demi_wall_led(w, &w->walls[i], &next))
+    if (!alone || !demi_wall_led(w, &w->walls[i]))
         w->stage.forces_valid = w->stage.primed = 0;
     demi_wall_before(w, i);
     w->walls[i] = next;

@@ -112,7 +112,7 @@ static void demi_domain_move(dem_world *w, int d) {
     memset(&pace, 0, sizeof pace);
     domain->speed2 = domain->acceleration2 = domain->check = 0;
     domain->turn = domain->turn_speed = domain->turn_rate = 0;
-    if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
+    if (w->stage.quiet) demi_quiet_move(w, d, turning, &pace);
     else for (i = domain->begin; i < domain->end; i += some)
         demi_some_move(w, domain, i, DEMI_MIN(i + some, domain->end), turning, &pace);
     for (i = 0; i < DEMI_LANES; i++) {
@@ -159,6 +159,12 @@ static void demi_domain_fields(dem_world *w, int d) {
                                                               body.spin))*(double)w->clock.dt;
     }
 }
+/* Discs stay in the plane z = 0 and rotate about z only. */
+static void demi_domain_flatten(dem_world *w, int d) {
+    int i;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++)
+        w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
+}
 /* Starts the sums of forces and torques of work group d: with 0, or with the force fields. The move
    of a step has already set forces to 0. */
 static void demi_domain_clear(dem_world *w, int d) {
@@ -183,6 +189,7 @@ static void demi_domain_clear(dem_world *w, int d) {
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
+    if (w->desc.planar && (w->desc.force || w->desc.body_force)) demi_domain_flatten(w, d);
     if (w->cell.on) demi_cell_drag(w, domain);
 }
 /* Computes the forces of all contacts that work group d owns. Forces on its own bodies are added
@@ -214,10 +221,7 @@ static void demi_domain_gather(dem_world *w, int d) {
             sum += fabs((double)w->bodies.rates[i]) + fabs((double)w->bodies.reals[i]);
         w->domains[d].check = sum;
     }
-    if (!w->desc.planar) return;
-    /* discs stay in the plane z = 0 */
-    for (i = w->domains[d].begin; i < w->domains[d].end; i++)
-        w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
+    if (w->desc.planar) demi_domain_flatten(w, d);
 }
 /* Sums the rates, per second, of the walls' user-defined numbers over the work groups, in order. */
 static void demi_walls_rates(dem_world *w) {
@@ -231,6 +235,25 @@ static void demi_walls_rates(dem_world *w) {
             for (d = 0; d < w->domain_count; d++)
                 c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
         }
+}
+/* Adds force f, N, and power, W, of a time dt, s, to the sums of a wall's loads. */
+static void demi_loads_add(dem_wall_loads *c, const double *f, double power, double dt) {
+    int k;
+    for (k = 0; k < 3; k++) c->impulse[k] += f[k]*dt;
+    c->torque_impulse += (double)c->torque_axial*dt;
+    c->work += power*dt;
+    c->time += dt;
+}
+/* Impulses: adds the loads of the step whose bodies have just moved. They were solved before, and
+   again if the scene had changed since. */
+static void demi_walls_bear(dem_world *w) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        dem_wall_loads *c = &w->walls[i].loads;
+        const double f[3] = {(double)c->force.x, (double)c->force.y, (double)c->force.z};
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            demi_loads_add(c, f, (double)c->power, (double)w->clock.dt);
+    }
 }
 /* Computes the forces at the present positions and velocities, and the loads of walls. The
    persistent contacts found by touch become the present ones. If forces_valid is 0 the forces
@@ -271,10 +294,7 @@ static int demi_forces(dem_world *w) {
         c->torque_axial = demi_dot(c->torque, demi_unit(axis));
         c->power = (dem_real)power;
         c->touched |= c->contacts > 0;
-        for (k = 0; k < 3; k++) c->impulse[k] += f[k]*dt;
-        c->torque_impulse += (double)c->torque_axial*dt;
-        c->work += power*dt;
-        c->time += dt;
+        if (!demi_response_is(w, DEMI_MIDWAY)) demi_loads_add(c, f, power, dt);
     }
     if (demi_exchanges(w)) demi_walls_rates(w);
     for (d = 0; d < w->domain_count; d++)
@@ -441,6 +461,7 @@ static dem_result demi_step_move(dem_world *w) {
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt +
         w->cell.squeeze/2;
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
+    if (demi_response_is(w, DEMI_MIDWAY)) demi_walls_bear(w);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->booked.energy[DEMI_E_GRAVITY] += work;
@@ -467,7 +488,7 @@ static dem_result demi_step_move(dem_world *w) {
         }
         wall->pose = pose;
         wall->mid = mid;
-        speed = demi_wall_speed(wall);
+        speed = demi_wall_pace(w, i);
         if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: search in every step */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
@@ -567,7 +588,6 @@ static dem_result demi_member_forces(dem_world *w) {
 static dem_result demi_member_end(dem_world *w) {
     int d;
     demi_rails_act(w);
-    demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
@@ -723,16 +743,26 @@ static dem_result demi_answer(dem_world *h, dem_result (*answer)(dem_world *h)) 
     demi_ahead_back(h);
     return result;
 }
+/* Integrates user-defined numbers at the end of a step. A user's function for that receives
+   complete velocities. */
+static dem_result demi_member_gain(dem_world *w) {
+    if (w->desc.body_reals_fn) demi_finish(w);
+    demi_reals_gain(w);
+    return DEM_OK;
+}
 /* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
+    dem_result result;
     if (!h->stage.moved) {
-        dem_result result = demi_servos_lead(h);
+        result = demi_servos_lead(h);
         if (result == DEM_OK && h->cell.on) result = demi_cell_lead(h);
         if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
     }
-    return demi_answer(h, demi_step_answer);
+    result = demi_answer(h, demi_step_answer);
+    if (!h->stage.moved && demi_member(h, 0)->bodies.real_count) demi_all(h, demi_member_gain);
+    return result;
 }
 
 /* demi_refresh at the positions of contact detection. */
@@ -747,7 +777,7 @@ static dem_result demi_refresh_answer(dem_world *h) {
     if (stale) result = demi_all_rebuild(h);
     h->stage.pairs_changed = 0;
     if (result == DEM_OK) result = demi_all(h, demi_member_look);
-    if (result == DEM_OK) result = demi_all_forces(h, 0);
+    if (result == DEM_OK) result = demi_all_forces(h, !stale);
     if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
     h->stage.forces_valid = result == DEM_OK;
     return result;

@@ -24,6 +24,7 @@ static double demi_volume(const dem_world *w) {
 static int demi_cell_refuse(dem_world *w, const char *call) {
     const int slides = w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || w->cell.offset < 0 ||
         w->cell.offset > 0;
+    const int rails = demi_rails_in_force(w);
     int i, walls = 0;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (walls)
@@ -31,14 +32,10 @@ static int demi_cell_refuse(dem_world *w, const char *call) {
                     "not: a grain and its image would touch the same wall at different velocities; "
                     "remove the walls, or press with a servo wall instead of the cell", walls,
                     walls == 1 ? "" : "s");
-    else if (w->joint_count)
-        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d joint%s, whose "
-                    "anchors would follow the flow of the cell at both ends; remove the joints",
-                    w->joint_count, w->joint_count == 1 ? "" : "s");
-    else if (w->rail_count)
+    else if (rails)
         demi_refuse(w, call, "the periodic cell deforms, and %d bod%s on rails: velocities in the "
                     "cell are relative to its flow, those of rails are not; remove the rails (axes "
-                    "0)", w->rail_count, w->rail_count == 1 ? "y is" : "ies are");
+                    "0)", rails, rails == 1 ? "y is" : "ies are");
     else if (w->feed_count || w->outlet_count)
         demi_refuse(w, call, "the periodic cell deforms, and the regions of %d feeds and %d "
                     "outlets would not; fill the cell before it deforms", w->feed_count,

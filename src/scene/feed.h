@@ -293,8 +293,13 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
         joins = demi_list_join(w, i, found, count);
         w->stage.pairs_changed |= !joins;             /* then lists are rebuilt */
     }
-    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0)
+    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0) {
+        v = demi_at(w->bodies.vel + 4*i);       /* the open half kick is not due to this grain */
+        demi_finish(w);
+        demi_put(w->bodies.vel + 4*i, v);
+        demi_put(w->bodies.half_vel + 4*i, v);
         demi_scene_changed(w);                  /* forces may act on it */
+    }
     /* it touches nothing, so no force acts on it yet */
     else if (w->stage.primed) demi_prime_body(w, i);
     demi_feed_count(f);

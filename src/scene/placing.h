@@ -200,7 +200,7 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
         to->size[k] = side - 2*off;
         if (period > 0 && side >= period*(1 - 1e-6)) {
             to->size[k] = period;
-            lo[k] = p.lo[k];
+            lo[k] = from->cylinder ? lo[k] + (dem_real)((side - period)/2) : p.lo[k];
         } else lo[k] += (dem_real)off;
         if (k == 2 && w->desc.planar) {
             to->size[k] = 0;

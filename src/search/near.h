@@ -627,6 +627,11 @@ static void demi_domain_quiet(dem_world *w, int d) {
     for (k = 0; k < domain->walls; k++)
         demi_quiet_at(w, d, w->wall_body[d*w->wall_stride + k])->restless = 2;
 }
+/* Marks the blocks of all work groups, if bodies can be isolated, for the present lists. */
+static void demi_quiet_mark(dem_world *w) {
+    w->stage.quiet = demi_quiet_possible(w);
+    if (w->stage.quiet) demi_domains_do(w, demi_domain_quiet);
+}
 
 /* Chooses span and slack of the next pruned list. The cost is estimated from counts, not from time,
    so that every run makes the same choice: 1 for a force, and for building the list 0.15 for each
@@ -710,8 +715,7 @@ static int demi_near_make(dem_world *w, int fresh) {
         return 0;
     }
     demi_domains_do(w, demi_domain_adopt);
-    if (!fresh && demi_quiet_possible(w))
-        demi_domains_do(w, demi_domain_quiet);
+    if (!fresh) demi_quiet_mark(w);
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* the velocities used here and those of the next move may differ by this much */

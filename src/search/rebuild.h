@@ -71,6 +71,16 @@ static int demi_clustered(const dem_world *w) {
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].count && !w->shapes[k].lone;
     return any && w->bodies.orienting && demi_response_is(w, DEMI_PRESSING);
 }
+/* Returns the largest speed of the bodies that can move, m/s. */
+static double demi_fastest(const dem_world *w) {
+    double most = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++)
+        if (w->bodies.inv_mass[i] > 0)
+            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
+                                                   demi_at(w->bodies.vel + 4*i)));
+    return sqrt(most);
+}
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, friction, rolling, sticks;
@@ -103,6 +113,8 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
+    if (demi_reach_free(w))                     /* velocities may be new since the last step */
+        w->booked.speed_max = DEMI_MAX(w->booked.speed_max, demi_fastest(w));
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -273,7 +285,9 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     int k, leading = 0;
     w->domains[last].end = i + 1;
     if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
-    if (count >= w->join_room || demi_scale_missing(w, i)) return 0;
+    if (count >= w->join_room || demi_scale_missing(w, i) ||
+        w->bodies.pos[4*i + 3] > w->effects.radius_max)
+        return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
         const int a = found[k], d = demi_domain_of(w, a);
@@ -294,7 +308,6 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
         ? 1 + last*w->wall_stride + walls : 0;
     demi_quiet_at(w, last, i)->restless = 2;
     w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
-    w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
     return 1;
 }
 
@@ -508,8 +521,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     w->stage.near_chosen = 1;
     if (!demi_walls_find(w) || !demi_near_make(w, 1) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
-    if (demi_quiet_possible(w))
-        demi_domains_do(w, demi_domain_quiet);
+    demi_quiet_mark(w);
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;

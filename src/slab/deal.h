@@ -181,10 +181,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_refuse(w, call, "contacts of this world are impulses, which cannot be split "
                            "into slabs; use threads");
-    if (w->rail_count)
+    if (demi_rails_in_force(w))
         return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs "
                            "do not pass on; use threads, or walls instead of these bodies",
-                           w->rail_count);
+                           demi_rails_in_force(w));
     if (w->cell.on || w->cell.side[0] > 0)
         return demi_refuse(w, call, "the periodic cell of this world has been deformed "
                            "(dem_cell_set), but borders of slabs do not move; use threads");
@@ -313,8 +313,11 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     int k, ok;
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
-    /* files the contact histories; the world keeps its list */
-    if (w->stage.list_valid && !demi_carry_collect(w)) {
+    /* files the contact histories, in the layout of the laws of the next step; the world keeps its
+       list if these are the present laws */
+    if (w->stage.pairs_changed || !w->stage.list_valid ||
+        w->effects.clustered != demi_clustered(w)
+        ? !demi_list_drop(w) || !demi_effects_take(w) : !demi_carry_collect(w)) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
@@ -589,14 +592,13 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                                    "afterwards", (unsigned)slot + 1, k);
         }
     }
-    if (h->events.n.on && !demi_events_copy(w, h)) return demi_no_memory(h, call);
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
     i = w->bodies.slot_count;
     if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)DEMI_MAX(s->slots - i, 0)))
         return demi_no_memory(h, call);
     demi_slabs_slots(s, w);
-    if (!demi_filed_reserve(w, add, &come)) {
+    if (!demi_filed_reserve(w, add, &come) || (h->events.n.on && !demi_events_copy(w, h))) {
         w->bodies.slot_count = i;
         return demi_no_memory(h, call);
     }

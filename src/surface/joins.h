@@ -124,19 +124,28 @@ static int demi_join_member(const dem_world *w, int wall, int lead, int per) {
     return demi_faceted(m) && m->group == w->walls[lead].group && per == demi_wall_per(m) &&
         !memcmp(m->repeats, w->walls[lead].repeats, sizeof m->repeats);
 }
-/* True if a wall stays at rest relative to its image along an axis. */
-static int demi_wall_keeps(const demi_wall *wall, int axis) {
-    const dem_motion *m = &wall->motion;
-    const dem_vec3 n = demi_unit(m->axis), e = demi_v(axis == 0, axis == 1, axis == 2);
-    return wall->repeats[axis] && (m->kind != DEM_MOTION_ROTATING ||
-                                   demi_length(demi_cross(n, e)) <= DEM_R(1e-6));
+/* True if a wall stays at rest relative to its image along an axis: it does not turn, or only about
+   this axis. A wall that a function moves counts as one that does not turn. */
+static int demi_wall_keeps(const dem_world *w, const demi_wall *wall, int axis) {
+    /* a surface has no table; it moves as its first wall */
+    const dem_motion *m = demi_tabled(&wall->motion) && !wall->motion.table
+        ? &w->walls[wall->lead].motion : &wall->motion;
+    const dem_vec3 e = demi_v(axis == 0, axis == 1, axis == 2);
+    int k, keeps = wall->repeats[axis];
+    if (m->kind == DEM_MOTION_ROTATING)
+        keeps = keeps && demi_length(demi_cross(demi_unit(m->axis), e)) <= DEM_R(1e-6);
+    for (k = 0; k < m->table_count && demi_tabled(m); k++) {
+        const dem_quat q = m->table[k].rotation;
+        keeps = keeps && !(demi_length(demi_cross(demi_v(q.x, q.y, q.z), e)) > DEM_R(1e-6));
+    }
+    return keeps;
 }
 /* Sets *by, m, to the displacement of the n-th periodic image (0 .. 26; 13 is the wall itself).
    Returns 0 if the wall does not repeat there. */
 static int demi_join_shift(const dem_world *w, const demi_wall *wall, int n, demi_d3 *by) {
     const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
     int k, use = n != 13;
-    for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(wall, k));
+    for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(w, wall, k));
     *by = demi_d3_of(demi_wall_shift(w, s[0], s[1], s[2]));
     return use;
 }

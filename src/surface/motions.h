@@ -67,6 +67,7 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const int last = m->table_count - 1;
     const double end = m->table[last].time;
+    const int early = t < 0;       /* a table that repeats has a slope at its first row */
     double x[7], v[7], size = 0, along = 0, h, u, R[9], w[3];
     dem_vec3 arm, at;
     int k = 0, c;
@@ -79,7 +80,7 @@ static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
         const double a = demi_row_number(m, k, c), b = demi_row_number(m, k + 1, c);
         const double p = h*demi_row_slope(m, k, c), q = h*demi_row_slope(m, k + 1, c);
         x[c] = a + u*(p + u*(3*(b - a) - 2*p - q + u*(2*(a - b) + p + q)));
-        v[c] = (p + u*(2*(3*(b - a) - 2*p - q) + u*3*(2*(a - b) + p + q)))/h;
+        v[c] = early ? 0 : (p + u*(2*(3*(b - a) - 2*p - q) + u*3*(2*(a - b) + p + q)))/h;
     }
     for (c = 3; c < 7; c++) size += x[c]*x[c];
     size = sqrt(size);

@@ -332,6 +332,20 @@ static dem_vec3 demi_cell_shift(const demi_wall *s, int32_t cell, dem_vec3 at) {
     u += 65536*floor((((double)at.x - v*skew)/wide - u)/65536 + 0.5);
     return demi_v((dem_real)(u*wide + v*skew), (dem_real)(v*(double)s->step[1].y), 0);
 }
+/* Upper bound of the speed, m/s, of what lists hold of wall i; -1 if there is no bound. A rotation
+   about its axis of symmetry leaves a wall in place, but not the facets of its tessellations. */
+static double demi_wall_pace(const dem_world *w, int i) {
+    const demi_wall *wall = &w->walls[i];
+    const double turn = (double)demi_length(wall->pose.spin);
+    double pace = demi_wall_speed(wall);
+    int k;
+    for (k = 0; k < w->surface_count && wall->symmetric && turn > 0 && pace >= 0; k++) {
+        const demi_wall *s = &w->surfaces[k];
+        if (!s->scale || s->lead != i) continue;
+        pace = s->step[0].x > 0 ? -1 : DEMI_MAX(pace, turn*(double)s->extent);
+    }
+    return pace;
+}
 /* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
    scales. Returns 0 if memory ran out. */
 static int demi_tessellation_make(dem_world *w, int wall, int scale) {
@@ -463,6 +477,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
         if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
         demi_surfaces_outdated(w);
     }
+    w->pairs[i*DEMI_MATERIALS + j].own = 1;
     demi_pair_put(w, i, j, p);
     demi_pairs_changed(w);
     demi_built(w, __func__);

@@ -248,7 +248,9 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
         return id;
     }
     for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* also those that feeds will insert */
-        const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
+        const dem_feed_desc *feed = &w->feeds[i/DEM_CLASSES].desc;
+        const int used = i%DEM_CLASSES < feed->class_count;
+        const int shape = used ? feed->shapes[i%DEM_CLASSES].id : 0;
         const int part = demi_shape_strange(w, wall, shape ? &w->shapes[shape - 1] : 0);
         if (part < 0) continue;
         demi_strangers(w, call, wall, (int)demi_wall_next(w, demi_wall_vacant(w)).id, -1, part);

@@ -588,6 +588,42 @@ int main(int argc, char **argv) {
         CHECK((double)a.contact_time <= 1.001*(double)k.contact_time);
         dem_world_destroy(world);
     }
+    TEST("after dem_world_dt_set(0) a fast wall motion shortens the step, as in a world created without dt") {
+        double dt[2], speed[2];
+        int given;
+        for (given = 0; given < 2; given++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_motion rise = DEM_MOTION;
+            dem_world *world;
+            dem_material glass;
+            dem_wall floor;
+            dem_body ball;
+            dem_advice advice;
+            desc.dt = given ? DEM_R(1e-7) : 0;
+            world = dem_world_create(&desc);
+            glass = scene_material(world, 1e7, 0.5, 0.3, 0);
+            floor = dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+            ball = dem_sphere_add(world, glass, DEM_R(0.01), at(0, 0, 0.0105));
+            dem_sphere_add(world, glass, DEM_R(0.01), at(0.05, 0, 0.3));
+            CHECK_EQ(scene_step(world, 2), DEM_OK);
+            if (given) CHECK_EQ(dem_world_dt_set(world, 0), DEM_OK);
+            CHECK_EQ(scene_step(world, 2), DEM_OK);
+            rise.kind = DEM_MOTION_TRANSLATING;
+            rise.velocity = at(0, 0, 2);
+            rise.start = dem_world_time_get(world);
+            CHECK_EQ(dem_wall_motion_set(world, floor, &rise), DEM_OK);
+            CHECK_EQ(scene_step(world, 2), DEM_OK);
+            CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
+            dt[given] = (double)dem_counters_get(world).dt;
+            CHECK_REL(dt[given], advice.dt, 1e-6);
+            CHECK_EQ(dem_world_run(world, 0.01, 0, 0), DEM_OK);
+            speed[given] = (double)scene_state(world, ball).velocity.z;
+            dem_world_destroy(world);
+        }
+        CHECK_REL(dt[1], dt[0], 1e-6);
+        CHECK_REL(speed[1], 3, 0.01);           /* the floor's 2 m/s and half of them */
+        CHECK_REL(speed[1], speed[0], 1e-3);
+    }
     TEST("an overlap of more than a radius stops the run with step, overlap and remedy") {
         int wall;
         for (wall = 0; wall < 2; wall++) {

@@ -377,5 +377,25 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("unions: the semi-axes of a union follow from its moments, whichever piece comes first") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *w = dem_world_create(&desc);
+        dem_shape pieces[2][2];
+        dem_real x[2][6] = {{0, 0, 0, DEM_R(0.01), 0, 0}, {DEM_R(0.01), 0, 0, 0, 0, 0}};
+        dem_shape_info a, b;
+        pieces[0][0] = pieces[1][1] = dem_shape_ellipsoid_add(w, at(0.01, 0.008, 0.006));
+        pieces[0][1] = pieces[1][0] = scene_box(w, 0.01, 0.01, 0.01);
+        CHECK_EQ(dem_shape_get(w, dem_shape_union_add(w, 2, pieces[0], x[0], 0), &a), DEM_OK);
+        CHECK_EQ(dem_shape_get(w, dem_shape_union_add(w, 2, pieces[1], x[1], 0), &b), DEM_OK);
+        /* I = V (b^2 + c^2)/5 of an ellipsoid, for the union's own V */
+        CHECK_REL(a.semi_axes.x, sqrt(2.5*(double)((a.inertia.y + a.inertia.z - a.inertia.x)/a.volume)),
+                  fine ? 1e-12 : 1e-4);
+        CHECK_REL(a.semi_axes.x, (double)b.semi_axes.x, fine ? 1e-9 : 1e-4);
+        CHECK_REL(a.semi_axes.y, (double)b.semi_axes.y, fine ? 1e-9 : 1e-4);
+        CHECK_REL(a.semi_axes.z, (double)b.semi_axes.z, fine ? 1e-9 : 1e-4);
+        CHECK(a.semi_axes.z > DEM_R(0.004));
+        dem_world_destroy(w);
+    }
+
     return test_end();
 }

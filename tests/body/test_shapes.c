@@ -2011,5 +2011,60 @@ int main(int argc, char **argv) {
     gas_tests();
     promise_tests();
     more_tests();
+
+    TEST("given inertia whose largest principal moment exceeds the sum of the others is rejected with an error") {
+        dem_world *world = dem_world_create(&DEM_WORLD_DESC);
+        const dem_real origin[3] = {0, 0, 0};
+        dem_cluster_desc desc = DEM_CLUSTER_DESC;
+        int i;
+        desc.count = 1;
+        desc.positions = origin;
+        desc.radius = 1;
+        desc.mass = DEM_CLUSTER_GIVEN;
+        desc.volume = 1;
+        for (i = 0; i < 3; i++) desc.inertia[i] = 1;
+        desc.inertia[3] = DEM_R(-0.9);                 /* moments 0.1, 1 and 1.9: no body has them */
+        CHECK_EQ(dem_shape_cluster_add(world, &desc).id, 0);
+        CHECK_STR(dem_world_error_get(world), "off-diagonal moments are too large");
+        desc.inertia[3] = DEM_R(-0.49);                /* 0.51, 1 and 1.49 */
+        CHECK(dem_shape_cluster_add(world, &desc).id);
+        desc.inertia[3] = 0;
+        desc.inertia[0] = 3; desc.inertia[1] = 1; desc.inertia[2] = 2;     /* a flat body: 3 = 1 + 2 */
+        CHECK(dem_shape_cluster_add(world, &desc).id);
+        dem_world_destroy(world);
+    }
+
+    TEST("impulses reverse two ellipsoids within a step of touching, for every definition of overlap") {
+        static const double axes[3][2] = {{0.1, 1}, {0.5, 0.5}, {1, 0.1}};     /* needle, ball, disc: tip to tip */
+        static const dem_overlap overlaps[3] = {DEM_OVERLAP_CONSERVATIVE, DEM_OVERLAP_CHORD, DEM_OVERLAP_NORMAL};
+        int mode, k, i;
+        for (mode = 0; mode < 3; mode++)
+            for (k = 0; k < 3; k++) {
+                const double a = axes[k][0], c = axes[k][1], speed = 5, dt = 1e-3;
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world;
+                dem_material stuff;
+                dem_shape shape;
+                dem_body upper, lower;
+                double least = 9;
+                desc.response = DEM_RESPONSE_IMPULSES;
+                desc.dt = (dem_real)dt;
+                desc.ellipsoid_overlap = overlaps[mode];
+                world = dem_world_create(&desc);
+                stuff = scene_material(world, 1e7, 0.5, 0, 0);
+                shape = dem_shape_ellipsoid_add(world, at(a, a, c));
+                upper = dem_body_add(world, stuff, shape, at(0, 0, c + 0.1), dem_quat_make(1, 0, 0, 0));
+                lower = dem_body_add(world, stuff, shape, at(0, 0, -c), dem_quat_make(1, 0, 0, 0));
+                scene_move(world, upper, at(0, 0, -speed), at(0, 0, 0));
+                for (i = 0; i < 40; i++) {
+                    CHECK_EQ(scene_step(world, 1), DEM_OK);
+                    least = fmin(least, (double)(scene_state(world, upper).position.z -
+                                                 scene_state(world, lower).position.z) - 2*c);
+                }
+                CHECK(scene_state(world, lower).velocity.z < -1);
+                CHECK(least > -1e-4 && least < 1.3*speed*dt);
+                dem_world_destroy(world);
+            }
+    }
     return test_end();
 }

@@ -191,6 +191,15 @@ static dem_world *plates(int only) {
     return w;
 }
 
+static void bond_one(const dem_contact_info *c, dem_real *memory, void *user) {
+    (void)c; (void)user;
+    memory[0] = 1;
+}
+static void no_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)c; (void)memory;
+    f->normal = 0;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("over 10,000 links form and break in a gas: formed less broken is the number in force at any time") {
@@ -400,6 +409,35 @@ int main(int argc, char **argv) {
         }
         CHECK(moved > 0);
         dem_world_destroy(all);
+    }
+    TEST("dem_bonds_make compares the gap with the range of the smallest parts of clusters and unions") {
+        int unions;
+        for (unions = 0; unions < 2; unions++) {       /* parts of 0.1 m in bodies of 0.5 m: range 0.5 (0.1 + 0.1) */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+            dem_real x[6] = {DEM_R(-0.4), 0, 0, DEM_R(0.4), 0, 0};
+            dem_shape shape, two[2];
+            dem_material m;
+            dem_world *w;
+            desc.law = no_law;
+            desc.law_range_radii = DEM_R(0.5);
+            desc.law_memory = 1;
+            desc.law_stiffness = DEM_R(1e5);
+            desc.dt = DEM_R(1e-5);
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e7, 1, 0, 0);
+            cluster.count = 2;
+            cluster.positions = x;
+            cluster.radius = DEM_R(0.1);
+            two[0] = two[1] = dem_shape_ellipsoid_add(w, at(0.1, 0.1, 0.1));
+            shape = unions ? dem_shape_union_add(w, 2, two, x, 0) : dem_shape_cluster_add(w, &cluster);
+            dem_body_add(w, m, shape, at(0, 0, 0), dem_quat_make(1, 0, 0, 0));
+            dem_body_add(w, m, shape, at(0, 0.28, 0), dem_quat_make(1, 0, 0, 0));      /* gaps of 0.08 m */
+            CHECK_EQ(dem_bonds_make(w, DEM_R(0.12), bond_one, 0), -1);
+            CHECK_STR(dem_world_error_get(w), "at most 0.1 m");
+            CHECK_EQ(dem_bonds_make(w, DEM_R(0.09), bond_one, 0), 2);
+            dem_world_destroy(w);
+        }
     }
     return test_end();
 }

@@ -129,6 +129,32 @@ static void holds(const dem_contact *c, dem_real *memory, dem_contact_force *for
     force->normal = c->overlap > 0 ? 1e5*c->overlap : -(1 + c->overlap/c->range);
 }
 
+static int touch_calls, beyond_calls;
+static void bonds(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    touch_calls++;
+    beyond_calls += c->overlap < -c->range;
+    f->normal = memory[0] > 0 ? 1000*c->overlap : 0;
+}
+static void bond_all(const dem_contact_info *c, dem_real *memory, void *user) {
+    (void)c; (void)user;
+    memory[0] = 1;
+}
+static dem_world *bonding(int planar, dem_material *m) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *w;
+    desc.planar = planar;
+    desc.law = bonds;
+    desc.law_memory = 1;
+    desc.law_stiffness = 1000;
+    desc.law_range = DEM_R(0.01);
+    desc.dt = DEM_R(1e-5);
+    desc.ellipsoid_overlap = DEM_OVERLAP_NORMAL;
+    w = dem_world_create(&desc);
+    *m = scene_material(w, 1e7, 0.5, 0, 0);
+    touch_calls = beyond_calls = 0;
+    return w;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -446,6 +472,58 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
         CHECK(1);
+    }
+
+    TEST("rocks: a law with a range acts and bonds are made where faces of cubes, squares and planes touch exactly") {
+        static const double sizes[4] = {1, 0.1, 0.3, 0.07};       /* multiples of the last three are rounded */
+        int k, i, n;
+        for (k = 0; k < 3; k++) {                      /* cubes, squares, a cube on a plane */
+            const dem_real square[8] = {DEM_R(-0.5), DEM_R(-0.5), DEM_R(0.5), DEM_R(-0.5),
+                                        DEM_R(0.5), DEM_R(0.5), DEM_R(-0.5), DEM_R(0.5)};
+            dem_material m;
+            dem_world *w = bonding(k == 1, &m);
+            const dem_shape cube = k == 1 ? dem_shape_polygon_add(w, 4, square) : scene_box(w, 1, 1, 1);
+            dem_body_add(w, m, cube, at(0.5, 0, 0), straight);
+            if (k == 2) dem_wall_plane_add(w, m, at(0, 0, 0), at(1, 0, 0));
+            else dem_body_add(w, m, cube, at(-0.5, 0, 0), straight);
+            CHECK_EQ(scene_step(w, 1), DEM_OK);
+            CHECK(touch_calls > 0);
+            CHECK_EQ(dem_contacts_get(w, 0, 0), 4);
+            CHECK_EQ(dem_bonds_make(w, DEM_R(0.005), bond_all, 0), k == 2 ? 0 : 4);    /* bonds hold bodies */
+            dem_world_destroy(w);
+        }
+        for (k = 0; k < 4; k++) {                      /* four points in each of nine joints of a row */
+            dem_material m;
+            dem_world *w = bonding(0, &m);
+            const dem_shape brick = scene_box(w, sizes[k], sizes[k], sizes[k]);
+            for (i = 0; i < 10; i++) dem_body_add(w, m, brick, at(sizes[k]*i, 0, 0), straight);
+            n = dem_bonds_make(w, DEM_R(0.005), bond_all, 0);
+            CHECK_EQ(n, 36);
+            dem_world_destroy(w);
+        }
+    }
+
+    TEST("rocks: a law with a range is not called for the needle of a union that ends beyond it above a block") {
+        dem_material m;
+        dem_world *w = bonding(0, &m);
+        const dem_shape block = scene_box(w, 6, 6, 2);
+        dem_shape pieces[2];
+        dem_shape both;
+        dem_real places[6] = {0, 0, DEM_R(1.05), 1, 0, DEM_R(0.5)};
+        dem_shape_info info;
+        pieces[0] = dem_shape_ellipsoid_add(w, at(0.1, 0.1, 1));
+        pieces[1] = scene_box(w, 1, 1, 1);
+        both = dem_shape_union_add(w, 2, pieces, places, 0);
+        CHECK_EQ(dem_shape_get(w, both, &info), DEM_OK);
+        /* the cube touches, the tip of the needle is 0.05 m above the block, five times the range */
+        dem_body_add(w, m, both, at((double)info.centre.x, (double)info.centre.y, (double)info.centre.z - 1e-5),
+                     straight);
+        dem_body_add(w, m, block, at(0, 0, -1), straight);
+        CHECK_EQ(scene_step(w, 2), DEM_OK);
+        CHECK(touch_calls > 0);
+        CHECK_EQ(beyond_calls, 0);
+        CHECK_EQ(dem_contacts_get(w, 0, 0), 4);
+        dem_world_destroy(w);
     }
 
     return test_end();

@@ -8,6 +8,7 @@
 #include "../scene.h"
 
 static const double g = 9.81;                   /* m/s2 */
+static const double exact = sizeof(dem_real) == 4 ? 1e-4 : 1e-9;    /* round-off of some hundred steps */
 
 static dem_world *rigid(double gravity, double dt, double restitution, double friction, dem_cone cone, int threads,
                         dem_material *m) {
@@ -218,6 +219,38 @@ static double order_of(int scene, double dt, double error[2], double part[2]) {
     return log(error[0]/error[1])/log(2.);
 }
 
+/* Work of force fields: gravity as a field, and a constant force and torque. */
+static dem_vec3 field_weight(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
+    (void)x; (void)v; (void)radius; (void)time; (void)user;
+    return at(0, 0, -g*(double)mass);
+}
+static void field_wrench(const dem_body_state *body, dem_body id, double time, dem_vec3 *force, dem_vec3 *torque,
+                         void *user) {
+    (void)id; (void)time; (void)user;
+    *force = at(0.5*(double)body->mass, 0, 0);
+    *torque = at(0, 30*(double)body->inertia, 0);
+}
+/* In the plane a slope of 0.2; out of it user[0], m/s2. */
+static dem_vec3 field_oblique(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
+    (void)x; (void)v; (void)radius; (void)time;
+    return at(0.2*g*(double)mass, 0, *(const double *)user*(double)mass);
+}
+static void field_askew(const dem_body_state *body, dem_body id, double time, dem_vec3 *force, dem_vec3 *torque,
+                        void *user) {
+    const double a = *(const double *)user*(double)body->mass*(double)body->radius;
+    (void)id; (void)time;
+    *force = at(0, 0, a);
+    *torque = at(a, a, 0);
+}
+/* Keeps the largest distance, m, of the position that the function receives from that of a flight at 2 m/s. */
+static void reals_late(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id, double time,
+                       dem_real dt, void *user) {
+    double *worst = (double *)user;
+    (void)rates; (void)id; (void)dt;
+    *worst = fmax(*worst, fabs((double)body->position.x - 2*time));
+    reals[0] = body->position.x;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("impulses: a sphere leaves a wall and another sphere with -e times its approach speed, to round-off, for e "
@@ -303,6 +336,46 @@ int main(int argc, char **argv) {
                 CHECK_EQ(dem_world_step(world, 10), DEM_ERROR_TIME_STEP);
                 CHECK_STR(dem_world_error_get(world), "law_range of twice that distance");
             }
+            dem_world_destroy(world);
+        }
+    }
+    TEST("impulses: a sphere that was just given 0.5 radii per step does not enter a wall 0.2 radii away") {
+        int how;
+        for (how = 0; how < 3; how++) {         /* the lists of the first step must know the new speed */
+            const double r = 0.005, v = 0.5*r/1e-3;
+            const dem_real x[3] = {0, 0, DEM_R(1.2*0.005)}, fast[3] = {0, 0, (dem_real)-v};
+            dem_material m;
+            dem_world *world = rigid(0, 1e-3, 1, 0, DEM_CONE_COULOMB, 1, &m);
+            const dem_selection all = DEM_SELECTION;
+            dem_body ball;
+            dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            CHECK_EQ(dem_spheres_add(world, m, 1, x, how ? 0 : fast, 0, (dem_real)r), DEM_OK);
+            ball = dem_body_id_get(world, 0);
+            if (how) CHECK_EQ(scene_step(world, 3), DEM_OK);
+            if (how == 1) scene_move(world, ball, at(0, 0, -v), at(0, 0, 0));
+            if (how == 2) CHECK_EQ(dem_bodies_velocity_set(world, &all, at(0, 0, -v), at(0, 0, 0)), 1);
+            CHECK_EQ(scene_step(world, 6), DEM_OK);
+            CHECK((double)dem_counters_get(world).overlap_max < exact);
+            CHECK_REL(scene_state(world, ball).velocity.z, v, exact);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("two spheres at the same position stop the run as unstable, with springs and with impulses") {
+        int impulses;
+        for (impulses = 0; impulses < 2; impulses++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material m;
+            int k;
+            if (impulses) {
+                desc.response = DEM_RESPONSE_IMPULSES;
+                desc.dt = DEM_R(1e-3);
+            }
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e7, 0.5, 0.3, 0);
+            for (k = 0; k < 2; k++) dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+            CHECK_EQ(dem_world_step(world, 10), DEM_ERROR_UNSTABLE);
+            CHECK_STR(dem_world_error_get(world), "overlap by 2");
             dem_world_destroy(world);
         }
     }
@@ -508,6 +581,77 @@ int main(int argc, char **argv) {
         CHECK_NEAR(power/(5*size), 0, 1e-9);
         dem_world_destroy(world);
     }
+    TEST("impulses: impulse and work of a wall are those of the steps done, from the first step on and when a body is "
+         "set") {
+        int mode;
+        for (mode = 0; mode < 3; mode++) {
+            dem_motion rise = DEM_MOTION;
+            dem_material m;
+            dem_world *world = rigid(0, 1e-3, 0.5, 0.3, DEM_CONE_COULOMB, 1, &m);
+            const dem_wall floor = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            const dem_body ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01));
+            dem_wall_loads loads;
+            dem_body_state s = scene_state(world, ball);
+            dem_pose pose;
+            double gained = 0;                  /* kg m/s, by the floor alone */
+            int k;
+            rise.kind = DEM_MOTION_TRANSLATING;
+            rise.velocity = at(0, 0, 0.5);
+            CHECK_EQ(dem_wall_motion_set(world, floor, &rise), DEM_OK);
+            for (k = 0; k < (mode == 2 ? 10 : 1); k++) {
+                s = scene_state(world, ball);
+                dem_wall_pose_get(world, floor, &pose);
+                if (mode) {                     /* once in contact with the floor at rest: in the first step */
+                    s.position.z = pose.position.z + DEM_R(0.01);
+                    s.velocity.z = -1;
+                    CHECK_EQ(dem_body_set(world, ball, &s), DEM_OK);
+                }
+                gained -= (double)s.mass*(double)s.velocity.z;
+                CHECK_EQ(dem_world_run(world, 0.02, 0, 0), DEM_OK);
+                s = scene_state(world, ball);
+                gained += (double)s.mass*(double)s.velocity.z;
+            }
+            CHECK_EQ(dem_wall_loads_get(world, floor, &loads), DEM_OK);
+            CHECK_REL(-loads.impulse[2], gained, exact);
+            CHECK_REL(loads.work, 0.5*gained, exact);
+            CHECK_REL(dem_ledger_get(world).walls, loads.work, exact);
+            CHECK_NEAR(loads.time, dem_world_time_get(world), 1e-12);
+            CHECK_NEAR(dem_ledger_get(world).residual, 0, exact*dem_ledger_get(world).throughput);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("impulses: the ledger books the work of desc.force and desc.body_force, and closes") {
+        int fields;
+        for (fields = 1; fields < 4; fields++) {        /* bit 0: desc.force, bit 1: desc.body_force */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            const dem_material_desc stuff = scene_stuff(0, 0.5, 0.5, 0);
+            dem_world *world;
+            dem_material m;
+            dem_body ball;
+            dem_body_state s;
+            dem_ledger l;
+            double work = 0;                            /* J, energy of motion at constant acceleration */
+            desc.response = DEM_RESPONSE_IMPULSES;
+            desc.dt = DEM_R(1e-3);
+            desc.ledger = 1;
+            if (fields & 1) desc.force = field_weight;
+            if (fields & 2) desc.body_force = field_wrench;
+            world = dem_world_create(&desc);
+            m = dem_material_add(world, &stuff);
+            dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.2));
+            CHECK_EQ(scene_step(world, 150), DEM_OK);                   /* in flight */
+            s = scene_state(world, ball);
+            if (fields & 1) work += (double)s.mass*pow(g*0.15, 2)/2;
+            if (fields & 2) work += (double)s.mass*pow(0.5*0.15, 2)/2 + (double)s.inertia*pow(30*0.15, 2)/2;
+            CHECK_REL(dem_ledger_get(world).force, work, exact);
+            CHECK_EQ(scene_step(world, 250), DEM_OK);                   /* and with impacts on the floor */
+            l = dem_ledger_get(world);
+            CHECK(!(fields & 1) || l.normal > 0);
+            CHECK_NEAR(l.residual/l.throughput, 0, exact);
+            dem_world_destroy(world);
+        }
+    }
     TEST("impulses: a world without dt, with a user-defined law, an integrator or an unknown choice is rejected") {
         dem_world_desc desc = DEM_WORLD_DESC;
         desc.response = DEM_RESPONSE_IMPULSES;
@@ -699,6 +843,45 @@ int main(int argc, char **argv) {
         CHECK_NEAR(energy/start, 1, 2e-3);
         dem_world_destroy(world);
     }
+    TEST("impulses: forces out of a planar world's plane, and torques about its axes, change no motion in it") {
+        dem_body_state s[2][2];
+        int askew, k;
+        for (askew = 0; askew < 2; askew++) {
+            const dem_real corners[8] = {DEM_R(-0.01), DEM_R(-0.005), DEM_R(0.01), DEM_R(-0.005),
+                                         DEM_R(0.01), DEM_R(0.005), DEM_R(-0.01), DEM_R(0.005)};
+            const dem_material_desc stuff = scene_stuff(0, 0.3, 0.5, 0.05);
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material m;
+            dem_body body[2];
+            double off = askew ? 100 : 0;
+            desc.planar = 1;
+            desc.gravity.y = (dem_real)-g;
+            desc.response = DEM_RESPONSE_IMPULSES;
+            desc.dt = DEM_R(1e-3);
+            desc.force = field_oblique;
+            desc.force_user = &off;
+            desc.body_force = field_askew;
+            world = dem_world_create(&desc);
+            m = dem_material_add(world, &stuff);
+            dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
+            body[0] = dem_body_add(world, m, dem_shape_polygon_add(world, 4, corners), at(0, 0.005, 0),
+                                   dem_quat_make(1, 0, 0, 0));          /* friction holds it */
+            body[1] = dem_sphere_add(world, m, DEM_R(0.01), at(0.1, 0.01, 0));      /* it rolls away */
+            CHECK_EQ(scene_step(world, 100), DEM_OK);
+            for (k = 0; k < 2; k++) s[askew][k] = scene_state(world, body[k]);
+            dem_world_destroy(world);
+        }
+        CHECK_NEAR(s[0][0].velocity.x, 0, 1e-6);
+        CHECK(s[0][1].velocity.x > DEM_R(0.05));
+        for (k = 0; k < 2; k++) {
+            CHECK_NEAR(s[1][k].position.x, s[0][k].position.x, 0);
+            CHECK_NEAR(s[1][k].position.y, s[0][k].position.y, 0);
+            CHECK_NEAR(s[1][k].velocity.x, s[0][k].velocity.x, 0);
+            CHECK_NEAR(s[1][k].spin.z, s[0][k].spin.z, 0);
+            CHECK_NEAR(s[1][k].velocity.z, 0, 0);
+        }
+    }
     TEST("impulses: rolling and spinning friction bring bodies in a plane to rest, with fixed neighbours or none") {
         int kind, law;
         for (kind = 0; kind < 4; kind++) for (law = 1; law < 4; law++) {
@@ -743,6 +926,30 @@ int main(int argc, char **argv) {
                 CHECK(fabs((double)s.velocity.y) < 1e-4 && fabs((double)s.velocity.x) < 1e-4 &&
                       fabs((double)s.spin.z) < 1e-1 && s.position.y > DEM_R(0.9e-3));
             }
+            dem_world_destroy(world);
+        }
+    }
+    TEST("impulses: desc.body_reals_fn receives the position at the end of the step, as it does with springs") {
+        int impulses;
+        for (impulses = 0; impulses < 2; impulses++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material m;
+            dem_body ball;
+            double worst = 0;
+            desc.dt = DEM_R(1e-3);
+            desc.body_reals = "x";
+            desc.body_reals_fn = reals_late;
+            desc.body_reals_user = &worst;
+            if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
+            else desc.allow_large_dt = 1;
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e7, 0.5, 0.3, 0);
+            ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+            scene_move(world, ball, at(2, 0, 0), at(0, 0, 0));
+            CHECK_EQ(scene_step(world, 50), DEM_OK);
+            CHECK_NEAR(scene_state(world, ball).position.x, 2*dem_world_time_get(world), 1e-2*exact);
+            CHECK_NEAR(worst, 0, 1e-2*exact);            /* a step is 2e-3 m */
             dem_world_destroy(world);
         }
     }

@@ -116,6 +116,21 @@ static slide slide_of(int carrier, double dt) {
     return s;
 }
 
+/* A law whose contacts of larger spheres slide. memory[0]: 1 + what the contact returned last; 0 at its beginning. */
+static int slide_calls, slide_wrong;
+static void says_sliding(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const int slides = c->r_eff > DEM_R(0.00501), keeps = *(const int *)c->user;
+    const int last = keeps && memory[0] > DEM_R(1.5);
+    if (c->overlap > 0) {
+        slide_calls++;
+        slide_wrong += (c->sliding > 0) != last;
+    }
+    f->normal = 1000*c->overlap;
+    f->sliding = c->dt > 0 ? (dem_real)slides : c->sliding;
+    if (c->dt > 0) memory[0] = (dem_real)(1 + slides);
+}
+DEM_LAW_ROWS(says_sliding_rows, says_sliding, 1)
+
 int main(int argc, char **argv) {
     int carrier, fine, k;
     test_begin(argc, argv);
@@ -291,6 +306,38 @@ int main(int argc, char **argv) {
             dem_world_destroy(s.world);
             dem_world_destroy(t.world);
         }
+    }
+
+    TEST("a user-defined law receives its own sliding of the last step if a pair has static friction, "
+         "and otherwise 0") {
+        int keeps, rows, i;
+        for (keeps = 0; keeps < 2; keeps++)
+            for (rows = 0; rows < 2; rows++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_material_desc stuff = scene_stuff(1e7, 0.5, mu_slide, 0);
+                dem_world *w;
+                dem_material m;
+                desc.threads = 1;                      /* the law counts its calls */
+                desc.law = says_sliding;
+                if (rows) desc.law_rows = says_sliding_rows;
+                desc.law_user = &keeps;
+                desc.law_memory = 1;
+                desc.law_stiffness = 1000;
+                desc.dt = DEM_R(1e-5);
+                w = dem_world_create(&desc);
+                if (keeps) stuff.friction_static = (dem_real)mu_hold;
+                m = dem_material_add(w, &stuff);
+                for (i = 0; i < 100; i++) {            /* pairs, alternately of two sizes */
+                    const double r = i & 1 ? 0.01 : 0.011;
+                    dem_sphere_add(w, m, (dem_real)r, at(0.1*i, 0, 0));
+                    dem_sphere_add(w, m, (dem_real)r, at(0.1*i + 2*r - 1e-4, 0, 0));
+                }
+                slide_calls = slide_wrong = 0;
+                CHECK_EQ(scene_step(w, 10), DEM_OK);
+                CHECK(slide_calls >= 1000);
+                CHECK_EQ(slide_wrong, 0);
+                dem_world_destroy(w);
+            }
     }
     return test_end();
 }

@@ -36,6 +36,7 @@ static double force_at(double overlap, dem_real *memory, dem_contact_energy *par
     c.normal = at(1, 0, 0);
     c.overlap = (dem_real)overlap;
     c.kn = KL; c.kun = KUN; c.kad = KAD;
+    c.dt = 1;                                    /* with 0 the history stays */
     dem_law_hysteretic(&c, memory, &push);
     if (part) *part = push.energy;
     return (double)push.normal;
@@ -92,6 +93,11 @@ static double impact(const dem_material_desc *m, double speed, int steps, double
     e = dem_counters_get(world).contacts ? 0 : -(double)scene_state(world, a).velocity.x/speed;
     dem_world_destroy(world);
     return e;
+}
+
+static void read_depth(const dem_contact_info *c, dem_real *memory, void *user) {
+    (void)c;
+    *(double *)user = (double)memory[0];
 }
 
 int main(int argc, char **argv) {
@@ -412,6 +418,39 @@ int main(int argc, char **argv) {
         m.restitution = DEM_R(0.5);
         CHECK(dem_material_add(world, &m).id > 0);
         dem_world_destroy(world);
+    }
+
+    TEST("reading contacts of a body that was moved in and back leaves the maximum overlap as it was") {
+        int wall;
+        for (wall = 0; wall < 2; wall++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc m = scene_stuff(0, 0.5, 0, 0);
+            dem_world *world;
+            dem_material stuff;
+            dem_body body;
+            dem_body_state s;
+            double depth = 0;
+            desc.dt = DEM_R(1e-6);
+            desc.normal_law = DEM_NORMAL_HYSTERETIC;
+            world = dem_world_create(&desc);
+            m.stiffness = DEM_R(1e4);
+            stuff = dem_material_add(world, &m);
+            if (wall) dem_wall_plane_add(world, stuff, at(0, 0, 0), at(1, 0, 0));
+            else dem_sphere_add(world, stuff, DEM_R(0.01), at(-0.01, 0, 0));
+            body = dem_sphere_add(world, stuff, DEM_R(0.01), at(0.01 - 1e-5, 0, 0));
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            s = scene_state(world, body);
+            s.position.x -= DEM_R(1e-4);               /* 1.1e-4 m deep, but in no step */
+            dem_body_set(world, body, &s);
+            CHECK_EQ(dem_contacts_each(world, read_depth, &depth), 1);
+            CHECK_NEAR(depth, 1e-5, 1e-8);
+            s.position.x += DEM_R(1e-4);
+            dem_body_set(world, body, &s);
+            CHECK_EQ(dem_contacts_each(world, read_depth, &depth), 1);
+            CHECK_NEAR(depth, 1e-5, 1e-8);
+            CHECK_REL(scene_state(world, body).force.x, 0.1, 1e-2);    /* k_l times 1e-5 m: it still loads */
+            dem_world_destroy(world);
+        }
     }
 
     return test_end();

@@ -883,5 +883,28 @@ int main(int argc, char **argv) {
             CHECK_EQ(hash[1], hash[0]);
         }
     }
+
+    TEST("a pair that dem_pair_set has set keeps its values when a material changes, also those that equal "
+         "the mixture") {
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world = dem_world_create(&desc);
+            dem_material_desc m = scene_stuff(1e7, 0.5, 0.5, 0);
+            const dem_material a = dem_material_add(world, &m), b = dem_material_add(world, &m);
+            const double set = k ? 0.51 : 0.5;
+            dem_pair pair;
+            dem_pair_get(world, a, b, &pair);
+            pair.friction = (dem_real)set;
+            CHECK_EQ(dem_pair_set(world, a, b, &pair), DEM_OK);
+            m.friction = DEM_R(0.9);
+            CHECK_EQ(dem_material_set(world, a, &m), DEM_OK);
+            dem_pair_get(world, a, b, &pair);
+            CHECK_NEAR(pair.friction, (double)(dem_real)set, 0);
+            dem_pair_get(world, a, a, &pair);          /* no call has set this one */
+            CHECK_NEAR(pair.friction, (double)DEM_R(0.9), 1e-7);
+            dem_world_destroy(world);
+        }
+    }
     return test_end();
 }

@@ -291,6 +291,19 @@ static void look(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     seen = *c;
 }
 
+static double seen_overlap;
+static void notes_overlap(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)memory;
+    seen_overlap = (double)c->overlap;
+    f->normal = 0;
+}
+static int large_calls;
+static void counts_large(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)memory;
+    large_calls += c->who.radius_a > DEM_R(4e-3) && c->who.radius_b > DEM_R(4e-3);
+    f->normal = 0;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -521,6 +534,66 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_wall_profile_add(w, scene_material(w, 1e7, 1, 0, 0), &p, DEM_EDGE_FRACTION).id, 0);
         CHECK_STR(dem_world_error_get(w), "DEM_EDGE_RESOLVED");
         dem_world_destroy(w);
+    }
+
+    TEST("across a gap the overlap of an ellipsoid with an ellipsoid, sphere or plane is minus the gap, "
+         "also by chords") {
+        static const dem_overlap overlaps[2] = {DEM_OVERLAP_CHORD, DEM_OVERLAP_NORMAL};
+        static const double gaps[3] = {0.01, 0.04, -0.01};
+        int mode, other, k;
+        for (mode = 0; mode < 2; mode++)
+            for (other = 0; other < 3; other++)
+                for (k = 0; k < 3; k++) {
+                    dem_world_desc desc = desc_of(notes_overlap, 0.05, 0);
+                    dem_world *w;
+                    dem_material m;
+                    dem_shape egg;
+                    desc.ellipsoid_overlap = overlaps[mode];
+                    w = dem_world_create(&desc);
+                    m = scene_material(w, 1e7, 1, 0, 0);
+                    egg = dem_shape_ellipsoid_add(w, at(0.3, 0.4, 0.5));
+                    dem_body_add(w, m, egg, at(0, 0, 0.5), dem_quat_make(1, 0, 0, 0));
+                    if (other == 0) dem_body_add(w, m, egg, at(0, 0, -0.5 - gaps[k]), dem_quat_make(1, 0, 0, 0));
+                    if (other == 1) dem_sphere_add(w, m, DEM_R(0.5), at(0, 0, -0.5 - gaps[k]));
+                    if (other == 2) dem_wall_plane_add(w, m, at(0, 0, -gaps[k]), at(0, 0, 1));
+                    seen_overlap = 9;
+                    CHECK_EQ(scene_step(w, 1), DEM_OK);
+                    CHECK_NEAR(seen_overlap, -gaps[k], sizeof(dem_real) == 4 ? 1e-5 : 1e-9);
+                    dem_world_destroy(w);
+                }
+    }
+
+    TEST("law_range_radii reaches as far between fed grains that are larger than all before as between added ones") {
+        int fed, i;
+        for (fed = 0; fed < 2; fed++) {
+            dem_world_desc desc = desc_of(counts_large, 0, 0.5);
+            dem_feed_desc feed = DEM_FEED_DESC;
+            dem_world *w;
+            dem_material m;
+            desc.law_who = 1;
+            desc.dt = DEM_R(1e-5);
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e7, 1, 0, 0);
+            for (i = 0; i < 60; i++) dem_sphere_add(w, m, (dem_real)(1e-3 + 1e-6*i), at(0.02*i, 0.3, 0));
+            feed.material = m;
+            feed.class_count = 1;
+            feed.radius[0] = DEM_R(5e-3);
+            feed.amount[0] = 1;
+            feed.limited = 1;
+            feed.start = 20e-5 - 1e-9;
+            for (i = 0; i < 2; i++) {                  /* gap 4 mm, range 0.5 (5 + 5) = 5 mm */
+                feed.box = box_of(0.014*i, 0, 0, 0.014*i, 0, 0);
+                if (fed) CHECK(dem_feed_add(w, &feed).id);
+            }
+            CHECK_EQ(scene_step(w, 20), DEM_OK);
+            for (i = 0; i < 2 && !fed; i++) dem_sphere_add(w, m, DEM_R(5e-3), at(0.014*i, 0, 0));
+            CHECK_EQ(scene_step(w, 2), DEM_OK);
+            large_calls = 0;
+            CHECK_EQ(scene_step(w, 50), DEM_OK);
+            CHECK_EQ(dem_body_counts_get(w).present, 62);
+            CHECK_EQ(large_calls, 50);
+            dem_world_destroy(w);
+        }
     }
     return test_end();
 }

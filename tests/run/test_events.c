@@ -245,6 +245,14 @@ static dem_world *seam_world(int partner, dem_vec3 *centre) {
 /* Keeps the contact that has begun last, or the open one. */
 static void keep(const dem_event *e, void *user) { if (e->kind == DEM_EVENT_BEGIN) *(dem_event *)user = *e; }
 static void hold(const dem_event *e, void *user) { ((stream *)user)->last = *e; }
+/* The velocity of a ball, m/s, as an event function sees it. */
+typedef struct seen { const dem_world *world; dem_body ball; double speed; int calls; } seen;
+static void look(const dem_event *e, void *user) {
+    seen *s = (seen *)user;
+    (void)e;
+    s->speed = (double)scene_state(s->world, s->ball).velocity.z;
+    s->calls++;
+}
 static const dem_material soft_one = {1};
 
 int main(int argc, char **argv) {
@@ -285,6 +293,94 @@ int main(int argc, char **argv) {
             }
             dem_world_destroy(world);
         }
+    }
+    TEST("the slip of a contact that begins counts a belt's motion as that of a wall") {
+        int belt, impulses;
+        for (belt = 0; belt < 2; belt++)
+            for (impulses = 0; impulses < 2; impulses++) {
+                dem_motion motion = DEM_MOTION;
+                dem_event begun;
+                dem_events_desc desc = DEM_EVENTS_DESC;
+                dem_body ball;
+                dem_wall wall;
+                dem_world *world = ball_world(&ball, &wall, 0.2, 0.5, 0.3, 0, impulses);
+                motion.kind = DEM_MOTION_TRANSLATING;
+                motion.velocity = at(2, 0, 0);
+                if (belt) CHECK_EQ(dem_wall_surface_velocity_set(world, wall, at(2, 0, 0)), DEM_OK);
+                else CHECK_EQ(dem_wall_motion_set(world, wall, &motion), DEM_OK);
+                memset(&begun, 0, sizeof begun);
+                desc.function = keep;
+                desc.user = &begun;
+                desc.begins = 1;
+                CHECK_EQ(dem_events_record(world, &desc), DEM_OK);
+                CHECK_EQ(dem_world_run(world, 1e-3, 0, 0), DEM_OK);
+                CHECK_REL(begun.closing_speed, 0.2, 0.01);      /* after a part of a step in contact */
+                CHECK_REL(begun.slip_speed, 1.5, 0.01);
+                dem_world_destroy(world);
+            }
+    }
+    TEST("bodies at rest in the flow of a deforming cell collide at the speed of that flow, also across a face") {
+        /* from the first body to the second along x and y, m; rate along x and shear, 1/s */
+        static const double cases[4][4] = {{0.0205, 0, -1, 0}, {-0.014, 0.0145, 0, 1}, {-0.0205, 0, -1, 0},
+                                           {0.014, -0.0145, 0, 1}};
+        int k, face;
+        for (k = 0; k < 4; k++)
+            for (face = 0; face < 2; face++) {
+                const double dx = cases[k][0], dy = cases[k][1], rate = cases[k][2], shear = cases[k][3];
+                const double x = face ? 0.095 : 0.05, size = 0.1;
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_events_desc events = DEM_EVENTS_DESC;
+                dem_cell_desc cell = DEM_CELL_DESC;
+                dem_event begun;
+                dem_world *world;
+                dem_material m;
+                double flow, across;
+                int i;
+                desc.threads = 1;
+                desc.ledger = 1;
+                desc.domain = box_of(0, 0, 0, size, size, size);
+                for (i = 0; i < 3; i++) desc.boundary[i] = DEM_BOUNDARY_PERIODIC;
+                world = dem_world_create(&desc);
+                m = scene_material(world, 1e7, 0.5, 0, 0);
+                dem_sphere_add(world, m, DEM_R(0.01), at(x, x, 0.05));
+                dem_sphere_add(world, m, DEM_R(0.01), at(fmod(x + dx, size), fmod(x + dy, size), 0.05));
+                cell.rate = at(rate, 0, 0);
+                cell.shear = (dem_real)shear;
+                CHECK_EQ(dem_cell_set(world, &cell), DEM_OK);
+                memset(&begun, 0, sizeof begun);
+                events.function = keep;
+                events.user = &begun;
+                events.begins = 1;
+                CHECK_EQ(dem_events_record(world, &events), DEM_OK);
+                CHECK_EQ(dem_world_run(world, 0.05, 0, 0), DEM_OK);
+                /* the flow from one centre to the other is along x: its parts along the normal and across it */
+                flow = shear > 0 ? shear*fabs(dy) : fabs(rate)*0.02;
+                across = fabs((double)begun.normal.y);
+                CHECK_REL(begun.closing_speed, flow*fabs((double)begun.normal.x), 0.02);
+                CHECK_NEAR(begun.slip_speed, flow*across, 0.02*flow);
+                dem_world_destroy(world);
+            }
+    }
+    TEST("an event function sees the velocities at the end of the step") {
+        dem_events_desc desc = DEM_EVENTS_DESC;
+        dem_wall wall;
+        seen s;
+        dem_world *world = ball_world(&s.ball, &wall, 0.2, 0, 0, 0, 0);
+        int k;
+        s.world = world;
+        s.calls = 0;
+        desc.function = look;
+        desc.user = &s;
+        desc.begins = 1;
+        CHECK_EQ(dem_events_record(world, &desc), DEM_OK);
+        for (k = 0; k < 2; k++) {                       /* the beginning, then the end */
+            while (s.calls == k && dem_world_time_get(world) < 5e-3)
+                if (scene_step(world, 1) != DEM_OK) break;
+            CHECK_EQ(s.calls, k + 1);
+            CHECK(k ? s.speed > 0.1 : s.speed < -0.1);
+            CHECK_NEAR(s.speed, scene_state(world, s.ball).velocity.z, 0);
+        }
+        dem_world_destroy(world);
     }
     TEST("the losses of all contacts are those of the ledger, for all shapes, laws and responses") {
         static const int kinds[] = {SPHERES, SPHERES | SHAPES, SHAPES, SPHERES | OWN,

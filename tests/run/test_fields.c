@@ -215,6 +215,58 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("fields sample every 100 steps unless an interval is given, and then at each multiple of it") {
+        static const int steps[3] = {100, 10, 1};
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_field f[3];
+        dem_field_data d;
+        uint64_t had[3] = {0, 0, 0};
+        int i, k, last[3] = {0, 0, 0}, off[3] = {0, 0, 0};
+        desc.dt = DEM_R(1e-5);                          /* sums of which are not exact */
+        desc.allow_large_dt = 1;
+        world = dem_world_create(&desc);
+        dem_sphere_add(world, scene_material(world, 1e7, 0.5, 0.3, 0), DEM_R(0.01), at(0, 0, 0));
+        for (k = 0; k < 3; k++)
+            f[k] = field_of(world, box_of(-1, -1, -1, 1, 1, 1), 1, 1, 1, k ? steps[k]*(double)desc.dt : 0, 0);
+        for (i = 1; i <= 5000; i++) {
+            if (scene_step(world, 1) != DEM_OK) break;
+            for (k = 0; k < 3; k++) {
+                dem_field_get(world, f[k], &d);
+                if (d.samples == had[k]) continue;
+                off[k] += had[k] > 1 && i - last[k] != steps[k];
+                had[k] = d.samples;
+                last[k] = i;
+            }
+        }
+        for (k = 0; k < 3; k++) {
+            CHECK_EQ(off[k], 0);
+            CHECK(last[k] > 5000 - steps[k]);
+        }
+        dem_world_destroy(world);
+    }
+
+    TEST("a planar world rejects a field whose box has no bodies, because z = 0 is not in it, and stays as it was") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material m;
+        uint64_t hash;
+        desc.planar = 1;
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e7, 0.5, 0.3, 0);
+        dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        hash = dem_world_hash_get(world);
+        CHECK_EQ(field_of(world, box_of(-1, -1, 1, 1, 1, 2), 1, 1, 1, 0, 0).id, 0);
+        CHECK_STR(dem_world_error_get(world), "dem_field_add: box is from z = 1 to 2 m, must contain 0");
+        CHECK_EQ(field_of(world, box_of(-1, -1, -2, 1, 1, -1), 1, 1, 1, 0, 0).id, 0);
+        CHECK_STR(dem_world_error_get(world), "box is from z = -2 to -1 m");
+        CHECK(dem_world_hash_get(world) == hash);
+        CHECK_EQ(field_of(world, box_of(-1, -1, 0, 1, 1, 2), 1, 1, 1, 0, 0).id, 1);
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        dem_world_destroy(world);
+    }
+
     TEST("fields with bad widths and classes are rejected with the value named") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);

@@ -153,6 +153,21 @@ static void tell(const dem_contact_info *info, dem_real *memory, void *user) {
     t->count++;
 }
 
+/* ---- functions that look at velocities ---- */
+
+/* Keeps the velocity that a function receives, m/s; its numbers depend on it. */
+static dem_real wears_by_speed(const dem_body_state *body, dem_body id, double time, void *user) {
+    (void)id; (void)time;
+    *(double *)user = (double)body->velocity.z;
+    return (dem_real)(-1e-4*fabs((double)body->velocity.z));
+}
+static void notes_speed(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id, double time,
+                        dem_real dt, void *user) {
+    (void)rates; (void)id; (void)time; (void)dt;
+    reals[0] = body->velocity.z;
+    *(double *)user = (double)body->velocity.z;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("a growing body lifts its load by its growth, and the ledger books the lift as work") {
@@ -265,6 +280,54 @@ int main(int argc, char **argv) {
                        sizeof(dem_real) == 8 ? 1e-14 : 1e-8);
             if (k) CHECK((double)dem_counters_get(world).rebuilds < 40);
             dem_world_destroy(world);
+        }
+    }
+    TEST("desc.growth and desc.body_reals_fn receive complete velocities, and n steps are n times one step") {
+        int reals, single;
+        for (reals = 0; reals < 2; reals++) {
+            dem_body_state s[2];
+            double number[2];
+            for (single = 0; single < 2; single++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world;
+                dem_material stuff;
+                dem_body ball;
+                double seen = 0, before = -1;
+                dem_real read = 0;
+                int k, off = 0;
+                desc.dt = DEM_R(2e-5);
+                desc.gravity.z = DEM_R(-9.81);
+                if (reals) {
+                    desc.body_reals = "speed";
+                    desc.body_reals_fn = notes_speed;
+                    desc.body_reals_user = &seen;
+                } else {
+                    desc.growth = wears_by_speed;
+                    desc.growth_user = &seen;
+                }
+                world = dem_world_create(&desc);
+                stuff = scene_material(world, 1e7, 0.5, 0, 0);
+                dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+                ball = dem_sphere_add(world, stuff, DEM_R(5e-3), at(0, 0, 5.1e-3));
+                dem_body_get(world, ball, &s[single]);
+                s[single].velocity.z = -1;              /* an impact, in which the force changes in every step */
+                dem_body_set(world, ball, &s[single]);
+                for (k = 0; k < (single ? 60 : 1); k++) {
+                    must(world, dem_world_step(world, single ? 1 : 60));
+                    s[single] = scene_state(world, ball);
+                    /* radii follow their rates from the beginning of a step, numbers theirs at its end */
+                    if (!reals && k) off += seen < before || seen > before;
+                    if (reals && single) off += seen < (double)s[1].velocity.z || seen > (double)s[1].velocity.z;
+                    before = (double)s[single].velocity.z;
+                }
+                CHECK_EQ(off, 0);
+                if (reals) dem_body_reals_get(world, ball, &read);
+                number[single] = (double)read;
+                dem_world_destroy(world);
+            }
+            CHECK_NEAR(s[1].radius, s[0].radius, 0);
+            CHECK_NEAR(s[1].velocity.z, s[0].velocity.z, 0);
+            CHECK_NEAR(number[1], number[0], 0);
         }
     }
     TEST("a step that is chosen shrinks with the grains") {

@@ -220,6 +220,151 @@ int main(int argc, char **argv) {
         dem_world_destroy(many);
         remove(path);
     }
+    TEST("a body on a rail of a rotating wall goes on from the position that dem_body_set gives it, also far away") {
+        int k;
+        for (k = 0; k < 2; k++) {               /* read and set alike leaves the path; a new x counts as given */
+            dem_rail_desc rail = rail_of(DEM_RAIL_X | DEM_RAIL_Y, at(0, 0, 0), at(0, 0, 0));
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_motion turn = DEM_MOTION;
+            dem_world *world;
+            dem_material m;
+            dem_body body;
+            dem_body_state s;
+            double angle, x;
+            desc.dt = DEM_R(1e-4);
+            desc.allow_large_dt = 1;
+            desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+            desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+            desc.skin = DEM_R(1e-3);
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e7, 0.5, 0.3, 0);
+            rail.wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+            turn.kind = DEM_MOTION_ROTATING;
+            turn.point = at(k ? 0.05 : 0.09, 0.05, 0);
+            turn.axis = at(0, 0, 1);
+            turn.speed = 10;
+            CHECK_EQ(dem_wall_motion_set(world, rail.wall, &turn), DEM_OK);
+            body = dem_sphere_add(world, m, DEM_R(0.005), k ? at(0.01, 0.05, 0.05) : at(0.09, 0.03, 0.05));
+            CHECK_EQ(dem_body_rail_set(world, body, &rail), DEM_OK);
+            CHECK_EQ(dem_world_run(world, k ? 1e-4 : 0.1, 0, 0), DEM_OK);
+            s = scene_state(world, body);
+            if (k) s.position.x = DEM_R(0.09);
+            if (k) s.position.y = DEM_R(0.05);
+            CHECK_EQ(dem_body_set(world, body, &s), DEM_OK);
+            CHECK_EQ(dem_world_run(world, k ? 0.1 : 0.2, 0, 0), DEM_OK);
+            s = scene_state(world, body);
+            angle = 10*(dem_world_time_get(world) - (k ? 1e-4 : 0));
+            x = (double)s.position.x - (k ? 0.05 + 0.04*cos(angle) : 0.09 + 0.02*sin(angle));
+            CHECK_NEAR(x - 0.1*floor(x/0.1 + 0.5), 0, 1e-5);
+            CHECK_NEAR(s.position.y, k ? 0.05 + 0.04*sin(angle) : 0.05 - 0.02*cos(angle), 1e-5);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("the rail of a removed body hinders neither a deforming cell nor slabs") {
+        int slabs, removed;
+        for (slabs = 0; slabs < 2; slabs++)
+            for (removed = 0; removed < 2; removed++) {
+                const dem_rail_desc rail = rail_of(DEM_RAIL_X, at(0, 0, 0), at(0, 0, 0));
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_slabs_desc cut = DEM_SLABS_DESC;
+                dem_cell_desc cell = DEM_CELL_DESC;
+                dem_slabs *s;
+                dem_world *world;
+                dem_material m;
+                dem_body body;
+                int k;
+                desc.dt = DEM_R(1e-5);
+                desc.domain = box_of(0, 0, 0, 1, 0.1, 0.1);
+                for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+                world = dem_world_create(&desc);
+                m = scene_material(world, 1e7, 0.5, 0.3, 0);
+                body = dem_sphere_add(world, m, DEM_R(0.005), at(0.5, 0.05, 0.05));
+                for (k = 0; k < 20; k++) dem_sphere_add(world, m, DEM_R(0.005), at(0.02 + 0.045*k, 0.02, 0.05));
+                CHECK_EQ(dem_body_rail_set(world, body, &rail), DEM_OK);
+                CHECK_EQ(scene_step(world, 2), DEM_OK);
+                if (removed) CHECK_EQ(dem_body_remove(world, body), DEM_OK);
+                cut.count = 2;
+                cell.rate = at(-1, 0, 0);
+                if (slabs) {
+                    s = dem_slabs_create(world, &cut);
+                    CHECK_EQ(s != 0, removed);
+                    dem_slabs_destroy(s);
+                } else CHECK_EQ(dem_cell_set(world, &cell), removed ? DEM_OK : DEM_ERROR_ARGUMENT);
+                if (!removed) CHECK_STR(dem_world_error_get(world), "on rails");
+                CHECK_EQ(scene_step(world, 2), DEM_OK);
+                dem_world_destroy(world);
+            }
+    }
+    TEST("a body on a rail stays a part of its rotating wall when it crosses a periodic face") {
+        int face, k;
+        for (face = 0; face < 2; face++) {
+            const double c = face ? 0.09 : 0.05;        /* m, the axis: its circle crosses x = 0.1 or no face */
+            dem_rail_desc rail = rail_of(DEM_RAIL_X | DEM_RAIL_Y, at(0, 0, 0), at(0, 0, 0));
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_motion turn = DEM_MOTION;
+            dem_world *world;
+            dem_material m;
+            dem_body body;
+            desc.dt = DEM_R(1e-4);
+            desc.allow_large_dt = 1;
+            desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+            desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+            desc.skin = DEM_R(1e-3);                    /* positions are wrapped when lists are made */
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e7, 0.5, 0.3, 0);
+            rail.wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+            turn.kind = DEM_MOTION_ROTATING;
+            turn.point = at(c, 0.05, 0);
+            turn.axis = at(0, 0, 1);
+            turn.speed = 10;
+            CHECK_EQ(dem_wall_motion_set(world, rail.wall, &turn), DEM_OK);
+            body = dem_sphere_add(world, m, DEM_R(0.005), at(c, 0.03, 0.05));
+            CHECK_EQ(dem_body_rail_set(world, body, &rail), DEM_OK);
+            for (k = 0; k < 8; k++) {
+                dem_body_state s;
+                double angle, x;
+                CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
+                angle = 10*dem_world_time_get(world);
+                s = scene_state(world, body);
+                x = (double)s.position.x - (c + 0.02*sin(angle));
+                CHECK_NEAR(x - 0.1*floor(x/0.1 + 0.5), 0, 1e-5);
+                CHECK_NEAR(s.position.y, 0.05 - 0.02*cos(angle), 1e-5);
+            }
+            dem_world_destroy(world);
+        }
+    }
+    TEST("the rail of a body that was fixed gives no force, torque or power, and its work stays") {
+        const dem_rail_desc rail = rail_of(DEM_RAIL_ALL, at(0, 0, 0.1), at(0, 0, 0));
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material m;
+        dem_body body;
+        dem_body_state s;
+        dem_rail_state r;
+        double work;
+        desc.gravity = at(0, 0, -9.81);
+        desc.dt = DEM_R(1e-5);
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e7, 0.5, 0.5, 0);
+        body = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+        CHECK_EQ(dem_body_rail_set(world, body, &rail), DEM_OK);
+        CHECK_EQ(scene_step(world, 100), DEM_OK);
+        r = rail_now(world, body);
+        s = scene_state(world, body);
+        CHECK_REL(r.force.z, 9.81*(double)s.mass, 1e-5);
+        CHECK_REL(r.power, 0.981*(double)s.mass, 1e-5);
+        work = r.work;
+        CHECK(work > 0);
+        s.fixed = 1;
+        CHECK_EQ(dem_body_set(world, body, &s), DEM_OK);
+        CHECK_EQ(scene_step(world, 100), DEM_OK);
+        r = rail_now(world, body);
+        CHECK_NEAR(r.force.z, 0, 0);
+        CHECK_NEAR(r.torque.x, 0, 0);
+        CHECK_NEAR(r.power, 0, 0);
+        CHECK_NEAR(r.work, work, 0);
+        dem_world_destroy(world);
+    }
     TEST("dem.h refuses rails of fixed bodies, with impulses, in slabs, and of axes that a planar world locks") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_slabs_desc slabs = DEM_SLABS_DESC;

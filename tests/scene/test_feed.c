@@ -146,6 +146,17 @@ static int touching_beyond(const dem_world *world, uint32_t count) {
     return found;
 }
 
+static dem_vec3 no_force(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass, double time,
+                         void *user) {
+    (void)position; (void)velocity; (void)radius; (void)mass; (void)time; (void)user;
+    return at(0, 0, 0);
+}
+/* A law with a range whose force is 1 mN of attraction across the gap, and a spring at touch. */
+static void pulls(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)memory;
+    f->normal = c->overlap > 0 ? 1000*c->overlap : DEM_R(-1e-3);
+}
+
 int main(int argc, char **argv) {
     const dem_feed first = {1};
     test_begin(argc, argv);
@@ -851,6 +862,111 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_outlet_add(world[0], &d).id, 0);
         CHECK_STR(dem_world_error_get(world[0]), "16 outlets that keep their grains");
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+    }
+
+    TEST("a wall is added beside a feed whose classes beyond class_count hold no shape or material") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_feed_desc d = DEM_FEED_DESC;
+        dem_world *world = dem_world_create(&desc);
+        const dem_material stuff = scene_material(world, 1e7, 0.5, 0, 0);
+        d.material = stuff;
+        d.class_count = 1;
+        d.radius[0] = DEM_R(0.005);
+        d.amount[0] = 3;
+        d.limited = 1;
+        d.box = box_of(0, 0, 0.1, 0.1, 0.1, 0.2);
+        d.shapes[1].id = 12345;                        /* unused */
+        d.materials[2].id = 999;
+        CHECK(dem_feed_add(world, &d).id);
+        CHECK(dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1)).id);
+        CHECK_EQ(dem_world_run(world, 0.01, 0, 0), DEM_OK);
+        CHECK_EQ(dem_body_counts_get(world).present, 3);
+        dem_world_destroy(world);
+    }
+
+    TEST("a feed inserts grains that fall alike in single steps and in one call, and from their insertion on") {
+        enum { PLAIN, FIELD, REACHING, DENSE, SCENES };
+        int scene, way, i;
+        for (scene = PLAIN; scene < SCENES; scene++) {
+            uint64_t hash[2];
+            for (way = 0; way < 2; way++) {
+                const int count = scene == DENSE ? 4000 : 10, steps = 410;
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_feed_desc d = DEM_FEED_DESC;
+                dem_world *world;
+                dem_material stuff;
+                dem_ledger l;
+                desc.gravity = at(0, 0, -9.81);
+                desc.dt = scene == DENSE ? DEM_R(1e-5) : DEM_R(5e-6);
+                desc.threads = 1;
+                desc.ledger = 1;
+                if (scene == FIELD) desc.force = no_force;
+                if (scene == REACHING) { desc.law = pulls; desc.law_stiffness = 1000; desc.law_range = DEM_R(1e-4); }
+                world = dem_world_create(&desc);
+                stuff = scene_material(world, 1e7, 0.5, 0, 0);
+                d.material = stuff;
+                d.class_count = 1;
+                d.radius[0] = DEM_R(1e-3);
+                d.amount[0] = count;
+                d.limited = 1;
+                d.rate = scene == DENSE ? 1e6 : 1e4;   /* more than a list has room for, or one in 20 steps */
+                d.box = scene == DENSE ? box_of(-0.03, -0.03, 0, 0.03, 0.03, 0.06)
+                    : box_of(-0.1, -0.1, 0, 0.1, 0.1, 0.2);
+                if (scene == DENSE) d.velocity = at(0, 0, -1);
+                CHECK(dem_feed_add(world, &d).id);
+                dem_sphere_add(world, stuff, DEM_R(1e-3), at(2, 0, 0));
+                if (way) for (i = 0; i < steps; i++) CHECK_EQ(scene_step(world, 1), DEM_OK);
+                else CHECK_EQ(scene_step(world, steps), DEM_OK);
+                CHECK_EQ(dem_body_counts_get(world).present, count + 1);
+                hash[way] = dem_world_hash_get(world);
+                l = dem_ledger_get(world);
+                if (scene != REACHING && scene != DENSE)       /* a kick too many is energy from nowhere */
+                    CHECK(fabs(l.residual) < (sizeof(dem_real) == 4 ? 1e-4 : 1e-11)*l.throughput);
+                dem_world_destroy(world);
+            }
+            CHECK(hash[0] == hash[1]);
+        }
+    }
+
+    TEST("a grain that a feed inserts beside another one collides and is attracted as one that is added") {
+        int impulses, fed, i;
+        for (impulses = 0; impulses < 2; impulses++) {
+            double x[2];
+            for (fed = 0; fed < 2; fed++) {
+                const double dt = impulses ? 1e-3 : 1e-5, R = 1e-2, from = 2*R + (impulses ? 1e-5 : 2e-4);
+                const dem_vec3 velocity = impulses ? at(-2, 0, 0) : at(0, 0, 0);
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_feed_desc d = DEM_FEED_DESC;
+                dem_world *world;
+                dem_material stuff;
+                dem_body resting;
+                desc.dt = (dem_real)dt;
+                if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
+                else { desc.law = pulls; desc.law_stiffness = 1000; desc.law_range = DEM_R(5e-4); }
+                world = dem_world_create(&desc);
+                stuff = scene_material(world, 1e7, 0.5, 0, 0);
+                resting = dem_sphere_add(world, stuff, (dem_real)R, at(0, 0, 0));
+                dem_sphere_add(world, stuff, (dem_real)R, at(0.5, 0, 0));
+                d.material = stuff;
+                d.class_count = 1;
+                d.radius[0] = (dem_real)R;
+                d.amount[0] = 1;
+                d.limited = 1;
+                d.start = 20*dt - 1e-9;                /* in the first step after 20 */
+                d.box = box_of(from, 0, 0, from, 0, 0);
+                d.velocity = velocity;
+                if (fed) CHECK(dem_feed_add(world, &d).id);
+                CHECK_EQ(scene_step(world, 20), DEM_OK);
+                if (!fed)
+                    scene_move(world, dem_sphere_add(world, stuff, (dem_real)R, at(from, 0, 0)), velocity, at(0, 0, 0));
+                for (i = 0; i < 4; i++) CHECK_EQ(scene_step(world, 1), DEM_OK);
+                CHECK_EQ(dem_body_counts_get(world).present, 3);
+                x[fed] = (double)scene_state(world, resting).position.x;
+                dem_world_destroy(world);
+            }
+            CHECK(fabs(x[0]) > 1e-13);                 /* it has moved */
+            CHECK_REL(x[1], x[0], sizeof(dem_real) == 4 ? 1e-4 : 1e-6);
+        }
     }
     return test_end();
 }

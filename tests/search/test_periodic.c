@@ -630,6 +630,45 @@ static void walls(void) {
     }
 }
 
+/* The force along z on a ball on the upper rim of a plate of the length of the period that a motion of this kind has
+   turned upright, N. */
+static double rim_force(dem_motion_kind kind) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_motion motion = DEM_MOTION;
+    dem_motion_row rows[3];
+    dem_world *w;
+    dem_material m;
+    dem_wall plate;
+    dem_body b;
+    double force;
+    int i;
+    desc.dt = DEM_R(1e-4);
+    desc.allow_large_dt = 1;
+    desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+    desc.domain = box_of(0, 0, 0, 0.1, 0, 0);
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e7, 0.5, 0, 0);
+    plate = scene_floor(w, m, 0, -0.02, 0.1, 0.02, 1, 1);
+    memset(rows, 0, sizeof rows);
+    for (i = 1; i < 3; i++) {
+        rows[i].time = 0.5*i;
+        rows[i].rotation = dem_quat_about(at(0, 1, 0), (dem_real)(0.7853981633974483*i));
+    }
+    motion.kind = kind;
+    motion.point = at(0.05, 0, 0);
+    motion.axis = at(0, 1, 0);
+    motion.speed = DEM_R(1.5707963267948966);
+    if (kind == DEM_MOTION_TABLE) { motion.table = rows; motion.table_count = 3; }
+    CHECK_EQ(dem_wall_motion_set(w, plate, &motion), DEM_OK);
+    dem_sphere_add(w, m, DEM_R(0.005), at(0.05, 0, 0.3));
+    CHECK_EQ(scene_step(w, 10000), DEM_OK);
+    b = dem_sphere_add(w, m, DEM_R(0.005), at(0.05, 0.001, 0.05 + 0.00495));
+    CHECK_EQ(scene_step(w, 1), DEM_OK);
+    force = (double)scene_state(w, b).force.z;
+    dem_world_destroy(w);
+    return force;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     fills();
@@ -637,5 +676,34 @@ int main(int argc, char **argv) {
     feeds();
     places();
     walls();
+    TEST("a plate as long as the period has a rim when a table turns it upright, as when it rotates") {
+        const double force = rim_force(DEM_MOTION_ROTATING);
+        CHECK(force > 0.1);
+        CHECK_REL(rim_force(DEM_MOTION_TABLE), force, 0.05);
+    }
+    TEST("a cylinder in a box of a period that begins elsewhere than the world has the axis of its box") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_region region = dem_region_make(box_of(-0.5, -0.5, -0.5, 0.5, 0.5, 0.5));
+        dem_selection inside = DEM_SELECTION;
+        double far = 0;
+        dem_world *w;
+        dem_bodies b;
+        int i, n;
+        desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+        desc.domain = box_of(0, -1, -1, 1, 1, 1);
+        w = dem_world_create(&desc);
+        region.cylinder = 'z';
+        n = dem_spheres_fill(w, scene_material(w, 1e7, 0.5, 0, 0), DEM_R(0.01), region, 100, 1);
+        CHECK_EQ(n, 100);
+        b = dem_bodies_get(w);
+        for (i = 0; i < n; i++) {                      /* from the axis x = 0, across the face */
+            const double x = (double)b.positions[4*i], y = (double)b.positions[4*i + 1];
+            far = fmax(far, hypot(x - floor(x + 0.5), y));
+        }
+        CHECK(far > 0.3 && far < 0.5);
+        inside.region = &region;
+        CHECK_EQ(dem_bodies_select(w, &inside, 0, 0), n);
+        dem_world_destroy(w);
+    }
     return test_end();
 }

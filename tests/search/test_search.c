@@ -293,6 +293,63 @@ static dem_vec3 brake_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real ma
     return at(s*(double)v.x, s*(double)v.y, s*(double)v.z);
 }
 
+/* Two balls fly at each other while something acts on bodies at every step, so that none is isolated: gravity, the
+   only rail, a cell that deforms, or the only joint. It ends shortly before or at their contact. Returns the speed of
+   the left ball soon afterwards, m/s. */
+enum { GRAVITY, GRAVITY_IMPULSES, RAIL, CELL, JOINT, ENDINGS };
+static double speed_after(int what, double skin) {
+    const int impulses = what == GRAVITY_IMPULSES || what == JOINT;
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_rail_desc rail = DEM_RAIL_DESC;
+    dem_cell_desc cell = DEM_CELL_DESC, still = DEM_CELL_DESC;
+    dem_joint_desc hinge = DEM_JOINT_DESC;
+    dem_joint joint;
+    dem_world *w;
+    dem_material m;
+    dem_body a, c, d;
+    dem_ledger l;
+    double speed;
+    int k;
+    desc.threads = 1;
+    desc.ledger = 1;
+    desc.orientations = impulses;
+    desc.skin = (dem_real)skin;
+    desc.dt = impulses ? DEM_R(1e-3) : DEM_R(2e-6);
+    if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
+    if (what == GRAVITY || what == GRAVITY_IMPULSES) desc.gravity = at(0, 0, -1e-9);
+    desc.domain = box_of(-0.1, -0.1, -0.1, 0.1, 0.1, 0.1);
+    for (k = 0; k < 3 && what == CELL; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e7, 0.7, 0.3, 0);
+    a = dem_sphere_add(w, m, DEM_R(0.01), at(0, 0, 0));
+    dem_sphere_add(w, m, DEM_R(0.01), at(impulses ? 0.021 : 0.0202, 0, 0));
+    c = dem_sphere_add(w, m, DEM_R(0.01), at(0, 0.06, 0));
+    d = dem_sphere_add(w, m, DEM_R(0.01), at(0.03, 0.06, 0));
+    scene_move(w, a, at(impulses ? 0.05 : 1, 0, 0), at(0, 0, 0));
+    rail.axes = DEM_RAIL_ALL;
+    cell.rate = at(1e-6, 0, 0);
+    hinge.kind = DEM_JOINT_POINT;
+    hinge.a = c;
+    hinge.b = d;
+    hinge.point = at(0.015, 0.06, 0);
+    joint.id = 0;
+    if (what == RAIL) CHECK_EQ(dem_body_rail_set(w, c, &rail), DEM_OK);
+    if (what == CELL) CHECK_EQ(dem_cell_set(w, &cell), DEM_OK);
+    if (what == JOINT) CHECK((joint = dem_joint_add(w, &hinge)).id);
+    CHECK_EQ(scene_step(w, impulses ? 18 : 200), DEM_OK);
+    rail.axes = 0;
+    if (what == GRAVITY || what == GRAVITY_IMPULSES) CHECK_EQ(dem_world_gravity_set(w, at(0, 0, 0)), DEM_OK);
+    if (what == RAIL) CHECK_EQ(dem_body_rail_set(w, c, &rail), DEM_OK);
+    if (what == CELL) CHECK_EQ(dem_cell_set(w, &still), DEM_OK);
+    if (what == JOINT) CHECK_EQ(dem_joint_remove(w, joint), DEM_OK);
+    CHECK_EQ(scene_step(w, impulses ? 60 : 15), DEM_OK);
+    speed = (double)scene_state(w, a).velocity.x;
+    l = dem_ledger_get(w);
+    CHECK(fabs(l.residual) < 1e-3*l.throughput);
+    dem_world_destroy(w);
+    return speed;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -594,6 +651,15 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
             CHECK_EQ(wrong_pairs(world, &desc, 1, &contacts), 0);
             dem_world_destroy(world);
+        }
+    }
+
+    TEST("bodies in contact stay so when gravity, the only rail or joint, or the deformation of the cell ends") {
+        int what;
+        for (what = 0; what < ENDINGS; what++) {
+            const double fresh = speed_after(what, -1), kept = speed_after(what, 0);
+            CHECK(fresh > 0 && fresh < 0.97);          /* they have collided */
+            CHECK_NEAR(kept, fresh, sizeof(dem_real) == 4 ? 1e-5 : 1e-9);
         }
     }
     return test_end();

@@ -70,6 +70,12 @@ static dem_motion_row row(double t, dem_vec3 x, double angle) {
     return r;
 }
 
+static void jumps(double time, dem_pose *pose, void *user) {
+    (void)time;
+    (void)user;
+    pose->position.z += DEM_R(0.033);
+}
+
 int main(int argc, char **argv) {
     const double near_by = fine ? 2e-4 : 0.05;       /* differences of two steps of 1/500 of the motion */
     test_begin(argc, argv);
@@ -294,6 +300,90 @@ int main(int argc, char **argv) {
                 CHECK_NEAR(dem_counters_get(world[1]).rebuilds, (double)dem_counters_get(world[0]).rebuilds, 5);
                 for (set = 0; set < 2; set++) dem_world_destroy(world[set]);
             }
+    }
+
+    TEST("a wall whose new motion begins at another pose presses on the grains that it finds there") {
+        int kind, mesh, impulses, fresh;
+        for (kind = 0; kind < 3; kind++)
+            for (mesh = 0; mesh < 2; mesh++)
+                for (impulses = 0; impulses < 2; impulses++) {
+                    double z[2];
+                    for (fresh = 0; fresh < 2; fresh++) {      /* 1: with a new list */
+                        dem_world_desc desc = DEM_WORLD_DESC;
+                        dem_motion_row rows[2];
+                        dem_motion motion = DEM_MOTION;
+                        dem_world *w;
+                        dem_material m;
+                        dem_wall wall;
+                        dem_body b;
+                        desc.dt = impulses ? DEM_R(1e-4) : DEM_R(1e-5);
+                        if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
+                        w = dem_world_create(&desc);
+                        m = scene_material(w, 1e7, 0.5, 0.3, 0);
+                        wall = mesh ? scene_floor(w, m, -1, -1, 1, 1, 1, 1)
+                            : dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+                        b = dem_sphere_add(w, m, DEM_R(0.01), at(0.1, 0, 0.042));   /* then 1 mm deep */
+                        CHECK_EQ(scene_step(w, 20), DEM_OK);
+                        motion.start = dem_world_time_get(w);
+                        motion.kind = kind == 0 ? DEM_MOTION_OSCILLATING : kind == 1 ? DEM_MOTION_TABLE
+                            : DEM_MOTION_USER;
+                        motion.velocity = at(0, 0, 1);
+                        motion.amplitude = DEM_R(0.033);
+                        motion.frequency = DEM_R(1e-3);
+                        motion.phase = DEM_R(1.5707963267948966);
+                        memset(rows, 0, sizeof rows);
+                        rows[0].position = rows[1].position = at(0, 0, 0.033);
+                        rows[1].time = 10;
+                        if (kind == 1) { motion.table = rows; motion.table_count = 2; }
+                        if (kind == 2) motion.function = jumps;
+                        CHECK_EQ(dem_wall_motion_set(w, wall, &motion), DEM_OK);
+                        if (fresh) CHECK_EQ(dem_candidates_rebuild(w), DEM_OK);
+                        CHECK_EQ(scene_step(w, 5), DEM_OK);
+                        z[fresh] = (double)scene_state(w, b).position.z;
+                        dem_world_destroy(w);
+                    }
+                    CHECK(z[0] > 0.042 + 1e-6);
+                    CHECK_NEAR(z[0], z[1], fine ? 1e-15 : 1e-8);
+                }
+    }
+
+    TEST("a repeating table is at rest before its start and carries no grain") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_motion motion = DEM_MOTION;
+        dem_motion_row rows[5];
+        dem_world *w;
+        dem_material m;
+        dem_wall wall;
+        dem_wall_loads loads;
+        dem_body b;
+        dem_pose pose;
+        int k;
+        desc.gravity = at(0, 0, -9.81);
+        w = dem_world_create(&desc);
+        m = scene_material(w, 1e7, 0.5, 0.5, 0);
+        wall = dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+        b = dem_sphere_add(w, m, DEM_R(0.005), at(0, 0, 0.00499));
+        memset(rows, 0, sizeof rows);
+        for (k = 0; k < 5; k++) {
+            rows[k].time = 0.25*k;
+            rows[k].position = at(k == 1 ? 0.05 : k == 3 ? -0.05 : 0, 0, 0);
+        }
+        motion.kind = DEM_MOTION_TABLE;
+        motion.table = rows;
+        motion.table_count = 5;
+        motion.table_repeats = 1;
+        motion.start = 0.1;
+        CHECK_EQ(dem_wall_motion_set(w, wall, &motion), DEM_OK);
+        CHECK_EQ(dem_world_run(w, 0.05, 0, 0), DEM_OK);
+        CHECK_EQ(dem_wall_pose_get(w, wall, &pose), DEM_OK);
+        CHECK_NEAR(pose.velocity.x, 0, 0);
+        dem_wall_loads_get(w, wall, &loads);
+        CHECK_NEAR(loads.work, 0, 0);
+        CHECK_NEAR(scene_state(w, b).velocity.x, 0, 0);
+        CHECK_EQ(dem_world_run(w, 0.06, 0, 0), DEM_OK);        /* it goes on at the speed of its first row */
+        CHECK_EQ(dem_wall_pose_get(w, wall, &pose), DEM_OK);
+        CHECK_REL(pose.velocity.x, 0.2, 0.1);
+        dem_world_destroy(w);
     }
     return test_end();
 }

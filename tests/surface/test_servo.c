@@ -436,5 +436,30 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "contacts of this world are impulses");
         dem_world_destroy(world);
     }
+    TEST("servo walls with equal motions are one piston, also if their materials ignore different ones") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        const dem_material_desc stuff = scene_stuff(1e7, 0.5, 0.3, 0);
+        const dem_motion motion = press(0.05, 1);
+        dem_material m, other, dust;
+        dem_world *world = stage(&desc, &stuff, &m);
+        dem_wall half[2];
+        dem_pair pair;
+        int i;
+        other = dem_material_add(world, &stuff);
+        dust = dem_material_add(world, &stuff);
+        dem_pair_get(world, other, dust, &pair);
+        pair.ignored = 1;
+        CHECK_EQ(dem_pair_set(world, other, dust, &pair), DEM_OK);
+        dem_sphere_add(world, m, (dem_real)R, at(-0.2, 0, R));         /* under the first half only */
+        for (i = 0; i < 2; i++) {
+            half[i] = plate(world, i ? other : m, i ? 0 : -1, i ? 1 : 0, 2*R + 1e-4);
+            CHECK_EQ(dem_wall_motion_set(world, half[i], &motion), DEM_OK);
+        }
+        CHECK_EQ(dem_world_run(world, 0.05, 0, 0), DEM_OK);
+        CHECK_NEAR(servo_of(world, half[0]).travel, servo_of(world, half[1]).travel, 0);
+        CHECK_NEAR(servo_of(world, half[0]).speed, servo_of(world, half[1]).speed, 0);
+        CHECK_REL(servo_of(world, half[1]).force, 1, 1e-2);
+        dem_world_destroy(world);
+    }
     return test_end();
 }
