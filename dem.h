@@ -2283,7 +2283,9 @@ typedef struct dem_motion {
     /* s. Until then rotating, translating and servo walls are at rest. A time in the past means
        now. */
     double start;
-    dem_motion_fn function;        /* what DEM_MOTION_USER calls */
+    /* What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period,
+       because the ends stay joined to those of its images: use a table. */
+    dem_motion_fn function;
     void *user;                    /* passed to function */
     /* s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as
        3 u^2 - 2 u^3, u = (time - start)/ramp, to its full value. 0 means at once. */

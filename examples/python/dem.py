@@ -1434,7 +1434,8 @@ class Wall(Id):
         speed: rad/s, of rotating walls
         amplitude: m, Hz, rad: of oscillating walls
         start: s. Until then rotating, translating and servo walls are at rest. A time in the past means now.
-        function: what DEM_MOTION_USER calls
+        function: What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period, because
+            the ends stay joined to those of its images: use a table.
         user: passed to function
         ramp: s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 - 2
             u^3, u = (time - start)/ramp, to its full value. 0 means at once.
@@ -2489,7 +2490,9 @@ class Motion(Struct):
         ('phase', Real, ""),
         ('start', ctypes.c_double,
          's. Until then rotating, translating and servo walls are at rest. A time in the past means now.'),
-        ('function', MotionFn, 'what DEM_MOTION_USER calls'),
+        ('function', MotionFn,
+         'What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period, because '
+         'the ends stay joined to those of its images: use a table.'),
         ('user', ctypes.c_void_p, 'passed to function'),
         ('ramp', ctypes.c_double,
          's, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 -'

@@ -86,6 +86,71 @@ static void twice(const dem_contact *c, dem_real *memory, dem_contact_force *for
     dem_law_spring(c, memory, force);
 }
 
+static dem_world_desc rolling(void) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    desc.threads = 1;
+    desc.dt = DEM_R(1e-5);
+    desc.ledger = 1;
+    desc.gravity = at(1, 0, -9.81);
+    return desc;
+}
+/* Spheres and clusters that roll on a floor and on each other, pressed together from the start, with values for
+   every law that has a contact history. */
+static dem_world *rollers(const dem_world_desc *desc) {
+    static const dem_real two[6] = {0, 0, 0, DEM_R(3e-3), 0, 0};
+    dem_world *world;
+    dem_material_desc m = scene_stuff(1e7, 0.5, 0.3, 0.1);
+    dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+    dem_material stuff;
+    dem_shape pair;
+    dem_pair own;
+    int i;
+    if (desc->normal_law == DEM_NORMAL_HYSTERETIC || desc->normal_law == DEM_NORMAL_LINEAR) {
+        m.stiffness = DEM_R(5e3);
+        m.stiffness_unloading = DEM_R(2e4);
+        m.stiffness_adhesion = DEM_R(1e3);
+    }
+    world = dem_world_create(desc);
+    stuff = dem_material_add(world, &m);
+    dem_pair_get(world, stuff, stuff, &own);
+    own.spinning_friction = DEM_R(0.1);
+    dem_pair_set(world, stuff, stuff, &own);
+    cluster.count = 2;
+    cluster.positions = two;
+    cluster.radius = DEM_R(4e-3);
+    pair = dem_shape_cluster_add(world, &cluster);
+    dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 12; i++) {                 /* each touches the floor or the body below */
+        const dem_vec3 x = at(0.012*(i%6), 0, i < 6 ? 0.00399 : 0.01196);
+        if (i%2) dem_body_add(world, stuff, pair, x, dem_quat_about(at(0, 1, 0), DEM_R(0.2)));
+        else dem_sphere_add(world, stuff, DEM_R(4e-3), x);
+    }
+    return world;
+}
+/* Settings with another law than those of number `k`, and the fields that differ; 0: there are no more. */
+static const char *other_law(int k, dem_world_desc *there, dem_world_desc *here) {
+    *there = *here = rolling();
+    switch (k) {
+    case 0: here->tangent_law = DEM_TANGENT_MINDLIN_RESCALED; return "tangent_law";
+    case 1: here->tangent_law = DEM_TANGENT_NONE; return "tangent_law";
+    case 2: here->rolling_law = DEM_ROLLING_CONSTANT; return "rolling_law";
+    case 3: here->rolling_law = DEM_ROLLING_NONE; return "rolling_law";
+    case 4:
+        there->normal_law = DEM_NORMAL_HYSTERETIC;
+        here->normal_law = DEM_NORMAL_LINEAR;
+        return "normal_law";
+    case 5: there->cluster_contacts = DEM_CLUSTER_CONTACTS_SEPARATE; return "cluster_contacts";
+    case 6: here->cluster_contacts = DEM_CLUSTER_CONTACTS_SEPARATE; return "cluster_contacts";
+    case 7:
+        here->law = twice;
+        here->law_memory = 3;
+        here->law_vectors = 1;
+        return "law law_memory law_vectors";
+    case 8: here->law = dem_law_hertz; return "law";
+    default: return 0;
+    }
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("a restart with another step, integrator, ledger and orientations keeps positions and contact histories") {
@@ -229,6 +294,126 @@ int main(int argc, char **argv) {
         CHECK(dem_world_hash_get(fresh) == hash);
         must(fresh, dem_world_step(fresh, 10));
         dem_world_destroy(fresh);
+        dem_world_destroy(old);
+    }
+    TEST("a checkpoint written between a restart with other laws and its first step continues like the restart") {
+        static const char *const again = "build/tmp/again.ckpt";
+        const char *allowed;
+        dem_world_desc there, here;
+        int k, i;
+        for (k = 0; (allowed = other_law(k, &there, &here)) != 0; k++) {
+            const int before = test_now.wrong;
+            dem_world *old = rollers(&there), *fresh[3];     /* restarts; restarts and writes; reads that */
+            for (i = 0; i < 3; i++) fresh[i] = rollers(&here);
+            must(old, dem_world_step(old, 200));
+            must(old, dem_checkpoint_write(old, saved));
+            for (i = 0; i < 2; i++) must(fresh[i], dem_checkpoint_read_changed(fresh[i], saved, allowed));
+            must(fresh[1], dem_checkpoint_write(fresh[1], again));
+            must(fresh[2], dem_checkpoint_read(fresh[2], again));
+            for (i = 0; i < 3; i++) must(fresh[i], dem_world_step(fresh[i], 50));
+            for (i = 1; i < 3; i++) CHECK_EQ(dem_world_hash_get(fresh[i]), dem_world_hash_get(fresh[0]));
+            if (test_now.wrong > before) printf("        with other laws of number %d: %s\n", k, allowed);
+            for (i = 0; i < 3; i++) dem_world_destroy(fresh[i]);
+            dem_world_destroy(old);
+        }
+        CHECK_EQ(k, 9);
+        remove(again);
+    }
+    TEST("a scheduled checkpoint at the start of a restart with another law can be read") {
+        static const char *const first = "build/tmp/first.ckpt";
+        dem_world_desc there = rolling(), here = rolling();
+        dem_world *old, *fresh;
+        here.tangent_law = DEM_TANGENT_MINDLIN;
+        old = rollers(&there);
+        fresh = rollers(&here);
+        must(old, dem_world_step(old, 100));
+        must(old, dem_checkpoint_write(old, saved));
+        CHECK(dem_output_every_add(fresh, DEM_OUTPUT_CHECKPOINT, first, 1e-3).id > 0);
+        must(fresh, dem_checkpoint_read_changed(fresh, saved, "tangent_law"));
+        must(fresh, dem_world_step(fresh, 5));           /* the file is that of the first of these steps */
+        dem_world_destroy(fresh);
+        fresh = rollers(&here);
+        must(fresh, dem_checkpoint_read(fresh, first));
+        CHECK_EQ(dem_world_steps_get(fresh), 100);
+        dem_world_destroy(fresh);
+        dem_world_destroy(old);
+        remove(first);
+    }
+    TEST("a restart without a ledger ends the recording of contacts, and its checkpoint can be read") {
+        dem_world_desc desc = rolling();
+        dem_events_desc record = DEM_EVENTS_DESC;
+        dem_material all;
+        dem_impacts impacts;
+        dem_world *old = rollers(&desc), *fresh;
+        all.id = 0;
+        must(old, dem_events_record(old, &record));
+        must(old, dem_world_step(old, 200));
+        must(old, dem_impacts_get(old, all, all, &impacts));
+        CHECK(impacts.open > 5);
+        must(old, dem_checkpoint_write(old, saved));
+        desc.ledger = 0;
+        fresh = rollers(&desc);
+        must(fresh, dem_checkpoint_read_changed(fresh, saved, "ledger"));
+        CHECK(dem_impacts_get(fresh, all, all, &impacts) != DEM_OK);
+        must(fresh, dem_world_step(fresh, 20));
+        must(fresh, dem_checkpoint_write(fresh, saved));
+        must(fresh, dem_checkpoint_read(fresh, saved));
+        must(fresh, dem_world_step(fresh, 20));
+        CHECK_EQ(dem_world_steps_get(fresh), 240);
+        dem_world_destroy(fresh);
+        dem_world_destroy(old);
+    }
+    TEST("an allocation that fails within a restart with changes leaves the world as it was, and it runs on") {
+        dem_world_desc there = rolling(), here = rolling(), now;
+        const char *const allowed = "tangent_law dt integrator orientations materials pairs";
+        const dem_material_desc soft = scene_stuff(5e6, 0.5, 0.3, 0.1);
+        dem_result result = DEM_ERROR_MEMORY;
+        scene_memory memory;
+        dem_world *old = rollers(&there), *fresh, *plain;    /* tries to restart; never does */
+        dem_material m;
+        size_t bytes;
+        long k;
+        m.id = 1;
+        must(old, dem_world_step(old, 100));
+        must(old, dem_checkpoint_write(old, saved));
+        here.tangent_law = DEM_TANGENT_MINDLIN;
+        here.integrator = DEM_INTEGRATOR_POSITION_VERLET;
+        here.orientations = 1;
+        plain = rollers(&here);
+        scene_memory_use(&memory, &here);
+        fresh = rollers(&here);
+        must(plain, dem_material_set(plain, m, &soft));
+        must(fresh, dem_material_set(fresh, m, &soft));
+        must(plain, dem_world_step(plain, 20));
+        must(fresh, dem_world_step(fresh, 20));
+        for (k = 1; k < 1000; k++) {
+            dem_material_desc is;
+            bytes = memory.bytes;
+            memory.refuse = memory.calls + k;
+            result = dem_checkpoint_read_changed(fresh, saved, allowed);
+            memory.refuse = 0;
+            if (result == DEM_OK) break;
+            CHECK_EQ(result, DEM_ERROR_MEMORY);
+            CHECK_STR(dem_world_error_get(fresh), "memory");
+            CHECK_EQ(dem_world_hash_get(fresh), dem_world_hash_get(plain));
+            now = dem_world_desc_get(fresh);
+            CHECK(now.dt >= here.dt && now.dt <= here.dt);
+            CHECK(now.tangent_law == here.tangent_law && now.integrator == here.integrator && now.orientations);
+            must(fresh, dem_material_get(fresh, m, &is));
+            CHECK_NEAR(is.young, 5e6, 1);
+            CHECK_EQ(memory.bytes, bytes);
+            if (k%4) continue;
+            must(fresh, dem_world_step(fresh, 1));
+            must(plain, dem_world_step(plain, 1));
+            if (test_now.wrong) { printf("        at request %ld\n", k); break; }
+        }
+        CHECK_EQ(result, DEM_OK);
+        CHECK(k > 20);
+        must(fresh, dem_world_step(fresh, 20));
+        dem_world_destroy(fresh);
+        CHECK_EQ(memory.blocks, 0);
+        CHECK_EQ(memory.wrong, 0);
+        dem_world_destroy(plain);
         dem_world_destroy(old);
     }
     remove(saved);

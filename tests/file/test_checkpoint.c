@@ -1194,5 +1194,55 @@ int main(int argc, char **argv) {
         free(present);
         dem_world_destroy(world);
     }
+    TEST("a checkpoint is read after a worn mesh or profile was removed while contacts are recorded") {
+        int flat, later;
+        for (flat = 0; flat < 2; flat++) {
+            dem_world *w[2];                   /* removes the wall; still has it */
+            dem_wall ground = {0};
+            dem_wear wear;
+            dem_events_desc record = DEM_EVENTS_DESC;
+            int k;
+            for (k = 0; k < 2; k++) {
+                static const dem_real ends[4] = {DEM_R(-0.1), 0, DEM_R(0.1), 0};
+                static const int32_t segment[2] = {0, 1};
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_profile line;
+                dem_material glass;
+                desc.threads = 1;
+                desc.dt = DEM_R(1e-5);
+                desc.ledger = 1;
+                desc.planar = flat;
+                desc.gravity = flat ? at(1, -9.81, 0) : at(1, 0, -9.81);
+                w[k] = dem_world_create(&desc);
+                glass = scene_material(w[k], 1e7, 0.5, 0.3, 0);
+                line.vertex_count = 2;
+                line.segment_count = 1;
+                line.vertices = (dem_real *)ends;
+                line.segments = (int32_t *)segment;
+                ground = flat ? dem_wall_profile_add(w[k], glass, &line, DEM_EDGE_RESOLVED)
+                    : scene_floor(w[k], glass, -0.1, -0.1, 0.1, 0.1, 1, 1);
+                scene_move(w[k], dem_sphere_add(w[k], glass, DEM_R(0.005), at(0, flat*0.00499, (1 - flat)*0.00499)),
+                           at(0.5, 0, 0), at(0, 0, 0));          /* slides */
+            }
+            CHECK_EQ(dem_events_record(w[0], &record), DEM_OK);
+            CHECK_EQ(scene_step(w[0], 100), DEM_OK);
+            CHECK_EQ(dem_wall_wear_get(w[0], ground, 1, 1, &wear), DEM_OK);
+            CHECK(wear.slide > 0);
+            CHECK_EQ(dem_wall_remove(w[0], ground), DEM_OK);
+            for (later = 0; later < 2; later++) {
+                dem_effect effects[DEM_EFFECTS];
+                CHECK_EQ(dem_checkpoint_write(w[0], path), DEM_OK);
+                for (k = 1; k >= 0; k--) {
+                    CHECK_EQ(dem_checkpoint_read(w[k], path), DEM_OK);
+                    if (test_now.wrong) puts(dem_world_error_get(w[k]));
+                    CHECK_EQ(dem_world_hash_get(w[k]), dem_world_hash_get(w[0]));
+                }
+                CHECK_EQ(dem_effects_get(w[0], 1e-9, effects), DEM_EFFECTS);     /* by such copies */
+                CHECK_EQ(scene_step(w[0], 50), DEM_OK);
+            }
+            for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
+        }
+        remove(path);
+    }
     return test_end();
 }

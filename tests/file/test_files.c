@@ -1209,6 +1209,9 @@ int main(int argc, char **argv) {
         CHECK(!wall[0].id && !wall[1].id);
         CHECK_EQ(dem_wall_parts_add(world, "build/tmp/none.obj", 1, 2, part, wall), DEM_ERROR_FILE);
         part[1].name = "lid";
+        CHECK_EQ(dem_wall_parts_add(world, name, (dem_real)NAN, 2, part, wall), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "dem_wall_parts_add");
+        CHECK(!wall[0].id && !wall[1].id);
         part[1].motion.velocity.x = (dem_real)NAN;
         CHECK(dem_wall_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
         part[1].motion.velocity.x = 0;

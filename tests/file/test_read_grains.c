@@ -114,6 +114,38 @@ static size_t pair_vtp(char *out, int form, int wide, int big, int head) {
     return n + (size_t)sprintf(out + n, "\n</VTKFile>\n");
 }
 
+/* n numbers of legacy VTK, of float64 or of int32, as text or as bytes. */
+static size_t vtk_put(char *out, const double *reals, const int32_t *wholes, int n, int binary) {
+    unsigned char *bytes = (unsigned char *)out;
+    size_t size = 0;
+    int k;
+    for (k = 0; k < n; k++)
+        if (!binary) size += (size_t)sprintf(out + size, "%.9g\n", reals ? reals[k] : (double)wholes[k]);
+        else size += reals ? real_put(bytes + size, reals[k], 1, 1) : bytes_put(bytes + size, wholes + k, 4, 1);
+    return size;
+}
+/* The pair as VTK's own writer orders it: cells with a number each before the data of the points. One cell has both
+   points, more have one each, some of them the same. */
+static size_t pair_vtk(char *out, int cells, int binary) {
+    static const double radii[2] = {0.01, 0.02}, speeds[6] = {1, 0, -1, 3, 0, 2};
+    static const double places[6] = {0.1, 0.2, 0.3, -0.1, 0.25, 0.35};
+    static const int32_t one[3] = {2, 0, 1}, many[12] = {1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1};
+    static const int32_t block[6] = {7, 8, 9, 10, 11, 12};
+    const int size = cells > 1 ? 2*cells : 3;
+    size_t n = (size_t)sprintf(out, "# vtk DataFile Version 3.0\nx\n%s\nDATASET POLYDATA\nPOINTS 2 double\n",
+                               binary ? "BINARY" : "ASCII");
+    n += vtk_put(out + n, places, 0, 6, binary);
+    n += (size_t)sprintf(out + n, "\nVERTICES %d %d\n", cells, size);
+    n += vtk_put(out + n, 0, cells > 1 ? many : one, size, binary);
+    n += (size_t)sprintf(out + n, "\nCELL_DATA %d\nSCALARS block int\nLOOKUP_TABLE default\n", cells);
+    n += vtk_put(out + n, 0, block, cells, binary);
+    n += (size_t)sprintf(out + n, "\nPOINT_DATA 2\nSCALARS radius double\nLOOKUP_TABLE default\n");
+    n += vtk_put(out + n, radii, 0, 2, binary);
+    n += (size_t)sprintf(out + n, "\nVECTORS v double\n");
+    n += vtk_put(out + n, speeds, 0, 6, binary);
+    return n + (size_t)sprintf(out + n, "\n");
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -371,6 +403,21 @@ int main(int argc, char **argv) {
         dem_world_destroy(again);
     }
 
+    TEST("legacy VTK reads with data of cells before those of points, whatever the number of cells, as text and as "
+         "bytes") {
+        dem_world *world = heap();
+        dem_grains g;
+        int cells, binary;
+        for (binary = 0; binary < 2; binary++)
+            for (cells = 1; cells <= 6; cells++) {
+                static char text[2000];
+                pair_read(world, text, pair_vtk(text, cells, binary), &g);
+                CHECK(g.velocities != 0);
+                dem_grains_free(world, &g);
+            }
+        dem_world_destroy(world);
+    }
+
     TEST("every failing allocation of the grain reader gives a memory error and leaves nothing behind") {
         static const char *const texts[] = {"x;y;z;r;vx;vy;vz;omegax;omegay;omegaz;type\n0,1;2;3;,5;1;2;3;4;5;6;1\n",
             "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOINT_DATA 1\nSCALARS radius float\n"
@@ -453,6 +500,35 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_grains_parse(world, "whole", bytes, size, &g), DEM_OK);
             dem_grains_free(world, &g);
         }
+        dem_world_destroy(world);
+    }
+    TEST("dem_grains_add rejects velocities and spins that are finite but absurd, and adds no grain") {
+        static const dem_real slow[3] = {1, 0, 0};
+        dem_real place[3] = {1, 1, 1}, radius[1] = {DEM_R(0.001)}, fast[3] = {0, 0, 0};
+        dem_world *world = heap();
+        dem_material glass;
+        uint64_t hash;
+        int k;
+        glass.id = 1;
+        dem_sphere_add(world, glass, DEM_R(0.01), at(0, 0, 1));
+        CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+        hash = dem_world_hash_get(world);
+        for (k = 0; k < 6; k++) {
+            dem_grains g;
+            memset(&g, 0, sizeof g);
+            memset(fast, 0, sizeof fast);
+            fast[k%3] = DEM_R(1e20);
+            g.count = 1;
+            g.positions = place;
+            g.radii = radius;
+            g.velocities = k < 3 ? fast : (dem_real *)slow;
+            g.spins = k < 3 ? (dem_real *)slow : fast;
+            CHECK_EQ(dem_grains_add(world, glass, &g), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error_get(world), "dem_grains_add: grain 0");
+            CHECK_EQ(dem_bodies_get(world).count, 1);
+        }
+        CHECK_EQ(dem_world_hash_get(world), hash);
+        CHECK_EQ(scene_step(world, 10), DEM_OK);
         dem_world_destroy(world);
     }
     return test_end();

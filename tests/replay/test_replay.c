@@ -567,5 +567,95 @@ int main(int argc, char **argv) {
         dem_world_destroy(a);
         dem_world_destroy(b);
     }
+    TEST("a replay writes a body whose radius changes as gone and new in one frame") {
+        dem_material stuff;
+        dem_world *w = scene(&stuff);
+        dem_body ball = dem_sphere_add(w, stuff, DEM_R(0.001), at(0, 0, 0.01));
+        dem_replay *film = dem_replay_open(w, film_path, 0);
+        int k;
+        dem_sphere_add(w, stuff, DEM_R(0.001), at(0.01, 0, 0.02));
+        for (k = 0; k < 3; k++) {
+            if (k == 1) CHECK_EQ(dem_body_radius_set(w, ball, DEM_R(0.002)), DEM_OK);
+            if (k == 1) CHECK_EQ(dem_world_step(w, 1), DEM_OK);
+            CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
+        }
+        CHECK_EQ(dem_replay_close(film), DEM_OK);
+        film_read(&f, film_path);
+        for (k = 0; k < 3; k++) {
+            CHECK_EQ(film_next(&f), 1);
+            CHECK_EQ(f.gone, k == 1);
+            CHECK_EQ(f.fresh, k == 0 ? 2 : k == 1);
+            CHECK_NEAR(f.radius[0], k ? 0.002 : 0.001, 1e-9);
+        }
+        film_compare(&f, w);
+        free(f.text);
+        dem_world_destroy(w);
+    }
+    TEST("a replay shows the radii, materials and shapes of a checkpoint that is read between two frames") {
+        /* number 0: as before; 1: another radius; 2: another material; 3: another shape */
+        static const char saved[] = "build/tmp/film.ckpt";
+        int k;
+        for (k = 0; k < 4; k++) {
+            dem_world *w[2];                   /* recorded; writes the checkpoint */
+            dem_replay *film;
+            int i;
+            for (i = 0; i < 2; i++) {
+                dem_material stuff, other;
+                dem_shape egg;
+                const int what = i ? k : 0;
+                w[i] = scene(&stuff);
+                other = scene_material(w[i], 1e6, 0.5, 0.4, 0);
+                egg = dem_shape_ellipsoid_add(w[i], at(0.001, 0.0005, 0.0005));
+                if (what == 3) dem_body_add(w[i], stuff, egg, at(0, 0, 0.01), dem_quat_make(1, 0, 0, 0));
+                else dem_sphere_add(w[i], what == 2 ? other : stuff, DEM_R(what == 1 ? 0.002 : 0.001), at(0, 0, 0.01));
+                dem_body_add(w[i], other, egg, at(0.01, 0, 0.01), dem_quat_make(1, 0, 0, 0));
+            }
+            film = dem_replay_open(w[0], film_path, 0);
+            CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
+            CHECK_EQ(scene_step(w[1], 2), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(w[1], saved), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(w[0], saved), DEM_OK);
+            CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
+            CHECK_EQ(dem_replay_close(film), DEM_OK);
+            film_read(&f, film_path);
+            CHECK_EQ(film_next(&f), 1);
+            CHECK_EQ(film_next(&f), 1);
+            CHECK_EQ(f.gone, k > 0);
+            CHECK_EQ(f.fresh, k > 0);
+            film_compare(&f, w[0]);
+            free(f.text);
+            for (i = 0; i < 2; i++) dem_world_destroy(w[i]);
+        }
+        remove(saved);
+    }
+    TEST("in a replay the force of a wall beyond a periodic face points to the nearest image of the wall") {
+        static const dem_real at_wall[3] = {DEM_R(0.007), 0, 0};
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_replay_desc show = DEM_REPLAY_DESC;
+        dem_world *w;
+        dem_material stuff;
+        dem_replay *film;
+        desc.threads = 1;
+        desc.dt = DEM_R(1e-5);
+        desc.domain = box_of(0, -1, -1, 0.1, 1, 1);
+        desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+        w = dem_world_create(&desc);
+        stuff = scene_material(w, 1e7, 0.5, 0, 0);
+        CHECK(dem_wall_grains_add(w, stuff, 1, at_wall, DEM_R(0.005), 1).id > 0);
+        dem_sphere_add(w, stuff, DEM_R(0.005), at(0.0971, 0, 0));      /* the wall's image is at 0.107 */
+        show.contacts = 1;
+        film = dem_replay_open(w, film_path, &show);
+        CHECK_EQ(scene_step(w, 1), DEM_OK);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
+        CHECK_EQ(dem_replay_close(film), DEM_OK);
+        film_read(&f, film_path);
+        CHECK_EQ(film_next(&f), 1);
+        CHECK_EQ(f.links, 1);
+        CHECK_NEAR(f.point[0][0], 0.10205, 2e-4);            /* the centre and about one radius */
+        CHECK_NEAR(f.point[0][1], 0, 2e-4);
+        CHECK_NEAR(f.point[0][2], 0, 2e-4);
+        free(f.text);
+        dem_world_destroy(w);
+    }
     return test_end();
 }

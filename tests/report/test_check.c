@@ -150,6 +150,98 @@ static int body_findings(dem_world *world, const char *says, dem_severity severi
     return count;
 }
 
+static dem_real swells(const dem_body_state *body, dem_body id, double time, void *user) {
+    (void)body; (void)id; (void)time; (void)user;
+    return DEM_R(1e-3);                        /* m/s */
+}
+/* One ball at rest without gravity, and what moves it: nothing; a cell that deforms; a wall that moves; one whose
+   surface does; growth; a feed. */
+enum { MOVED_NOT, MOVED_CELL, MOVED_WALL, MOVED_BELT, MOVED_GROWTH, MOVED_FEED, MOVES };
+static dem_world *rest(int moved) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_motion motion = DEM_MOTION;
+    dem_cell_desc cell = DEM_CELL_DESC;
+    dem_feed_desc feed = DEM_FEED_DESC;
+    dem_world *world;
+    dem_material m;
+    dem_wall wall;
+    int k;
+    desc.threads = 1;
+    desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+    for (k = 0; k < 3 && moved == MOVED_CELL; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    if (moved == MOVED_GROWTH) desc.growth = swells;
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e7, 0.5, 0.3, 0);
+    dem_sphere_add(world, m, DEM_R(0.006), at(0.05, 0.05, 0.05));
+    if (moved == MOVED_CELL) {
+        cell.rate = at(-1, -1, -1);
+        CHECK_EQ(dem_cell_set(world, &cell), DEM_OK);
+        return world;
+    }
+    wall = dem_wall_plane_add(world, m, at(0.01, 0, 0), at(1, 0, 0));
+    motion.kind = DEM_MOTION_TRANSLATING;
+    motion.velocity = at(1, 0, 0);
+    if (moved == MOVED_WALL) CHECK_EQ(dem_wall_motion_set(world, wall, &motion), DEM_OK);
+    if (moved == MOVED_BELT) CHECK_EQ(dem_wall_surface_velocity_set(world, wall, at(0, 1, 0)), DEM_OK);
+    feed.material = m;
+    feed.class_count = 1; feed.radius[0] = DEM_R(0.003); feed.amount[0] = 1; feed.rate = 10;
+    feed.box = box_of(0.02, 0.02, 0.08, 0.08, 0.08, 0.09);
+    feed.velocity = at(0, 0, -1);
+    if (moved == MOVED_FEED) CHECK(dem_feed_add(world, &feed).id > 0);
+    return world;
+}
+/* A ball under gravity without a floor, and what holds or takes it. */
+enum { HELD_NOT, HELD_JOINT, HELD_RAIL, HELD_OUTFLOW, HOLDS };
+static dem_world *hung(int held) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_joint_desc joint = DEM_JOINT_DESC;
+    dem_rail_desc rail = DEM_RAIL_DESC;
+    dem_world *world;
+    dem_body ball;
+    desc.threads = 1;
+    desc.gravity = at(0, 0, -9.81);
+    desc.domain = box_of(-1, -1, -1, 1, 1, 1);
+    if (held == HELD_OUTFLOW) desc.boundary[2] = DEM_BOUNDARY_OUTFLOW;
+    if (held == HELD_JOINT) {
+        desc.response = DEM_RESPONSE_IMPULSES;
+        desc.dt = DEM_R(1e-3);
+        desc.orientations = 1;
+    }
+    world = dem_world_create(&desc);
+    ball = dem_sphere_add(world, scene_material(world, 1e7, 0.5, 0.3, 0), DEM_R(0.01), at(0, 0, 0));
+    joint.kind = DEM_JOINT_POINT;
+    joint.a = ball;
+    joint.point = at(-0.01, 0, 0);
+    rail.axes = DEM_RAIL_ALL;
+    if (held == HELD_JOINT) CHECK(dem_joint_add(world, &joint).id > 0);
+    if (held == HELD_RAIL) CHECK_EQ(dem_body_rail_set(world, ball, &rail), DEM_OK);
+    return world;
+}
+/* Two bars that cross at the same place like scissors. */
+enum { BARS_LOOSE, BARS_HINGED, BARS_COLLIDE, BARS };
+static dem_world *scissors(int way) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_joint_desc joint = DEM_JOINT_DESC;
+    dem_world *world;
+    dem_material m;
+    dem_shape bar;
+    desc.threads = 1;
+    desc.gravity = at(0, 0, -9.81);
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = DEM_R(1e-3);
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e7, 0.5, 0.3, 0);
+    dem_wall_plane_add(world, m, at(0, 0, -0.02), at(0, 0, 1));
+    bar = scene_box(world, 0.06, 0.008, 0.01);
+    joint.kind = DEM_JOINT_REVOLUTE;
+    joint.a = dem_body_add(world, m, bar, at(0, 0, 0), dem_quat_about(at(0, 0, 1), DEM_R(0.6)));
+    joint.b = dem_body_add(world, m, bar, at(0, 0, 0), dem_quat_about(at(0, 0, 1), DEM_R(-0.6)));
+    joint.axis = at(0, 0, 1);
+    joint.collide = way == BARS_COLLIDE;
+    if (way != BARS_LOOSE) CHECK(dem_joint_add(world, &joint).id > 0);
+    return world;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("a scene without mistakes has no finding, and checking changes no bit of its run") {
@@ -289,6 +381,36 @@ int main(int argc, char **argv) {
                          all_inside ? in != 27 : way != 2 && way != 3);
                 dem_world_destroy(world);
             }
+    }
+    TEST("dem_world_check reports grains that rest without a force only if nothing moves them") {
+        int k;
+        for (k = 0; k < MOVES; k++) {
+            dem_world *world = rest(k);
+            const int found = body_findings(world, "all grains rest", DEM_SEVERITY_WARNING);
+            CHECK_EQ(found, k == MOVED_NOT);
+            if (found != (k == MOVED_NOT)) printf("        moved by %d\n", k);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("dem_world_check reports grains that fall for ever only without joints, rails and outflow faces") {
+        int k;
+        for (k = 0; k < HOLDS; k++) {
+            dem_world *world = hung(k);
+            const int found = body_findings(world, "fall for ever", DEM_SEVERITY_WARNING);
+            CHECK_EQ(found, k == HELD_NOT);
+            if (found != (k == HELD_NOT)) printf("        held by %d\n", k);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("dem_world_check reports bodies of a joint that overlap only if they collide") {
+        int k;
+        for (k = 0; k < BARS; k++) {
+            dem_world *world = scissors(k);
+            const int found = body_findings(world, "bodies 1 and 2 by", DEM_SEVERITY_ERROR);
+            CHECK_EQ(found, k != BARS_HINGED);
+            if (found != (k != BARS_HINGED)) printf("        way %d\n", k);
+            dem_world_destroy(world);
+        }
     }
     return test_end();
 }

@@ -48,6 +48,23 @@ static dem_vec3 effects_wind(dem_vec3 position, dem_vec3 velocity, dem_real radi
     return at(position.x > DEM_R(0.2) ? 1e-6 : 0, 0, 0);
 }
 
+/* Looks, in the copies that dem_effects_get steps, at a ball that begins to roll down a plane: its spin over that of a
+   ball without rolling friction. Copies without friction have 0, those without rolling friction 1, all others a
+   number between. */
+typedef struct effects_roll { double begun, pull, radius; int watching; long slid, rolled, between; } effects_roll;
+static void effects_look(const dem_body_state *b, dem_body body, double time, dem_vec3 *force, dem_vec3 *torque,
+                         void *user) {
+    effects_roll *r = (effects_roll *)user;
+    const double elapsed = time - r->begun;
+    (void)body; (void)force; (void)torque;
+    if (r->watching && elapsed > 9.5e-4 && b->velocity.z > DEM_R(-5e-3)) {     /* in copies without walls it falls */
+        const double share = (double)b->spin.y*r->radius/(5.0/7*r->pull*elapsed);
+        r->slid += fabs(share) < 0.01;
+        r->rolled += fabs(share - 1) < 0.1;
+        r->between += share > 0.2 && share < 0.8;
+    }
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("unused effects are off, with the reason: friction, rolling friction, adhesion, fields, ledger, shapes") {
@@ -320,6 +337,48 @@ int main(int argc, char **argv) {
         CHECK_EQ(found, 4);
         CHECK_STR(text, " 12.0 % +- 1.0   text");
         CHECK_STR(text, "measure again on a quiet machine");
+    }
+    TEST("under impulses the copies without friction and without rolling friction have none") {
+        effects_roll roll = {0, 1, 0.005, 0, 0, 0, 0};
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_effect all[DEM_EFFECTS];
+        dem_world *world;
+        dem_material glass;
+        desc.threads = 1;
+        desc.response = DEM_RESPONSE_IMPULSES;
+        desc.dt = DEM_R(1e-4);
+        desc.gravity = at(roll.pull, 0, -9.81);
+        desc.body_force = effects_look;
+        desc.force_user = &roll;
+        world = dem_world_create(&desc);
+        glass = scene_material(world, 1e7, 0, 0.5, 0.05);
+        dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+        dem_sphere_add(world, glass, (dem_real)roll.radius, at(0, 0, roll.radius));
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
+        roll.begun = dem_world_time_get(world);
+        roll.watching = 1;
+        CHECK_EQ(dem_effects_get(world, 0.01, all), DEM_EFFECTS);
+        roll.watching = 0;
+        CHECK_STR(all[1].name, "friction");
+        CHECK_STR(all[2].name, "rolling friction");
+        CHECK(all[1].measured && all[2].measured);
+        CHECK(roll.slid > 5);
+        CHECK(roll.rolled > 5);
+        CHECK(roll.between > 5);
+        dem_world_destroy(world);
+    }
+    TEST("dem_world_report counts the walls that exist") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        effects_scene s = effects_world(desc);
+        dem_wall ground;
+        ground.id = 1;
+        CHECK_EQ(scene_step(s.world, 10), DEM_OK);
+        scene_report_has(s.world, "; walls 2;");
+        CHECK_EQ(dem_wall_remove(s.world, ground), DEM_OK);
+        scene_report_has(s.world, "; walls 1;");
+        CHECK_EQ(scene_step(s.world, 10), DEM_OK);
+        scene_report_has(s.world, "; walls 1;");
+        dem_world_destroy(s.world);
     }
     return test_end();
 }

@@ -527,6 +527,69 @@ static uint64_t ring_bits(int scene, int count, int steps, int *ranks) {
 }
 #endif
 
+/* 60 grains that roll in a box, pressed together, with histories of friction and of rolling friction. */
+static dem_world *bed(dem_rolling_law rolling) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material glass;
+    int i;
+    desc.threads = 1;
+    desc.dt = DEM_R(1e-5);
+    desc.ledger = 1;
+    desc.gravity = at(3, 0, -9.81);
+    desc.orientations = 1;                     /* without them no contact of a cluster has a history of its own */
+    desc.rolling_law = rolling;
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.5, 0.4, 0.2);
+    dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 4; i++)
+        dem_wall_plane_add(world, glass, i < 2 ? at(-0.006, -0.006, 0) : at(0.046, 0.036, 0),
+                           at(i == 0 ? 1 : i == 2 ? -1 : 0, i == 1 ? 1 : i == 3 ? -1 : 0, 0));
+    for (i = 0; i < 60; i++)
+        dem_sphere_add(world, glass, DEM_R(0.005), at(i%5*0.00998 + i/20*0.0004, i/5%4*0.00998 + i/20*0.0003,
+                                                      0.00499 + i/20*0.00997));
+    return world;
+}
+/* That bed after some steps and then a change of its laws. */
+enum { NO_CHANGE, NO_FRICTION, NO_ROLLING, STATIC, SPINNING, CLUSTERS, ROLLING_LAW, LAW_CHANGES };
+static dem_world *bed_changed(int change) {
+    static const char name[] = "build/tmp/bed.ckpt";
+    static const dem_real two[6] = {0, 0, 0, DEM_R(0.003), 0, 0};
+    dem_world *world = bed(DEM_ROLLING_AUTO), *fresh;
+    dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+    dem_material glass;
+    dem_pair pair;
+    glass.id = 1;
+    CHECK_EQ(scene_step(world, 300), DEM_OK);
+    dem_pair_get(world, glass, glass, &pair);
+    if (change == NO_FRICTION) pair.friction = pair.friction_static = 0;
+    if (change == NO_ROLLING) pair.rolling_friction = 0;
+    if (change == STATIC) pair.friction_static = DEM_R(0.6);
+    if (change == SPINNING) pair.spinning_friction = DEM_R(0.2);
+    if (change >= NO_FRICTION && change <= SPINNING) CHECK_EQ(dem_pair_set(world, glass, glass, &pair), DEM_OK);
+    cluster.count = 2;
+    cluster.positions = two;
+    cluster.radius = DEM_R(0.003);
+    if (change == CLUSTERS) CHECK(dem_shape_cluster_add(world, &cluster).id > 0);
+    if (change != ROLLING_LAW) return world;
+    CHECK_EQ(dem_checkpoint_write(world, name), DEM_OK);
+    fresh = bed(DEM_ROLLING_NONE);
+    CHECK_EQ(dem_checkpoint_read_changed(fresh, name, "rolling_law"), DEM_OK);
+    dem_world_destroy(world);
+    remove(name);
+    return fresh;
+}
+/* Largest difference of a spin between the same grains of two worlds, rad/s. */
+static double spin_apart(const dem_world *a, const dem_world *b) {
+    double most = 0;
+    int i;
+    for (i = 0; i < a->bodies.count; i++) {
+        const dem_body body = dem_body_id_get(a, i);
+        most = fmax(most, fabs((double)scene_state(a, body).spin.y - (double)scene_state(b, body).spin.y));
+    }
+    return most;
+}
+
 int main(int argc, char **argv) {
     const int wide = sizeof(dem_real) == sizeof(double);
     test_begin(argc, argv);
@@ -1250,6 +1313,67 @@ int main(int argc, char **argv) {
             }
             CHECK(calls > 100);
         }
+    }
+    TEST("a collection that runs out of memory leaves the recording of contacts of the world as it was") {
+        scene_memory c;
+        dem_world *world = crate(-30, -2, DEM_BOUNDARY_OPEN, 90, &c);
+        dem_events_desc record = DEM_EVENTS_DESC;
+        dem_result result = DEM_ERROR_MEMORY;
+        dem_slabs *slabs;
+        dem_impacts was, now;
+        dem_material all;
+        uint64_t hash;
+        double time;
+        long k;
+        all.id = 0;
+        CHECK_EQ(dem_events_record(world, &record), DEM_OK);
+        CHECK_EQ(scene_step(world, 500), DEM_OK);
+        slabs = deal(world, 0, 2);
+        CHECK_EQ(go(slabs, 1000), DEM_OK);
+        CHECK_EQ(dem_impacts_get(world, all, all, &was), DEM_OK);
+        CHECK(was.ended > 0);
+        hash = dem_world_hash_get(world);
+        time = dem_world_time_get(world);
+        for (k = 1; k < 400 && result != DEM_OK; k++) {
+            c.refuse = c.calls + k;
+            result = dem_slabs_collect(slabs, world);
+            c.refuse = 0;
+            if (result == DEM_OK) break;
+            CHECK_EQ(result, DEM_ERROR_MEMORY);
+            CHECK_EQ(dem_impacts_get(world, all, all, &now), DEM_OK);
+            CHECK_NEAR(now.ended, was.ended, 0);
+            CHECK_NEAR(now.seconds, was.seconds, 0);
+            CHECK_EQ(now.open, was.open);
+            CHECK_NEAR(dem_world_time_get(world), time, 0);
+            CHECK_EQ(dem_world_hash_get(world), hash);
+        }
+        CHECK(k > 3);
+        CHECK_EQ(dem_impacts_get(world, all, all, &now), DEM_OK);
+        CHECK(now.ended > was.ended && now.seconds > was.seconds);
+        dem_slabs_destroy(slabs);
+        dem_world_destroy(world);
+        CHECK_EQ(c.blocks, 0);
+        CHECK_EQ(c.wrong, 0);
+    }
+    TEST("slabs that are dealt between a change of laws and the next step do what one world does") {
+        int change, count;
+        for (change = 0; change < LAW_CHANGES; change++)
+            for (count = 1; count < 4; count += 2) {
+                dem_world *world[2];           /* stepped, dealt */
+                dem_slabs *slabs;
+                const int before = test_now.wrong;
+                int k;
+                for (k = 0; k < 2; k++) world[k] = bed_changed(change);
+                slabs = deal(world[1], 0, count);
+                CHECK_EQ(scene_step(world[0], 20), DEM_OK);
+                CHECK_EQ(go(slabs, 20), DEM_OK);
+                CHECK_EQ(collect(slabs, world[1]), DEM_OK);
+                if (count == 1) CHECK_EQ(dem_world_hash_get(world[1]), dem_world_hash_get(world[0]));
+                CHECK_NEAR(spin_apart(world[0], world[1]), 0, wide ? 1e-9 : 1e-2);
+                if (test_now.wrong > before) printf("        change %d, %d slabs\n", change, count);
+                dem_slabs_destroy(slabs);
+                for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+            }
     }
     TEST("loads can be reset, and impossible calls fail with an error") {
         drum_desc d = DRUM;
