@@ -345,7 +345,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     demi_free(w, w->filed.memory);
     w->filed.memory = fresh;
     w->filed.stride = (int)to;
-    for (d = 0; d < w->domain_count; d++) {
+    for (d = 0; d < DEMI_DOMAINS; d++) {        /* a new slab has contacts, and no work group yet */
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             memcpy(old, c->memory, sizeof old);

@@ -139,6 +139,12 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     demi_rows_copy(demi_number_rows, w, from, DEMI_TO_SLAB);
     demi_rows_copy(demi_booked_rows, &w->booked, &from->booked, DEMI_TO_SLAB);
     w->clock.last_rebuild = from->clock.steps;
+    /* the histories are those of these laws; the first list converts them to those in force then */
+    w->laws = from->laws;
+    w->effects.tangent = from->effects.tangent;
+    w->effects.rolling = from->effects.rolling;
+    w->effects.sticks = from->effects.sticks;
+    w->effects.twisting = from->effects.twisting;
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     w->events.n.on = from->events.n.on;
@@ -313,11 +319,8 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     int k, ok;
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
-    /* files the contact histories, in the layout of the laws of the next step; the world keeps its
-       list if these are the present laws */
-    if (w->stage.pairs_changed || !w->stage.list_valid ||
-        w->effects.clustered != demi_clustered(w)
-        ? !demi_list_drop(w) || !demi_effects_take(w) : !demi_carry_collect(w)) {
+    /* files the contact histories; the world keeps its list */
+    if (w->stage.list_valid && !demi_carry_collect(w)) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
