@@ -3170,7 +3170,7 @@ typedef struct dem_field_desc {
     dem_box box;
     int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
     double start, end;        /* s, window of time; end 0 means no end */
-    double interval;          /* s, between samples; 0 means every 100 steps */
+    double interval;          /* s, between samples; 0 means every 100 steps of the present dt */
     dem_material material;    /* only grains of this material; id 0 means all grains */
     dem_real radius_min, radius_max;  /* m, only of these (bounding) radii; max 0 means any */
     int stress;               /* 1: also flux, stress and contacts; visits every contact */
@@ -4602,7 +4602,7 @@ typedef struct demi_wall {
     dem_vec3 step[2];              /* m, tessellation: it repeats in its frame by these; 0: not */
     int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other, and
-                                      the same materials ignore them */
+                                      the same materials ignore them (pistons: >>servo) */
     uint64_t ignorers;             /* materials that ignore it, when surfaces were made */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
     int open;                      /* 1: it may be a sheet: it has open edges or repeats */

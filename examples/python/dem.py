@@ -3306,7 +3306,7 @@ class FieldDesc(Struct):
         ('cells', ctypes.c_int*3, 'required, >= 1: along each axis, at most 2^28 in all'),
         ('start', ctypes.c_double, 's, window of time; end 0 means no end'),
         ('end', ctypes.c_double, ""),
-        ('interval', ctypes.c_double, 's, between samples; 0 means every 100 steps'),
+        ('interval', ctypes.c_double, 's, between samples; 0 means every 100 steps of the present dt'),
         ('material', Material, 'only grains of this material; id 0 means all grains'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means any'),
         ('radius_max', Real, ""),
@@ -4781,7 +4781,7 @@ class World(WorldBase):
             of the box along z, which must contain 0.
         cells: required, >= 1: along each axis, at most 2^28 in all
         start: s, window of time; end 0 means no end
-        interval: s, between samples; 0 means every 100 steps
+        interval: s, between samples; 0 means every 100 steps of the present dt
         material: only grains of this material; id 0 means all grains
         radius_min: m, only of these (bounding) radii; max 0 means any
         stress: 1: also flux, stress and contacts; visits every contact

@@ -424,7 +424,7 @@ typedef struct demi_wall {
     dem_vec3 step[2];              /* m, tessellation: it repeats in its frame by these; 0: not */
     int covered;                   /* 1: other walls are in the same place */
     int group;                     /* walls of one group do not move relative to each other, and
-                                      the same materials ignore them */
+                                      the same materials ignore them (pistons: >>servo) */
     uint64_t ignorers;             /* materials that ignore it, when surfaces were made */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
     int open;                      /* 1: it may be a sheet: it has open edges or repeats */
