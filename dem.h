@@ -1679,7 +1679,9 @@ typedef struct dem_world_desc {
        computation of forces. Null means constant radii; see dem_body_radius_set. */
     dem_growth_fn growth;
     void *growth_user;             /* passed to growth */
-    dem_real growth_interval;      /* s, between two changes of radii; 0 means every step */
+    /* s, between two changes of radii, in which a body grows for the whole interval, also if it was
+       added within it; 0 means every step */
+    dem_real growth_interval;
 
     /* -- groups -- */
     /* Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters,
@@ -2009,7 +2011,8 @@ struct dem_body_state {
 };
 /* Writes the state of a body to state. */
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
-/* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. */
+/* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. A body on a rail
+   keeps its velocity and spin along and about locked axes. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
 
 /* Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with
@@ -4678,6 +4681,16 @@ typedef struct demi_joint {
                                       the frame of the body, the wall or space */
 } demi_joint;
 
+/* A rail. Checkpoints store the whole struct. */
+typedef struct demi_rail {
+    dem_body body;
+    dem_rail_state state;
+    dem_quat start;                /* not spheres: orientation and spin of the step */
+    dem_vec3 turn;
+    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
+                                      periodic face; as it was */
+} demi_rail;
+
 /* One level of the hierarchical grid: a class of radii with its own cells. */
 typedef struct demi_level {
     double radius;                 /* m, largest of the class */
@@ -5157,7 +5170,7 @@ struct dem_world {
     int joint_count, joint_last;   /* >>joints: number of joints, last id */
     demi_joint *joints;
     int rail_count;                /* >>rails */
-    struct demi_rail *rails;
+    demi_rail *rails;
     int written_count;             /* >>output: outputs in the checkpoint that was read last */
     demi_written *written;
     struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */
@@ -6544,12 +6557,12 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
     const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
                              (dem_real)(1/inertia)};
     int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
-        !(inertia > 0) || r > DEMI_FARTHEST;
+        !(inertia > 0) || !(r > 0) || r > DEMI_FARTHEST;
     for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
     if (bad)
-        demi_refuse(w, call, "the radius of sphere %d is %g m and its mass %g kg, which is too "
-                    "small or too large to calculate with in %s precision; lengths are in metres: "
-                    "check the unit; nothing was added", i, r, m,
+        demi_refuse(w, call, "the radius of sphere %d is %g m, must be > 0, and its mass is %g kg, "
+                    "must be neither too small nor too large to calculate with in %s precision; "
+                    "lengths are in metres: check the unit; nothing was added", i, r, m,
                     DEMI_SINGLE ? "single" : "double");
     return bad;
 }
@@ -9480,6 +9493,57 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
         w->desc.planar ? demi_quat_flat(orientation) : orientation, as->frame)));
     w->bodies.shaped++;
 }
+/* Returns the rail of a body, or null. */
+static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
+    int k;
+    for (k = 0; k < w->rail_count; k++)
+        if (w->rails[k].body.slot == body.slot && w->rails[k].body.generation == body.generation)
+            return &w->rails[k];
+    return 0;
+}
+/* Gives body i a velocity, m/s, and a spin, rad/s; null: those that it has. A fixed body rests, one
+   of a planar world stays in its plane, one on a rail keeps those along locked axes. Nothing else
+   is kept of earlier steps. before: the kinetic energy, J, that the ledger has counted already; the
+   rest counts as inserted. */
+static void demi_body_start(dem_world *w, int i, const dem_real *v, const dem_real *spin,
+                            double before) {
+    const int fixed = w->bodies.inv_mass[i] <= 0;
+    const demi_rail *rail = w->rail_count ? demi_rail_of(w, dem_body_id_get(w, i)) : 0;
+    const int locked = rail ? rail->state.desc.axes : 0;
+    dem_real *own = w->bodies.vel + 4*i, *turn = w->bodies.spin + 4*i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        if (fixed) own[k] = turn[k] = 0;
+        if (v && !fixed && !(locked >> k & 1)) own[k] = v[k];
+        if (spin && !fixed && !(locked >> (3 + k) & 1)) turn[k] = spin[k];
+    }
+    if (w->desc.planar) own[2] = turn[0] = turn[1] = 0;
+    demi_put(w->bodies.half_vel + 4*i, demi_at(own));
+    demi_put(w->bodies.half_spin + 4*i, demi_at(turn));
+    if (w->bodies.orienting) demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
+    if (w->bodies.backward) w->bodies.went[i] = 0;
+    if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
+    w->booked.inserted += demi_body_energy(w, i) - before;
+}
+/* Fails and returns 1 if a position, velocity or spin in a row of arrays (count x 3; null: not
+   given) is not finite or too large. body: the number that the message names. */
+static int demi_motion_refuse(dem_world *w, const char *call, int body, int row, const dem_real *x,
+                              const dem_real *v, const dem_real *spin) {
+    static const char *const name[] = {"position", "velocity", "spin"},
+        *const unit[] = {"m", "m/s", "rad/s"};
+    const dem_real *given[3];
+    int k;
+    given[0] = x; given[1] = v; given[2] = spin;
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 is = given[k] ? demi_at(given[k] + 3*row) : demi_v(0, 0, 0);
+        if (demi_place(is)) continue;
+        demi_refuse(w, call, "%s of body %d is (%g, %g, %g) %s, must be finite and at most %g %s; "
+                    "check what it was computed from; nothing was changed", name[k], body,
+                    (double)is.x, (double)is.y, (double)is.z, unit[k], DEMI_FARTHEST, unit[k]);
+        return 1;
+    }
+    return 0;
+}
 
 DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count,
                                    const dem_real *positions,
@@ -9492,27 +9556,16 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         return demi_refuse(w, __func__, "count is %d, must be >= 0 with positions (count "
                            "x 3); check the caller's array", count);
     for (i = 0; i < count; i++) {
-        const dem_real r = radii ? radii[i] : radius;
-        if (!(r > 0) || !demi_finite(r))
-            return demi_refuse(w, __func__, "radius of sphere %d is %g m, must be > 0 and "
-                               "finite; no sphere was added", i, (double)r);
-        if (demi_mass_refuse(w, __func__, m, r, i)) return DEM_ERROR_ARGUMENT;
-        if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
-                                                      !demi_place(demi_at(velocities + 3*i))))
-            return demi_refuse(w, __func__, "position or velocity of sphere %d is not a "
-                               "finite number, or beyond %g m or m/s; check the data it came from; "
-                               "no sphere was added", i, DEMI_FARTHEST);
+        if (demi_mass_refuse(w, __func__, m, radii ? radii[i] : radius, i) ||
+            demi_motion_refuse(w, __func__, i, i, positions, velocities, 0))
+            return DEM_ERROR_ARGUMENT;
     }
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
         return demi_no_memory(w, __func__);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
                                                demi_at(positions + 3*i));
-        const int k = w->bodies.slot_index[slot];
-        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
-        if (w->desc.planar) w->bodies.vel[4*k + 2] = 0;
-        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
-        w->booked.inserted += demi_body_energy(w, k);
+        demi_body_start(w, w->bodies.slot_index[slot], velocities ? velocities + 3*i : 0, 0, 0);
     }
     demi_scene_changed(w);
     demi_built(w, __func__);
@@ -9542,13 +9595,7 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     }
     for (i = 0; i < count; i++) {
         const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
-        if (!demi_place(demi_at(x + 3*i)) || (v && !demi_place(demi_at(v + 3*i))) ||
-            (spin && !demi_place(demi_at(spin + 3*i)))) {
-            demi_refuse(w, call, "position, velocity or spin of body %d is not a finite number, or "
-                        "beyond %g m, m/s or rad/s; check the data it came from; no body was added",
-                        i, DEMI_FARTHEST);
-            return 0;
-        }
+        if (demi_motion_refuse(w, call, i, i, x, v, spin)) return 0;
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
             demi_refuse(w, call, "orientation of body %d is (%g, %g, %g, %g), must be finite and "
                         "not zero; (1, 0, 0, 0) is no rotation; no body was added", i, (double)o.w,
@@ -9605,14 +9652,7 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
         demi_body_shape(w, k, f, scales ? scales[i] : 1, orientations
                         ? demi_quat_unit(demi_quat_at(orientations + 4*i))
                         : dem_quat_make(1, 0, 0, 0));
-        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
-        if (spins) demi_put(w->bodies.spin + 4*k, demi_at(spins + 3*i));
-        if (w->desc.planar)
-            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
-        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
-        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
-        demi_put(w->bodies.angular + 4*k, demi_angular_of(w, k));
-        w->booked.inserted += demi_body_energy(w, k);
+        demi_body_start(w, k, velocities ? velocities + 3*i : 0, spins ? spins + 3*i : 0, 0);
     }
     demi_scene_changed(w);
     demi_built(w, call);
@@ -9713,6 +9753,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     int i = demi_body_index(w, __func__, body);
     const demi_shape *shape;
     const dem_quat q = s->orientation;
+    dem_real x[3], v[3], spin[3];
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     shape = demi_shape_of(w, i);
@@ -9720,37 +9761,24 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         return demi_refuse(w, __func__, "orientation of body %u is (%g, %g, %g, %g), must be "
                            "finite and not zero; fill the state with dem_body_get first",
                            (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y, (double)q.z);
-    if (!demi_place(s->position) || !demi_place(s->velocity) || !demi_place(s->spin))
-        return demi_refuse(w, __func__, "position, velocity or spin of body %u is not a "
-                           "finite number, or beyond %g m, m/s or rad/s; check what it was "
-                           "computed from", (unsigned)body.slot, DEMI_FARTHEST);
+    demi_put(x, s->position);
+    demi_put(v, s->velocity);
+    demi_put(spin, s->spin);
+    if (demi_motion_refuse(w, __func__, (int)body.slot, 0, x, v, spin)) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     before = demi_body_energy(w, i);
     m = (double)w->bodies.mass[i];
     demi_put(w->bodies.pos + 4*i, s->position);
-    demi_put(w->bodies.vel + 4*i, s->velocity);
-    demi_put(w->bodies.spin + 4*i, s->spin);
-    if (w->desc.planar)
-        w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = w->bodies.spin[4*i] =
-            w->bodies.spin[4*i + 1] = 0;
-    /* a fixed body does not move, whatever velocity was given */
-    if (s->fixed) demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));
-    if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
-    demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
-    demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
-    if (w->bodies.backward) w->bodies.went[i] = 0;
-    if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
+    if (w->desc.planar) w->bodies.pos[4*i + 2] = 0;
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
         (double)w->bodies.pos[4*i + 3]));
-    if (w->bodies.orienting) {
+    if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
                                                                : q,
                                                             shape->frame) : q));
-        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
-    }
-    w->booked.inserted += demi_body_energy(w, i) - before;
+    demi_body_start(w, i, v, spin, before);
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -9808,17 +9836,15 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
         scale = now > 0 ? sqrt(temperature/now) : 0;
         for (i = 0; i < w->bodies.slot_count; i++) {
             const int b = w->bodies.slot_index[i];
+            dem_real v[3];
             double before;
             if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
             before = demi_body_energy(w, b);
-            for (k = 0; k < axes; k++) {
-                dem_real *v = w->bodies.vel + 4*b + k;
-                if (pass) *v = (dem_real)(mean[k] + scale*((double)*v - drawn[k]));
-                else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
-                w->bodies.half_vel[4*b + k] = *v;
-            }
-            if (w->bodies.backward) w->bodies.went[b] = 0;
-            w->booked.inserted += demi_body_energy(w, b) - before;
+            demi_put(v, demi_at(w->bodies.vel + 4*b));
+            for (k = 0; k < axes; k++)
+                v[k] = pass ? (dem_real)(mean[k] + scale*((double)v[k] - drawn[k]))
+                    : (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
+            demi_body_start(w, b, v, 0, before);
         }
     }
     demi_scene_changed(w);
@@ -10501,6 +10527,29 @@ static void demi_finish(dem_world *w) {
    Energy. The kinetic energy is that of c. The cell supplies the power
        sum over contacts of force on a . L branch - sum over bodies of m c . L c.
    --------------------------------------------------------------------------------------------- */
+/* True if images across the y faces are displaced along x. */
+static int demi_cell_slid(const dem_world *w) { return w->cell.offset < 0 || w->cell.offset > 0; }
+/* True if they are, or will be. */
+static int demi_cell_slides(const dem_world *w) {
+    return w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || demi_cell_slid(w);
+}
+/* Parts of a scene that cannot follow a cell. Fields can, unless it is sheared. */
+enum { DEMI_CELL_WALLS, DEMI_CELL_RAILS, DEMI_CELL_FEEDS, DEMI_CELL_OUTLETS, DEMI_CELL_FIELDS,
+       DEMI_CELL_PARTS };
+/* Fails and returns 1, because the scene has a part that cannot follow the cell, or would get it. */
+static int demi_cell_bars(dem_world *w, const char *call, int part) {
+    static const char *const reason[DEMI_CELL_PARTS] = {
+        "walls would not follow it: a grain and its image would touch the same wall at different "
+        "velocities; remove all walls, or press with a servo wall instead of the cell",
+        "bodies on rails would not follow it: their velocities are not relative to its flow; take "
+        "them off their rails (axes 0)",
+        "the regions of feeds would not follow it; fill the cell before it deforms",
+        "the regions of outlets would not follow it; use dem_body_remove",
+        "fields would not follow it: it is sheared, so that images are displaced, which their grids "
+        "do not see; use dem_stress_get"};
+    demi_refuse(w, call, "the periodic cell deforms (dem_cell_set), and %s", reason[part]);
+    return 1;
+}
 /* Returns L branch, m/s. */
 DEM_INLINE dem_vec3 demi_cell_flow(const dem_world *w, dem_vec3 branch) {
     const demi_strained *c = &w->cell;
@@ -11607,7 +11656,8 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
     wall->share = 1;
     wall->chain = DEMI_SCENE;
     wall->symmetric = 1;                        /* until it moves */
-    return demi_material_index(w, call, material, &wall->material) == DEM_OK;
+    return demi_material_index(w, call, material, &wall->material) == DEM_OK &&
+        !(w->cell.on && demi_cell_bars(w, call, DEMI_CELL_WALLS));
 }
 
 DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec3 point,
@@ -23895,8 +23945,9 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     const int32_t *k = w->near.k + d*w->near.stride;
     int32_t *hit = w->near.hit + d*w->near.stride;
     const size_t base = (size_t)d*(size_t)w->near.stride;
-    const int from = p >= domain->near_cross ? domain->near_cross : 0;
-    const int end = from ? domain->near_end : domain->near_own;
+    const int cross = p >= domain->near_cross;  /* near_cross may be 0 */
+    const int from = cross ? domain->near_cross : 0;
+    const int end = cross ? domain->near_end : domain->near_own;
     const demi_kept *c = 0;
     DEMI_ALIGNED demi_member_tile m;
     int i, n = 0, at = 0;
@@ -26970,7 +27021,7 @@ static int demi_region_check(dem_world *w, const char *call, const dem_region *r
                     "at most %g m from the origin", (double)region->box.lo.x,
                     (double)region->box.lo.y, (double)region->box.lo.z, (double)region->box.hi.x,
                     (double)region->box.hi.y, (double)region->box.hi.z, DEMI_FARTHEST);
-    else if (w->cell.offset < 0 || w->cell.offset > 0)
+    else if (demi_cell_slid(w))
         demi_refuse(w, call, "the periodic cell is sheared, its images are displaced by %g m, "
                     "which the search for room does not see; fill the cell before it is sheared, "
                     "or add bodies at given positions", w->cell.offset);
@@ -27538,7 +27589,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     id.id = 0;
     if (demi_material_index(w, __func__, d->material, &m) != DEM_OK) return id;
     if (demi_rows_check(w, __func__, demi_feed_rows, d, "",
-                        "start from DEM_FEED_DESC and set only what differs")) return id;
+                        "start from DEM_FEED_DESC and set only what differs") ||
+        (w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_FEEDS))) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
@@ -27640,12 +27692,12 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
     const int k = (int)f->next, shape = f->desc.shapes[k].id;
     const uint32_t slot = demi_body_append(w, demi_feed_material(&f->desc, k), f->drawn.radius, x);
     const int i = w->bodies.slot_index[slot];
+    dem_real velocity[3];
     if (shape)
         demi_body_shape(w, i, shape - 1, demi_feed_scale(w, &f->desc, k, f->drawn.radius),
                         f->drawn.orientation);
-    demi_put(w->bodies.vel + 4*i, v);
-    demi_put(w->bodies.half_vel + 4*i, v);
-    w->booked.inserted += demi_body_energy(w, i);
+    demi_put(velocity, v);
+    demi_body_start(w, i, velocity, 0, 0);
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
     return i;
 }
@@ -27806,7 +27858,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
     if (demi_rows_check(w, __func__, demi_outlet_rows, d, "",
-                        "start from DEM_OUTLET_DESC and set only what differs")) return id;
+                        "start from DEM_OUTLET_DESC and set only what differs") ||
+        (w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_OUTLETS))) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
@@ -29267,16 +29320,6 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_s
    The velocity of a wall in the middle of the next step is extrapolated, 2 v(t) - v(t - dt/2). The
    error of the path is of the order dt^2 and does not grow.
    --------------------------------------------------------------------------------------------- */
-/* A rail. Checkpoints store the whole struct. */
-typedef struct demi_rail {
-    dem_body body;
-    dem_rail_state state;
-    dem_quat start;                /* other shapes: orientation and spin of the step, above */
-    dem_vec3 turn;
-    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
-                                      periodic face; as it was */
-} demi_rail;
-
 #define DEMI_OF dem_rail_desc
 static const demi_field_row demi_rail_fields[] = {
     DEMI_LIMITED(DEMI_OF, axes, 'i', DEMI_FROM, DEM_RAIL_ALL, ""),
@@ -29290,14 +29333,6 @@ static int demi_rail_body(const dem_world *w, const demi_rail *r) {
     const int i = w->bodies.slot_generation[slot] == r->body.generation
         ? w->bodies.slot_index[slot] : -1;
     return i >= 0 && w->bodies.inv_mass[i] > 0 ? i : -1;
-}
-/* Returns the rail of a body, or null. */
-static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
-    int k;
-    for (k = 0; k < w->rail_count; k++)
-        if (w->rails[k].body.slot == body.slot && w->rails[k].body.generation == body.generation)
-            return &w->rails[k];
-    return 0;
 }
 /* The position of body i, with a rail, as if its path had crossed no periodic face, m. */
 static dem_vec3 demi_rail_place(const dem_world *w, const demi_rail *r, int i) {
@@ -29508,7 +29543,9 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
         return demi_refuse(w, __func__, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y "
                            "of all bodies; leave them out", d->axes);
-    if (d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) return DEM_ERROR_ARGUMENT;
+    if ((d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) ||
+        (d->axes && w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_RAILS)))
+        return DEM_ERROR_ARGUMENT;
     if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, __func__);
     demi_rails_drop(w, body);
     if (!d->axes) { demi_scene_changed(w); return DEM_OK; }
@@ -30200,7 +30237,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     int k;
     id.id = 0;
     if (demi_rows_check(w, __func__, demi_field_rows, d, "",
-                        "start from DEM_FIELD_DESC and set only what differs")) return id;
+                        "start from DEM_FIELD_DESC and set only what differs") ||
+        (demi_cell_slides(w) && demi_cell_bars(w, __func__, DEMI_CELL_FIELDS))) return id;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
         demi_refuse(w, __func__, "cells are %d x %d x %d, must be at most 2^28 in all; "
                     "choose longer cells", d->cells[0], d->cells[1], d->cells[2]);
@@ -30989,30 +31027,15 @@ static double demi_volume(const dem_world *w) {
 }
 /* Fails and returns 1 if the scene contains what cannot follow the cell. */
 static int demi_cell_refuse(dem_world *w, const char *call) {
-    const int slides = w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || w->cell.offset < 0 ||
-        w->cell.offset > 0;
-    const int rails = demi_rails_in_force(w);
-    int i, walls = 0;
-    for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
-    if (walls)
-        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d wall%s, which would "
-                    "not: a grain and its image would touch the same wall at different velocities; "
-                    "remove the walls, or press with a servo wall instead of the cell", walls,
-                    walls == 1 ? "" : "s");
-    else if (rails)
-        demi_refuse(w, call, "the periodic cell deforms, and %d bod%s on rails: velocities in the "
-                    "cell are relative to its flow, those of rails are not; remove the rails (axes "
-                    "0)", rails, rails == 1 ? "y is" : "ies are");
-    else if (w->feed_count || w->outlet_count)
-        demi_refuse(w, call, "the periodic cell deforms, and the regions of %d feeds and %d "
-                    "outlets would not; fill the cell before it deforms", w->feed_count,
-                    w->outlet_count);
-    else if (slides && w->field_count)
-        demi_refuse(w, call, "the periodic cell is sheared, so that images are displaced, which "
-                    "the grids of %d field%s do not see; use dem_stress_get", w->field_count,
-                    w->field_count == 1 ? "" : "s");
-    else return 0;
-    return 1;
+    int count[DEMI_CELL_PARTS], k;
+    memset(count, 0, sizeof count);
+    for (k = 0; k < w->wall_count; k++) count[0] += w->walls[k].kind != DEMI_WALL_NONE;
+    count[DEMI_CELL_RAILS] = demi_rails_in_force(w);
+    count[DEMI_CELL_FEEDS] = w->feed_count;
+    count[DEMI_CELL_OUTLETS] = w->outlet_count;
+    count[DEMI_CELL_FIELDS] = demi_cell_slides(w) ? w->field_count : 0;
+    for (k = 0; k < DEMI_CELL_PARTS; k++) if (count[k]) return demi_cell_bars(w, call, k);
+    return 0;
 }
 /* Chooses the strain rate of axis k for the coming step, from the sums over work groups. */
 static double demi_cell_choose(dem_world *w, int k, double target, double most) {
@@ -31152,7 +31175,7 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
         demi_domain_limits(w, lo, hi);
         for (k = 0; k < 3; k++) { c->mid[k] = (lo[k] + hi[k])/2; c->side[k] = hi[k] - lo[k]; }
     }
-    c->on = moves || c->offset < 0 || c->offset > 0;
+    c->on = moves || demi_cell_slid(w);
     demi_finish(w);                             /* the open half kick belongs to the old rates */
     demi_put(rate, desc->rate);
     demi_put(most, desc->rate_most);
@@ -35490,14 +35513,9 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
                                "pass an id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
-        if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
-            !demi_place(demi_at(g->positions + 3*i)) ||
-            (g->velocities && !demi_place(demi_at(g->velocities + 3*i))) ||
-            (g->spins && !demi_place(demi_at(g->spins + 3*i))))
-            return demi_refuse(w, __func__, "grain %d has a radius of %g m; the radius must be > "
-                               "0, and position, velocity and spin must be finite and at most %g; "
-                               "no grain was added", i, (double)g->radii[i], DEMI_FARTHEST);
-        if (demi_mass_refuse(w, __func__, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
+        if (demi_mass_refuse(w, __func__, index, g->radii[i], i) ||
+            demi_motion_refuse(w, __func__, i, i, g->positions, g->velocities, g->spins))
+            return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
     if (!demi_list_drop(w) ||
@@ -35506,14 +35524,8 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
     for (i = 0; i < g->count; i++) {
         const int m = (material.id ? material.id : g->materials[i]) - 1;
         const uint32_t slot = demi_body_append(w, m, g->radii[i], demi_at(g->positions + 3*i));
-        const int k = w->bodies.slot_index[slot];
-        if (g->velocities) demi_put(w->bodies.vel + 4*k, demi_at(g->velocities + 3*i));
-        if (g->spins) demi_put(w->bodies.spin + 4*k, demi_at(g->spins + 3*i));
-        if (w->desc.planar)
-            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
-        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
-        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
-        w->booked.inserted += demi_body_energy(w, k);
+        demi_body_start(w, w->bodies.slot_index[slot], g->velocities ? g->velocities + 3*i : 0,
+                        g->spins ? g->spins + 3*i : 0, 0);
     }
     demi_scene_changed(w);
     demi_built(w, __func__);
@@ -37301,6 +37313,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
     t->events.desc = w->events.desc;
+    t->crew = w->crew;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);

@@ -81,7 +81,9 @@ typedef struct dem_world_desc {
        computation of forces. Null means constant radii; see dem_body_radius_set. */
     dem_growth_fn growth;
     void *growth_user;             /* passed to growth */
-    dem_real growth_interval;      /* s, between two changes of radii; 0 means every step */
+    /* s, between two changes of radii, in which a body grows for the whole interval, also if it was
+       added within it; 0 means every step */
+    dem_real growth_interval;
 
     /* -- groups -- */
     /* Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters,
@@ -411,7 +413,8 @@ struct dem_body_state {
 };
 /* Writes the state of a body to state. */
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
-/* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. */
+/* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. A body on a rail
+   keeps its velocity and spin along and about locked axes. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
 
 /* Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with

@@ -392,6 +392,57 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
         w->desc.planar ? demi_quat_flat(orientation) : orientation, as->frame)));
     w->bodies.shaped++;
 }
+/* Returns the rail of a body, or null. */
+static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
+    int k;
+    for (k = 0; k < w->rail_count; k++)
+        if (w->rails[k].body.slot == body.slot && w->rails[k].body.generation == body.generation)
+            return &w->rails[k];
+    return 0;
+}
+/* Gives body i a velocity, m/s, and a spin, rad/s; null: those that it has. A fixed body rests, one
+   of a planar world stays in its plane, one on a rail keeps those along locked axes. Nothing else
+   is kept of earlier steps. before: the kinetic energy, J, that the ledger has counted already; the
+   rest counts as inserted. */
+static void demi_body_start(dem_world *w, int i, const dem_real *v, const dem_real *spin,
+                            double before) {
+    const int fixed = w->bodies.inv_mass[i] <= 0;
+    const demi_rail *rail = w->rail_count ? demi_rail_of(w, dem_body_id_get(w, i)) : 0;
+    const int locked = rail ? rail->state.desc.axes : 0;
+    dem_real *own = w->bodies.vel + 4*i, *turn = w->bodies.spin + 4*i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        if (fixed) own[k] = turn[k] = 0;
+        if (v && !fixed && !(locked >> k & 1)) own[k] = v[k];
+        if (spin && !fixed && !(locked >> (3 + k) & 1)) turn[k] = spin[k];
+    }
+    if (w->desc.planar) own[2] = turn[0] = turn[1] = 0;
+    demi_put(w->bodies.half_vel + 4*i, demi_at(own));
+    demi_put(w->bodies.half_spin + 4*i, demi_at(turn));
+    if (w->bodies.orienting) demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
+    if (w->bodies.backward) w->bodies.went[i] = 0;
+    if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
+    w->booked.inserted += demi_body_energy(w, i) - before;
+}
+/* Fails and returns 1 if a position, velocity or spin in a row of arrays (count x 3; null: not
+   given) is not finite or too large. body: the number that the message names. */
+static int demi_motion_refuse(dem_world *w, const char *call, int body, int row, const dem_real *x,
+                              const dem_real *v, const dem_real *spin) {
+    static const char *const name[] = {"position", "velocity", "spin"},
+        *const unit[] = {"m", "m/s", "rad/s"};
+    const dem_real *given[3];
+    int k;
+    given[0] = x; given[1] = v; given[2] = spin;
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 is = given[k] ? demi_at(given[k] + 3*row) : demi_v(0, 0, 0);
+        if (demi_place(is)) continue;
+        demi_refuse(w, call, "%s of body %d is (%g, %g, %g) %s, must be finite and at most %g %s; "
+                    "check what it was computed from; nothing was changed", name[k], body,
+                    (double)is.x, (double)is.y, (double)is.z, unit[k], DEMI_FARTHEST, unit[k]);
+        return 1;
+    }
+    return 0;
+}
 
 DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count,
                                    const dem_real *positions,
@@ -404,27 +455,16 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         return demi_refuse(w, __func__, "count is %d, must be >= 0 with positions (count "
                            "x 3); check the caller's array", count);
     for (i = 0; i < count; i++) {
-        const dem_real r = radii ? radii[i] : radius;
-        if (!(r > 0) || !demi_finite(r))
-            return demi_refuse(w, __func__, "radius of sphere %d is %g m, must be > 0 and "
-                               "finite; no sphere was added", i, (double)r);
-        if (demi_mass_refuse(w, __func__, m, r, i)) return DEM_ERROR_ARGUMENT;
-        if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
-                                                      !demi_place(demi_at(velocities + 3*i))))
-            return demi_refuse(w, __func__, "position or velocity of sphere %d is not a "
-                               "finite number, or beyond %g m or m/s; check the data it came from; "
-                               "no sphere was added", i, DEMI_FARTHEST);
+        if (demi_mass_refuse(w, __func__, m, radii ? radii[i] : radius, i) ||
+            demi_motion_refuse(w, __func__, i, i, positions, velocities, 0))
+            return DEM_ERROR_ARGUMENT;
     }
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
         return demi_no_memory(w, __func__);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
                                                demi_at(positions + 3*i));
-        const int k = w->bodies.slot_index[slot];
-        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
-        if (w->desc.planar) w->bodies.vel[4*k + 2] = 0;
-        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
-        w->booked.inserted += demi_body_energy(w, k);
+        demi_body_start(w, w->bodies.slot_index[slot], velocities ? velocities + 3*i : 0, 0, 0);
     }
     demi_scene_changed(w);
     demi_built(w, __func__);
@@ -454,13 +494,7 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     }
     for (i = 0; i < count; i++) {
         const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
-        if (!demi_place(demi_at(x + 3*i)) || (v && !demi_place(demi_at(v + 3*i))) ||
-            (spin && !demi_place(demi_at(spin + 3*i)))) {
-            demi_refuse(w, call, "position, velocity or spin of body %d is not a finite number, or "
-                        "beyond %g m, m/s or rad/s; check the data it came from; no body was added",
-                        i, DEMI_FARTHEST);
-            return 0;
-        }
+        if (demi_motion_refuse(w, call, i, i, x, v, spin)) return 0;
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
             demi_refuse(w, call, "orientation of body %d is (%g, %g, %g, %g), must be finite and "
                         "not zero; (1, 0, 0, 0) is no rotation; no body was added", i, (double)o.w,
@@ -517,14 +551,7 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
         demi_body_shape(w, k, f, scales ? scales[i] : 1, orientations
                         ? demi_quat_unit(demi_quat_at(orientations + 4*i))
                         : dem_quat_make(1, 0, 0, 0));
-        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
-        if (spins) demi_put(w->bodies.spin + 4*k, demi_at(spins + 3*i));
-        if (w->desc.planar)
-            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
-        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
-        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
-        demi_put(w->bodies.angular + 4*k, demi_angular_of(w, k));
-        w->booked.inserted += demi_body_energy(w, k);
+        demi_body_start(w, k, velocities ? velocities + 3*i : 0, spins ? spins + 3*i : 0, 0);
     }
     demi_scene_changed(w);
     demi_built(w, call);
@@ -625,6 +652,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     int i = demi_body_index(w, __func__, body);
     const demi_shape *shape;
     const dem_quat q = s->orientation;
+    dem_real x[3], v[3], spin[3];
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     shape = demi_shape_of(w, i);
@@ -632,37 +660,24 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         return demi_refuse(w, __func__, "orientation of body %u is (%g, %g, %g, %g), must be "
                            "finite and not zero; fill the state with dem_body_get first",
                            (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y, (double)q.z);
-    if (!demi_place(s->position) || !demi_place(s->velocity) || !demi_place(s->spin))
-        return demi_refuse(w, __func__, "position, velocity or spin of body %u is not a "
-                           "finite number, or beyond %g m, m/s or rad/s; check what it was "
-                           "computed from", (unsigned)body.slot, DEMI_FARTHEST);
+    demi_put(x, s->position);
+    demi_put(v, s->velocity);
+    demi_put(spin, s->spin);
+    if (demi_motion_refuse(w, __func__, (int)body.slot, 0, x, v, spin)) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     before = demi_body_energy(w, i);
     m = (double)w->bodies.mass[i];
     demi_put(w->bodies.pos + 4*i, s->position);
-    demi_put(w->bodies.vel + 4*i, s->velocity);
-    demi_put(w->bodies.spin + 4*i, s->spin);
-    if (w->desc.planar)
-        w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = w->bodies.spin[4*i] =
-            w->bodies.spin[4*i + 1] = 0;
-    /* a fixed body does not move, whatever velocity was given */
-    if (s->fixed) demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));
-    if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
-    demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
-    demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
-    if (w->bodies.backward) w->bodies.went[i] = 0;
-    if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
+    if (w->desc.planar) w->bodies.pos[4*i + 2] = 0;
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
         (double)w->bodies.pos[4*i + 3]));
-    if (w->bodies.orienting) {
+    if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
                                                                : q,
                                                             shape->frame) : q));
-        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
-    }
-    w->booked.inserted += demi_body_energy(w, i) - before;
+    demi_body_start(w, i, v, spin, before);
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -720,17 +735,15 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
         scale = now > 0 ? sqrt(temperature/now) : 0;
         for (i = 0; i < w->bodies.slot_count; i++) {
             const int b = w->bodies.slot_index[i];
+            dem_real v[3];
             double before;
             if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
             before = demi_body_energy(w, b);
-            for (k = 0; k < axes; k++) {
-                dem_real *v = w->bodies.vel + 4*b + k;
-                if (pass) *v = (dem_real)(mean[k] + scale*((double)*v - drawn[k]));
-                else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
-                w->bodies.half_vel[4*b + k] = *v;
-            }
-            if (w->bodies.backward) w->bodies.went[b] = 0;
-            w->booked.inserted += demi_body_energy(w, b) - before;
+            demi_put(v, demi_at(w->bodies.vel + 4*b));
+            for (k = 0; k < axes; k++)
+                v[k] = pass ? (dem_real)(mean[k] + scale*((double)v[k] - drawn[k]))
+                    : (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
+            demi_body_start(w, b, v, 0, before);
         }
     }
     demi_scene_changed(w);

@@ -17,6 +17,29 @@
    Energy. The kinetic energy is that of c. The cell supplies the power
        sum over contacts of force on a . L branch - sum over bodies of m c . L c.
    --------------------------------------------------------------------------------------------- */
+/* True if images across the y faces are displaced along x. */
+static int demi_cell_slid(const dem_world *w) { return w->cell.offset < 0 || w->cell.offset > 0; }
+/* True if they are, or will be. */
+static int demi_cell_slides(const dem_world *w) {
+    return w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || demi_cell_slid(w);
+}
+/* Parts of a scene that cannot follow a cell. Fields can, unless it is sheared. */
+enum { DEMI_CELL_WALLS, DEMI_CELL_RAILS, DEMI_CELL_FEEDS, DEMI_CELL_OUTLETS, DEMI_CELL_FIELDS,
+       DEMI_CELL_PARTS };
+/* Fails and returns 1, because the scene has a part that cannot follow the cell, or would get it. */
+static int demi_cell_bars(dem_world *w, const char *call, int part) {
+    static const char *const reason[DEMI_CELL_PARTS] = {
+        "walls would not follow it: a grain and its image would touch the same wall at different "
+        "velocities; remove all walls, or press with a servo wall instead of the cell",
+        "bodies on rails would not follow it: their velocities are not relative to its flow; take "
+        "them off their rails (axes 0)",
+        "the regions of feeds would not follow it; fill the cell before it deforms",
+        "the regions of outlets would not follow it; use dem_body_remove",
+        "fields would not follow it: it is sheared, so that images are displaced, which their grids "
+        "do not see; use dem_stress_get"};
+    demi_refuse(w, call, "the periodic cell deforms (dem_cell_set), and %s", reason[part]);
+    return 1;
+}
 /* Returns L branch, m/s. */
 DEM_INLINE dem_vec3 demi_cell_flow(const dem_world *w, dem_vec3 branch) {
     const demi_strained *c = &w->cell;

@@ -458,8 +458,9 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     const int32_t *k = w->near.k + d*w->near.stride;
     int32_t *hit = w->near.hit + d*w->near.stride;
     const size_t base = (size_t)d*(size_t)w->near.stride;
-    const int from = p >= domain->near_cross ? domain->near_cross : 0;
-    const int end = from ? domain->near_end : domain->near_own;
+    const int cross = p >= domain->near_cross;  /* near_cross may be 0 */
+    const int from = cross ? domain->near_cross : 0;
+    const int end = cross ? domain->near_end : domain->near_own;
     const demi_kept *c = 0;
     DEMI_ALIGNED demi_member_tile m;
     int i, n = 0, at = 0;

@@ -500,6 +500,16 @@ typedef struct demi_joint {
                                       the frame of the body, the wall or space */
 } demi_joint;
 
+/* A rail. Checkpoints store the whole struct. */
+typedef struct demi_rail {
+    dem_body body;
+    dem_rail_state state;
+    dem_quat start;                /* not spheres: orientation and spin of the step */
+    dem_vec3 turn;
+    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
+                                      periodic face; as it was */
+} demi_rail;
+
 /* One level of the hierarchical grid: a class of radii with its own cells. */
 typedef struct demi_level {
     double radius;                 /* m, largest of the class */

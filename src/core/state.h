@@ -438,7 +438,7 @@ struct dem_world {
     int joint_count, joint_last;   /* >>joints: number of joints, last id */
     demi_joint *joints;
     int rail_count;                /* >>rails */
-    struct demi_rail *rails;
+    demi_rail *rails;
     int written_count;             /* >>output: outputs in the checkpoint that was read last */
     demi_written *written;
     struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */

@@ -790,14 +790,9 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
                                "pass an id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
-        if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
-            !demi_place(demi_at(g->positions + 3*i)) ||
-            (g->velocities && !demi_place(demi_at(g->velocities + 3*i))) ||
-            (g->spins && !demi_place(demi_at(g->spins + 3*i))))
-            return demi_refuse(w, __func__, "grain %d has a radius of %g m; the radius must be > "
-                               "0, and position, velocity and spin must be finite and at most %g; "
-                               "no grain was added", i, (double)g->radii[i], DEMI_FARTHEST);
-        if (demi_mass_refuse(w, __func__, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
+        if (demi_mass_refuse(w, __func__, index, g->radii[i], i) ||
+            demi_motion_refuse(w, __func__, i, i, g->positions, g->velocities, g->spins))
+            return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
     if (!demi_list_drop(w) ||
@@ -806,14 +801,8 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
     for (i = 0; i < g->count; i++) {
         const int m = (material.id ? material.id : g->materials[i]) - 1;
         const uint32_t slot = demi_body_append(w, m, g->radii[i], demi_at(g->positions + 3*i));
-        const int k = w->bodies.slot_index[slot];
-        if (g->velocities) demi_put(w->bodies.vel + 4*k, demi_at(g->velocities + 3*i));
-        if (g->spins) demi_put(w->bodies.spin + 4*k, demi_at(g->spins + 3*i));
-        if (w->desc.planar)
-            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
-        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
-        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
-        w->booked.inserted += demi_body_energy(w, k);
+        demi_body_start(w, w->bodies.slot_index[slot], g->velocities ? g->velocities + 3*i : 0,
+                        g->spins ? g->spins + 3*i : 0, 0);
     }
     demi_scene_changed(w);
     demi_built(w, __func__);

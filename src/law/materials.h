@@ -341,12 +341,12 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
     const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
                              (dem_real)(1/inertia)};
     int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
-        !(inertia > 0) || r > DEMI_FARTHEST;
+        !(inertia > 0) || !(r > 0) || r > DEMI_FARTHEST;
     for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
     if (bad)
-        demi_refuse(w, call, "the radius of sphere %d is %g m and its mass %g kg, which is too "
-                    "small or too large to calculate with in %s precision; lengths are in metres: "
-                    "check the unit; nothing was added", i, r, m,
+        demi_refuse(w, call, "the radius of sphere %d is %g m, must be > 0, and its mass is %g kg, "
+                    "must be neither too small nor too large to calculate with in %s precision; "
+                    "lengths are in metres: check the unit; nothing was added", i, r, m,
                     DEMI_SINGLE ? "single" : "double");
     return bad;
 }

@@ -308,7 +308,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     int k;
     id.id = 0;
     if (demi_rows_check(w, __func__, demi_field_rows, d, "",
-                        "start from DEM_FIELD_DESC and set only what differs")) return id;
+                        "start from DEM_FIELD_DESC and set only what differs") ||
+        (demi_cell_slides(w) && demi_cell_bars(w, __func__, DEMI_CELL_FIELDS))) return id;
     if ((double)d->cells[0]*d->cells[1]*d->cells[2] > DEMI_FIELD_MOST) {
         demi_refuse(w, __func__, "cells are %d x %d x %d, must be at most 2^28 in all; "
                     "choose longer cells", d->cells[0], d->cells[1], d->cells[2]);

@@ -13,16 +13,6 @@
    The velocity of a wall in the middle of the next step is extrapolated, 2 v(t) - v(t - dt/2). The
    error of the path is of the order dt^2 and does not grow.
    --------------------------------------------------------------------------------------------- */
-/* A rail. Checkpoints store the whole struct. */
-typedef struct demi_rail {
-    dem_body body;
-    dem_rail_state state;
-    dem_quat start;                /* other shapes: orientation and spin of the step, above */
-    dem_vec3 turn;
-    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
-                                      periodic face; as it was */
-} demi_rail;
-
 #define DEMI_OF dem_rail_desc
 static const demi_field_row demi_rail_fields[] = {
     DEMI_LIMITED(DEMI_OF, axes, 'i', DEMI_FROM, DEM_RAIL_ALL, ""),
@@ -36,14 +26,6 @@ static int demi_rail_body(const dem_world *w, const demi_rail *r) {
     const int i = w->bodies.slot_generation[slot] == r->body.generation
         ? w->bodies.slot_index[slot] : -1;
     return i >= 0 && w->bodies.inv_mass[i] > 0 ? i : -1;
-}
-/* Returns the rail of a body, or null. */
-static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
-    int k;
-    for (k = 0; k < w->rail_count; k++)
-        if (w->rails[k].body.slot == body.slot && w->rails[k].body.generation == body.generation)
-            return &w->rails[k];
-    return 0;
 }
 /* The position of body i, with a rail, as if its path had crossed no periodic face, m. */
 static dem_vec3 demi_rail_place(const dem_world *w, const demi_rail *r, int i) {
@@ -254,7 +236,9 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
         return demi_refuse(w, __func__, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y "
                            "of all bodies; leave them out", d->axes);
-    if (d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) return DEM_ERROR_ARGUMENT;
+    if ((d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) ||
+        (d->axes && w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_RAILS)))
+        return DEM_ERROR_ARGUMENT;
     if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, __func__);
     demi_rails_drop(w, body);
     if (!d->axes) { demi_scene_changed(w); return DEM_OK; }

@@ -22,30 +22,15 @@ static double demi_volume(const dem_world *w) {
 }
 /* Fails and returns 1 if the scene contains what cannot follow the cell. */
 static int demi_cell_refuse(dem_world *w, const char *call) {
-    const int slides = w->cell.desc.shear < 0 || w->cell.desc.shear > 0 || w->cell.offset < 0 ||
-        w->cell.offset > 0;
-    const int rails = demi_rails_in_force(w);
-    int i, walls = 0;
-    for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
-    if (walls)
-        demi_refuse(w, call, "the periodic cell deforms, and the scene has %d wall%s, which would "
-                    "not: a grain and its image would touch the same wall at different velocities; "
-                    "remove the walls, or press with a servo wall instead of the cell", walls,
-                    walls == 1 ? "" : "s");
-    else if (rails)
-        demi_refuse(w, call, "the periodic cell deforms, and %d bod%s on rails: velocities in the "
-                    "cell are relative to its flow, those of rails are not; remove the rails (axes "
-                    "0)", rails, rails == 1 ? "y is" : "ies are");
-    else if (w->feed_count || w->outlet_count)
-        demi_refuse(w, call, "the periodic cell deforms, and the regions of %d feeds and %d "
-                    "outlets would not; fill the cell before it deforms", w->feed_count,
-                    w->outlet_count);
-    else if (slides && w->field_count)
-        demi_refuse(w, call, "the periodic cell is sheared, so that images are displaced, which "
-                    "the grids of %d field%s do not see; use dem_stress_get", w->field_count,
-                    w->field_count == 1 ? "" : "s");
-    else return 0;
-    return 1;
+    int count[DEMI_CELL_PARTS], k;
+    memset(count, 0, sizeof count);
+    for (k = 0; k < w->wall_count; k++) count[0] += w->walls[k].kind != DEMI_WALL_NONE;
+    count[DEMI_CELL_RAILS] = demi_rails_in_force(w);
+    count[DEMI_CELL_FEEDS] = w->feed_count;
+    count[DEMI_CELL_OUTLETS] = w->outlet_count;
+    count[DEMI_CELL_FIELDS] = demi_cell_slides(w) ? w->field_count : 0;
+    for (k = 0; k < DEMI_CELL_PARTS; k++) if (count[k]) return demi_cell_bars(w, call, k);
+    return 0;
 }
 /* Chooses the strain rate of axis k for the coming step, from the sums over work groups. */
 static double demi_cell_choose(dem_world *w, int k, double target, double most) {
@@ -185,7 +170,7 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
         demi_domain_limits(w, lo, hi);
         for (k = 0; k < 3; k++) { c->mid[k] = (lo[k] + hi[k])/2; c->side[k] = hi[k] - lo[k]; }
     }
-    c->on = moves || c->offset < 0 || c->offset > 0;
+    c->on = moves || demi_cell_slid(w);
     demi_finish(w);                             /* the open half kick belongs to the old rates */
     demi_put(rate, desc->rate);
     demi_put(most, desc->rate_most);

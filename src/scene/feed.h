@@ -132,7 +132,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     id.id = 0;
     if (demi_material_index(w, __func__, d->material, &m) != DEM_OK) return id;
     if (demi_rows_check(w, __func__, demi_feed_rows, d, "",
-                        "start from DEM_FEED_DESC and set only what differs")) return id;
+                        "start from DEM_FEED_DESC and set only what differs") ||
+        (w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_FEEDS))) return id;
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
@@ -234,12 +235,12 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
     const int k = (int)f->next, shape = f->desc.shapes[k].id;
     const uint32_t slot = demi_body_append(w, demi_feed_material(&f->desc, k), f->drawn.radius, x);
     const int i = w->bodies.slot_index[slot];
+    dem_real velocity[3];
     if (shape)
         demi_body_shape(w, i, shape - 1, demi_feed_scale(w, &f->desc, k, f->drawn.radius),
                         f->drawn.orientation);
-    demi_put(w->bodies.vel + 4*i, v);
-    demi_put(w->bodies.half_vel + 4*i, v);
-    w->booked.inserted += demi_body_energy(w, i);
+    demi_put(velocity, v);
+    demi_body_start(w, i, velocity, 0, 0);
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
     return i;
 }
@@ -400,7 +401,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     int bad = d->wanted_max > 0 && !(d->wanted_max > d->wanted_min), kept = 0, k;
     id.id = 0;
     if (demi_rows_check(w, __func__, demi_outlet_rows, d, "",
-                        "start from DEM_OUTLET_DESC and set only what differs")) return id;
+                        "start from DEM_OUTLET_DESC and set only what differs") ||
+        (w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_OUTLETS))) return id;
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {

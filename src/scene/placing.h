@@ -409,7 +409,7 @@ static int demi_region_check(dem_world *w, const char *call, const dem_region *r
                     "at most %g m from the origin", (double)region->box.lo.x,
                     (double)region->box.lo.y, (double)region->box.lo.z, (double)region->box.hi.x,
                     (double)region->box.hi.y, (double)region->box.hi.z, DEMI_FARTHEST);
-    else if (w->cell.offset < 0 || w->cell.offset > 0)
+    else if (demi_cell_slid(w))
         demi_refuse(w, call, "the periodic cell is sheared, its images are displaced by %g m, "
                     "which the search for room does not see; fill the cell before it is sheared, "
                     "or add bodies at given positions", w->cell.offset);

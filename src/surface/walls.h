@@ -298,7 +298,8 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
     wall->share = 1;
     wall->chain = DEMI_SCENE;
     wall->symmetric = 1;                        /* until it moves */
-    return demi_material_index(w, call, material, &wall->material) == DEM_OK;
+    return demi_material_index(w, call, material, &wall->material) == DEM_OK &&
+        !(w->cell.on && demi_cell_bars(w, call, DEMI_CELL_WALLS));
 }
 
 DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec3 point,

@@ -275,6 +275,30 @@ int main(int argc, char **argv) {
                 dem_world_destroy(w);
             }
     }
+    TEST("forces of listed contacts add up also where no two clusters of a work group touch each other") {
+        int way, i;
+        for (way = 0; way < 2; way++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *w;
+            dem_material m;
+            dem_shape s;
+            uint64_t seed = 7;
+            int alone = 0;
+            desc.cluster_contacts = way ? DEM_CLUSTER_CONTACTS_SEPARATE : DEM_CLUSTER_CONTACTS_MERGED;
+            desc.dt = DEM_R(1e-6);
+            w = dem_world_create(&desc);
+            m = scene_material(w, 2e6, 0.5, 0.4, 0);
+            s = row(w, 3, 5e-4, 5e-4);
+            for (i = 0; i < 64; i++)
+                dem_body_add(w, m, s, demi_scale(at(i%4, i/4%4, i/16), DEM_R(1.4e-3)), scene_turn(&seed));
+            CHECK_EQ(scene_step(w, 1), DEM_OK);
+            for (i = 0; i < w->domain_count; i++)
+                alone += w->domains[i].near_cross == 0 && w->domains[i].near_end > 0;
+            CHECK(alone > 0);
+            CHECK(sums_apart(w) < (wide ? 1e-10 : 1e-4));
+            dem_world_destroy(w);
+        }
+    }
     TEST("a heap with clusters has the same bits for any threads, for lists rebuilt at every step, and after a restart") {
         int kinds, how;
         for (kinds = 2; kinds < 8; kinds++) {

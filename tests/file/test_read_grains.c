@@ -524,7 +524,7 @@ int main(int argc, char **argv) {
             g.velocities = k < 3 ? fast : (dem_real *)slow;
             g.spins = k < 3 ? (dem_real *)slow : fast;
             CHECK_EQ(dem_grains_add(world, glass, &g), DEM_ERROR_ARGUMENT);
-            CHECK_STR(dem_world_error_get(world), "dem_grains_add: grain 0");
+            CHECK_STR(dem_world_error_get(world), k < 3 ? "dem_grains_add: velocity of body 0 is" : "dem_grains_add: spin of body 0 is");
             CHECK_EQ(dem_bodies_get(world).count, 1);
         }
         CHECK_EQ(dem_world_hash_get(world), hash);

@@ -98,5 +98,22 @@ int main(int argc, char **argv) {
         }
         CHECK_EQ(hash[1], hash[0]);
     }
+    TEST("crew: a checkpoint that is read leaves the number of threads as it is: always all, or what trials have found") {
+        const char *const path = "build/tmp/crew.dem";
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_world *w = world_of(3);
+            scene_material(w, 1e6, 0.5, 0.3, 0);
+            w->crew.fixed = k;
+            make_steps(w, 100, few, 0);
+            CHECK_EQ(w->crew.best, k ? 3 : 1);
+            CHECK_EQ(dem_checkpoint_write(w, path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(w, path), DEM_OK);
+            CHECK_EQ(w->crew.fixed, k);
+            CHECK_EQ(w->crew.best, k ? 3 : 1);
+            remove(path);
+            dem_world_destroy(w);
+        }
+    }
     return test_end();
 }

@@ -333,6 +333,36 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("a body on a rail keeps its velocity along locked axes, whatever sets velocities, and no energy appears") {
+        int way, shape;
+        for (shape = 0; shape < SHAPES; shape++)
+            for (way = 0; way < 3; way++) {
+                const dem_rail_desc rail = rail_of(DEM_RAIL_X | DEM_RAIL_SPIN_Y, at(0.1, 0, 0), at(0, 2, 0));
+                dem_selection all = DEM_SELECTION;
+                dem_material m;
+                dem_world *world = stage(0, 1e-5, &m);
+                dem_body body = body_of(world, m, shape, at(0, 0, 0));
+                dem_body_state s;
+                dem_ledger l;
+                body_of(world, m, shape, at(1, 0, 0));
+                CHECK_EQ(dem_body_rail_set(world, body, &rail), DEM_OK);
+                CHECK_EQ(scene_step(world, 10), DEM_OK);
+                s = scene_state(world, body);
+                s.velocity = at(3, 2, 1);
+                s.spin = at(30, 20, 10);
+                if (way == 0) CHECK_EQ(dem_body_set(world, body, &s), DEM_OK);
+                if (way == 1) CHECK_EQ(dem_bodies_velocity_set(world, &all, s.velocity, s.spin), 2);
+                if (way == 2) CHECK_EQ(dem_temperature_set(world, 1, 3), DEM_OK);
+                s = scene_state(world, body);
+                CHECK_NEAR(s.velocity.x, 0.1, 1e-5);
+                CHECK_NEAR(s.spin.y, 2, 1e-4);
+                CHECK(s.velocity.y < -0.01 || s.velocity.y > 0.01);
+                CHECK_EQ(scene_step(world, 10), DEM_OK);
+                l = dem_ledger_get(world);
+                CHECK_NEAR(l.residual, 0, 1e-4*l.throughput);
+                dem_world_destroy(world);
+            }
+    }
     TEST("the rail of a body that was fixed gives no force, torque or power, and its work stays") {
         const dem_rail_desc rail = rail_of(DEM_RAIL_ALL, at(0, 0, 0.1), at(0, 0, 0));
         dem_world_desc desc = DEM_WORLD_DESC;
