@@ -2995,6 +2995,7 @@ typedef struct dem_contact_info {
     dem_vec3 point, normal;              /* m; unit, from a to b */
     dem_real overlap;                    /* m; < 0: a gap within the range of the law */
     dem_vec3 force;                      /* N, on a */
+    int further;                         /* 1: another point of the polyhedron's contact before */
 } dem_contact_info;
 /* Writes the contacts, those with walls included, at most `capacity` of them, and returns their
    number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one
@@ -10536,7 +10537,7 @@ static int demi_cell_slides(const dem_world *w) {
 /* Parts of a scene that cannot follow a cell. Fields can, unless it is sheared. */
 enum { DEMI_CELL_WALLS, DEMI_CELL_RAILS, DEMI_CELL_FEEDS, DEMI_CELL_OUTLETS, DEMI_CELL_FIELDS,
        DEMI_CELL_PARTS };
-/* Fails and returns 1, because the scene has a part that cannot follow the cell, or would get it. */
+/* Fails and returns 1: the scene has a part that cannot follow the cell, or is to get it. */
 static int demi_cell_bars(dem_world *w, const char *call, int part) {
     static const char *const reason[DEMI_CELL_PARTS] = {
         "walls would not follow it: a grain and its image would touch the same wall at different "
@@ -10545,7 +10546,7 @@ static int demi_cell_bars(dem_world *w, const char *call, int part) {
         "them off their rails (axes 0)",
         "the regions of feeds would not follow it; fill the cell before it deforms",
         "the regions of outlets would not follow it; use dem_body_remove",
-        "fields would not follow it: it is sheared, so that images are displaced, which their grids "
+        "fields would not follow it: it is sheared, so that images are displaced, which the grids "
         "do not see; use dem_stress_get"};
     demi_refuse(w, call, "the periodic cell deforms (dem_cell_set), and %s", reason[part]);
     return 1;
@@ -24511,6 +24512,18 @@ static int demi_joint_body(const dem_world *w, dem_body b) {
         w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
     return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
 }
+/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
+   they have no contact. Needs no solver; demi_joined is faster within a step. */
+static int demi_parted(const dem_world *w, int a, int b, int wall) {
+    int k, found = 0;
+    for (k = 0; k < w->joint_count && !found; k++) {
+        const dem_joint_desc *j = &w->joints[k].desc;
+        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
+        found = !j->collide && (b < 0 ? p == a && !j->b.slot && j->wall.id == w->walls[wall].id
+                                : (p == a && q == b) || (p == b && q == a));
+    }
+    return found;
+}
 /* True if both bodies of a joint, or its body and its wall, still exist. */
 static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
     if (demi_joint_body(w, j->desc.a) < 0) return 0;
@@ -26103,7 +26116,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
     const dem_real slow = (dem_real)(10*w->booked.residual + (DEMI_SINGLE ? 1e-5 : 1e-10)*
                                      w->booked.speed_max);
     double *lost = domain->energy;              /* J, of the coming step */
-    int i, e;
+    int i, e, counted = 0;
     domain->contacts = domain->kept_walls = 0;
     for (i = 0; i < s->meeting_count[d]; i++) {
         const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
@@ -26115,6 +26128,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_real push = c->push - s->beside[m->at].pull;
         const int old = o.memory[6*o.stride] > 0 || o.memory[7*o.stride] > 0;
         double part[3] = {0, 0, 0};             /* J, that it loses */
+        int counts;
         const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
@@ -26141,6 +26155,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
             const int own = w->bodies.material[m->a] - 1;
             domain->met[DEMI_MIN(own, o.material)] |= UINT64_C(1) << DEMI_MAX(own, o.material);
         }
+        if (!k || !k->corner) counted = 0;      /* of the points of polyhedra, one counts */
+        counts = c->push > 0 && !counted;
+        counted |= counts;
         if (k) k->force = demi_scale(p, -per);
         if (k && k->b < 0) {
             demi_wall_sum *sum = w->wall_sums + (size_t)d*(size_t)w->wall_count + k->wall;
@@ -26148,9 +26165,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
             const dem_vec3 at = demi_add(x, k->arm_a);
             demi_wall_sum_add(w, sum, k->wall, at, demi_scale(p, -per), demi_scale(moment, -per),
                               demi_at(s->movers[m->b].v));
-            sum->contacts += c->push > 0;
-            domain->kept_walls += c->push > 0;
-        } else domain->contacts += c->push > 0;
+            sum->contacts += counts;
+            domain->kept_walls += counts;
+        } else domain->contacts += counts;
     }
 }
 /* Adds the contact forces to fixed bodies, for getters and output files. */
@@ -29837,7 +29854,8 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
    The table of responses: the functions by which springs (soft contacts) and impulses (rigid
    contacts, non-smooth dynamics) settle the time step, compute contact forces, account for energy
    and show a contact to users. A step and the functions that read contacts call the row of
-   w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Owns no data.
+   w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Whoever reads the
+   contacts of a world walks over them (demi_walk), so that all see the same ones. Owns no data.
    --------------------------------------------------------------------------------------------- */
 /* Springs: computes the forces of all contacts that domain d owns: first pairs of spheres, by the
    kernel of the laws in force, then persistent contacts. */
@@ -29920,23 +29938,12 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     if (!out) return 1;
     out->a = dem_body_id_get(w, a);
     out->b = dem_body_id_get(w, b);
-    out->wall = 0;
+    out->wall = out->further = 0;
     out->point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a),
         demi_near_arm(w, at, 0)), demi_scale(gap, ra/(ra + rb))));
     if (branch) *branch = demi_near_bodies_way(w, at);
     return 1;
 }
-
-/* ---------------------------------------------------------------------------------------------
-   >>fields
-   Fields: averages of grains and contacts on a grid (binning, or coarse graining [GOL10]). A sample
-   adds a grain to the cell of its centre, and the stress of a contact to the cells along its branch
-   vector. With coarse graining it spreads both over the cells nearby. In a periodic world every
-   image inside the grid counts. This part owns w->fields and their sums; it reads bodies and
-   contacts, and completes the half kick of velocities (demi_finish) before it samples grains.
-   A field is one array of sums, block after block, so that checkpoints, copies and slabs treat it
-   as plain numbers. demi_kept_info comes first, since stress needs all contacts.
-   --------------------------------------------------------------------------------------------- */
 /* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
    users see. */
 static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
@@ -29950,7 +29957,80 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_i
     out->point = demi_place_of(&p, x);
     out->overlap = c->overlap;
     out->force = c->force;
+    out->further = c->corner > 0;
 }
+/* A walk over all contacts of a world: of each work group the pairs of spheres, then the persistent
+   contacts. */
+typedef struct demi_walk {
+    int blind;                     /* set it to 1 only to count: then `info` and `branch` are not
+                                      written */
+    int d, at, kept;               /* work group; next entry of the pruned or, with kept, of the
+                                      persistent list */
+    int counted;                   /* a point of the present pair of polyhedra has counted */
+    /* the contact: indices of the bodies (b -1: a wall); entry of the pruned list, or persistent */
+    int a, b, entry;
+    demi_kept *own;
+    /* 1: it counts as one contact: the bodies touch or, with impulses, push; of the points at which
+       a polyhedron touches, one counts */
+    int counts;
+    dem_contact_info info;
+    dem_vec3 branch;               /* m, from the centre of a to that of b, or to the point on a
+                                      wall */
+} demi_walk;
+static demi_walk demi_walk_begin(void) {
+    demi_walk c;
+    memset(&c, 0, sizeof c);
+    c.at = -1;
+    return c;
+}
+/* Writes the present contact of a walk, entry `at` of its list. Returns 0 if it is none. */
+static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
+    const size_t stride = (size_t)w->near.stride, entry = (size_t)c->d*stride + (size_t)at;
+    const int solved = demi_response_is(w, DEMI_MIDWAY);
+    c->entry = at;
+    c->own = c->kept ? demi_kept_of(w, c->d) + at : 0;
+    c->a = c->own ? c->own->a : w->near.a[entry];
+    c->b = c->own ? c->own->b : w->near.b[entry];
+    if (c->own ? !demi_kept_asked(w, c->own)
+        : !demi_contact_force(w, c->d, at, c->blind ? 0 : &c->info, &c->branch)) return 0;
+    if (w->joint_count && demi_parted(w, c->a, c->b, c->own ? c->own->wall : -1)) return 0;
+    if (c->blind) return 1;
+    if (c->own) {
+        demi_kept_info(w, c->own, &c->info);
+        c->branch = c->b < 0 ? c->own->arm_a : demi_sub(c->own->arm_a, c->own->arm_b);
+    }
+    if (!c->info.further) c->counted = 0;
+    c->counts = !c->counted && (!solved ? c->info.overlap > 0 : c->own ? c->own->memory[6] > 0
+        : w->near.memory[((size_t)c->d*DEMI_IMPULSE_REALS + 6)*stride + (size_t)at] > 0);
+    c->counted |= c->counts;
+    return 1;
+}
+/* Goes to the next contact. Returns 0 if there is none. */
+static int demi_walk_next(const dem_world *w, demi_walk *c) {
+    for (; c->d < w->domain_count; c->d++, c->kept = 0, c->at = -1) {
+        const demi_domain *domain = &w->domains[c->d];
+        if (c->at < 0) c->at = demi_near_first(domain);
+        for (; !c->kept; c->kept = 1, c->at = 0)
+            while (c->at < domain->near_end) {
+                const int at = c->at;
+                c->at = demi_near_next(domain, at);
+                if (demi_walk_look(w, c, at)) return 1;
+            }
+        while (c->at < domain->kept) if (demi_walk_look(w, c, c->at++)) return 1;
+    }
+    return 0;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>fields
+   Fields: averages of grains and contacts on a grid (binning, or coarse graining [GOL10]). A sample
+   adds a grain to the cell of its centre, and the stress of a contact to the cells along its branch
+   vector. With coarse graining it spreads both over the cells nearby. In a periodic world every
+   image inside the grid counts. This part owns w->fields and their sums; it reads bodies and
+   contacts, and completes the half kick of velocities (demi_finish) before it samples grains.
+   A field is one array of sums, block after block, so that checkpoints, copies and slabs treat it
+   as plain numbers.
+   --------------------------------------------------------------------------------------------- */
 /* Blocks of a field's sums. The block of constant c begins at c x cells; within it, the numbers of
    one cell are adjacent (3 of momentum; 6 of flux and of stress: xx yy zz xy xz yz). The last
    constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist.
@@ -30098,13 +30178,12 @@ static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
     flux[4] = m*v[0]*v[2]/g->volume; flux[5] = m*v[1]*v[2]/g->volume;
     demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_FLUX, 6, flux);
 }
-/* Adds a contact of bodies a and b (-1: a wall): its stress, and 1 to the number of contacts of
-   each grain. force: N, on a. branch: m, from the centre of a to that of b, or to the contact point
-   on a wall. The stress is the symmetric part of force x (-branch) over the volume of a cell; it is
-   divided equally among eight points of the branch. */
-static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, dem_vec3 force,
-                            dem_vec3 branch) {
-    const int pieces = 8;
+/* Adds a contact: its stress, and 1 to the number of contacts of each grain if it counts. The
+   stress is the symmetric part of force x (-branch) over the volume of a cell; it is divided
+   equally among eight points of the branch. */
+static void demi_field_branch(const dem_world *w, demi_grid *g, const demi_walk *c) {
+    const int pieces = 8, a = c->a, b = c->b;
+    const dem_vec3 force = c->info.force, branch = c->branch;
     const dem_field_desc *d = &g->field->desc;
     const double f[3] = {(double)force.x, (double)force.y, (double)force.z};
     const double l[3] = {-(double)branch.x, -(double)branch.y, -(double)branch.z};
@@ -30124,29 +30203,14 @@ static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, de
         demi_grid_put(g, demi_add(from, demi_scale(branch, (dem_real)((k + 0.5)/pieces))),
                       DEMI_STRESS, 6, part);
     }
-    if (is_a) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
-    if (is_b) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
+    if (is_a && c->counts) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
+    if (is_b && c->counts)
+        demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
 }
-/* Adds all contacts of the world: sphere pairs of the pruned neighbour list, then persistent
-   contacts. */
+/* Adds all contacts of the world. */
 static void demi_field_contacts(const dem_world *w, demi_grid *g) {
-    dem_contact_info info;
-    dem_vec3 branch;
-    int d, k;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            const demi_span span = demi_span_of(w, d, k, 1);
-            if (demi_contact_force(w, d, k, &info, &branch))
-                demi_field_branch(w, g, span.a[0], span.b[0], info.force, branch);
-        }
-        for (k = 0; k < domain->kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c)) continue;
-            demi_field_branch(w, g, c->a, c->b, c->force,
-                            c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
-        }
-    }
+    demi_walk c = demi_walk_begin();
+    while (demi_walk_next(w, &c)) demi_field_branch(w, g, &c);
 }
 /* Before a sample: copies the sums of grains. After it: adds the squares of what the sample has
    added to them. Momentum^2 over mass weights the square of a cell's velocity by its mass, as the
@@ -31198,20 +31262,21 @@ DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
     return DEM_OK;
 }
 
-/* Adds a contact: its symmetric virial, and the fabric of two bodies. b < 0: a wall. */
-static void demi_stress_add(dem_stress *s, const dem_contact_info *c, int b, dem_vec3 branch) {
-    const double f[3] = {(double)c->force.x, (double)c->force.y, (double)c->force.z};
-    const double l[3] = {(double)branch.x, (double)branch.y, (double)branch.z};
-    const double n[3] = {(double)c->normal.x, (double)c->normal.y, (double)c->normal.z};
+/* Adds a contact: its symmetric virial, and the fabric of two bodies. */
+static void demi_stress_add(dem_stress *s, const demi_walk *c) {
+    const dem_contact_info *i = &c->info;
+    const double f[3] = {(double)i->force.x, (double)i->force.y, (double)i->force.z};
+    const double l[3] = {(double)c->branch.x, (double)c->branch.y, (double)c->branch.z};
+    const double n[3] = {(double)i->normal.x, (double)i->normal.y, (double)i->normal.z};
     int k;
     for (k = 0; k < 6; k++) {
-        const int i = k < 3 ? k : k > 4, j = k < 3 ? k : k == 3 ? 1 : 2;
-        s->contact[k] -= (f[i]*l[j] + f[j]*l[i])/2/s->volume;
-        if (b >= 0 && c->overlap > 0) s->fabric[k] += n[i]*n[j];
+        const int x = k < 3 ? k : k > 4, y = k < 3 ? k : k == 3 ? 1 : 2;
+        s->contact[k] -= (f[x]*l[y] + f[y]*l[x])/2/s->volume;
+        if (c->b >= 0 && c->counts) s->fabric[k] += n[x]*n[y];
     }
-    if (!(c->overlap > 0)) return;
-    s->contacts += b >= 0;
-    s->coordination += b < 0 ? 1 : 2;
+    if (!c->counts) return;
+    s->contacts += c->b >= 0;
+    s->coordination += c->b < 0 ? 1 : 2;
 }
 /* Adds the kinetic stress and the solid fraction. */
 static void demi_stress_move(const dem_world *w, dem_stress *s) {
@@ -31232,9 +31297,8 @@ static void demi_stress_move(const dem_world *w, dem_stress *s) {
         s->kinetic[k] -= mean[k < 3 ? k : k > 4]*mean[k < 3 ? k : k == 3 ? 1 : 2]/mass/s->volume;
 }
 DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
-    dem_contact_info info;
-    dem_vec3 branch;
-    int d, k;
+    demi_walk c = demi_walk_begin();
+    int k;
     if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
     memset(s, 0, sizeof *s);
     if (!w->stage.list_valid) {
@@ -31247,17 +31311,7 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
         return demi_refuse(w, __func__, "the domain has the volume 0; set desc.domain "
                            "along all axes");
     }
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
-            if (demi_contact_force(w, d, k, &info, &branch)) demi_stress_add(s, &info, 0, branch);
-        for (k = 0; k < domain->kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c)) continue;
-            demi_kept_info(w, c, &info);
-            demi_stress_add(s, &info, c->b, c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
-        }
-    }
+    while (demi_walk_next(w, &c)) demi_stress_add(s, &c);
     demi_stress_move(w, s);
     for (k = 0; k < 6; k++) {
         s->total[k] = s->contact[k] + s->kinetic[k];
@@ -32399,16 +32453,12 @@ DEM_API void dem_overlap_max_reset(dem_world *w) {
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     if (demi_null_look(w, __func__, w, "world")) return -1;
-    int d, k, n = 0;
+    demi_walk c = demi_walk_begin();
+    int n = 0;
     if (!w->stage.list_valid) return demi_list_stale(w, __func__);
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
-            n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0, 0);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
-            if (demi_kept_asked(w, c) && ++n <= capacity && out) demi_kept_info(w, c, &out[n - 1]);
-        }
+    for (c.blind = !out || capacity <= 0; demi_walk_next(w, &c); c.blind |= n >= capacity) {
+        if (!c.blind) out[n] = c.info;
+        n++;
     }
     return n;
 }
@@ -32430,42 +32480,27 @@ static dem_result demi_contacts_settle(dem_world *w, const char *call) {
     demi_called(w, was);
     return result;
 }
-/* Calls fn for every contact, and returns their number, or -1. The histories of sphere pairs are
-   columns of the pruned neighbour list, so fn gets a copy that is written back; a persistent
-   contact hands over its own. If fn changes a value, forces are computed again before the next
-   step. */
+/* Calls fn for every contact, and returns their number, or -1. fn gets a copy of the history, which
+   is written back: those of sphere pairs are columns of the pruned neighbour list. If fn changes a
+   value, forces are computed again before the next step. */
 static int demi_contacts_visit(dem_world *w, const char *call, dem_contact_fn fn, void *user) {
-    size_t stride;
-    dem_contact_info info;
-    dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
-    int d, k, e, n = 0, changed = 0;
+    demi_walk c = demi_walk_begin();
+    dem_real memory[DEMI_MEMORY];
+    int e, n = 0, changed = 0;
     demi_calling was_calling;
     if (demi_contacts_settle(w, call) != DEM_OK) return -1;
     was_calling = demi_calls(w, call, 0);
-    stride = (size_t)w->near.stride;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            if (!demi_contact_force(w, d, k, &info, 0)) continue;
-            row = w->memory_stride ? w->near.memory + (size_t)d*(size_t)w->memory_stride*stride + k
-                : memory;
-            for (e = 0; e < w->memory_stride; e++) was[e] = memory[e] = row[(size_t)e*stride];
-            fn(&info, memory, user);
-            for (e = 0; e < w->memory_stride; e++) {
-                changed |= memory[e] < was[e] || memory[e] > was[e];
-                row[(size_t)e*stride] = memory[e];
-            }
-            n++;
-        }
-        for (k = 0; k < domain->kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c)) continue;
-            demi_kept_info(w, c, &info);
-            memcpy(was, c->memory, sizeof was);
-            fn(&info, c->memory, user);
-            for (e = 0; e < DEMI_MEMORY; e++)
-                changed |= c->memory[e] < was[e] || c->memory[e] > was[e];
-            n++;
+    for (; demi_walk_next(w, &c); n++) {
+        const int keep = c.own ? DEMI_MEMORY : w->memory_stride;
+        const size_t step = c.own ? 1 : (size_t)w->near.stride;
+        dem_real *row = c.own ? c.own->memory : !keep ? memory
+            : w->near.memory + (size_t)c.d*(size_t)keep*step + c.entry;
+        for (e = 0; e < keep; e++) memory[e] = row[(size_t)e*step];
+        fn(&c.info, memory, user);
+        for (e = 0; e < keep; e++) {
+            dem_real *now = row + (size_t)e*step;
+            changed |= memory[e] < *now || memory[e] > *now;
+            *now = memory[e];
         }
     }
     demi_called(w, was_calling);
@@ -33078,28 +33113,19 @@ static void demi_mix_cells(const int32_t *all, const int32_t *mine, int cells, d
     out->kramer = (sqrt(seg) - sqrt(out->variance))/(sqrt(seg) - sqrt(rnd));
 }
 /* Counts the contacts of grains in the box, and compares those between the components with random
-   ones. kind: by body, 1: of the component, 0: another, -1: not counted. Returns 0 if memory ran
-   out. */
-static int demi_mix_contacts(dem_world *w, const signed char *kind, dem_mixing *out) {
+   ones. kind: by body, 1: of the component, 0: another, -1: not counted. */
+static void demi_mix_contacts(const dem_world *w, const signed char *kind, dem_mixing *out) {
     const double n = out->grains, even = 2.0*out->part*(n - out->part)/(n*(n - 1));
-    const int all = w->stage.list_valid ? dem_contacts_get(w, 0, 0) : 0;
-    dem_contact_info *c = (dem_contact_info *)demi_alloc(w, (size_t)all + 1, sizeof *c);
+    demi_walk c = demi_walk_begin();
     double unlike = 0;
-    int i;
     out->contacts = w->stage.list_valid ? 0 : -1;
-    if (!c) return 0;
-    if (all) dem_contacts_get(w, c, all);
-    for (i = 0; i < all; i++) {
-        const int a = kind[w->bodies.slot_index[c[i].a.slot - 1]];
-        const int b = c[i].wall ? -1 : kind[w->bodies.slot_index[c[i].b.slot - 1]];
-        if (a < 0 || b < 0) continue;
+    while (w->stage.list_valid && demi_walk_next(w, &c)) {
+        if (!c.counts || c.b < 0 || kind[c.a] < 0 || kind[c.b] < 0) continue;
         out->contacts++;
-        unlike += a != b;
+        unlike += kind[c.a] != kind[c.b];
     }
-    demi_free(w, c);
     if (out->contacts > 0 && even > 0)
         out->contact_segregation = 1 - unlike/out->contacts/even;
-    return 1;
 }
 /* Computes the rank measures along x, y and z, and of the distance from the axis. */
 static void demi_mix_ranks(const dem_world *w, const demi_periods *p, const dem_mixing_desc *d,
@@ -33174,8 +33200,9 @@ DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc 
         if (out->grains) out->fraction = (double)out->part/out->grains;
         demi_mix_cells(count, count + cells, cells, out);
         demi_mix_ranks(w, &p, d, kind, key, out);
+        demi_mix_contacts(w, kind, out);
     }
-    i = key && kind && count && demi_mix_contacts(w, kind, out);
+    i = key && kind && count;
     demi_free(w, key);
     demi_free(w, kind);
     demi_free(w, count);
@@ -38934,16 +38961,6 @@ static void demi_check_walls(const dem_world *w, demi_findings *f) {
     }
 }
 
-/* True if a joint takes away the contact of bodies a and b. */
-static int demi_hinged(const dem_world *w, int a, int b) {
-    int k, found = 0;
-    for (k = 0; k < w->joint_count && !found; k++) {
-        const dem_joint_desc *j = &w->joints[k].desc;
-        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
-        found = !j->collide && ((p == a && q == b) || (p == b && q == a));
-    }
-    return found;
-}
 /* Checks for pairs of bodies that overlap by more than 1 % of the smaller radius; pairs of fixed
    bodies are exempt. Needs a valid neighbour list. */
 static void demi_check_pairs(const dem_world *w, demi_findings *f) {
@@ -38958,7 +38975,7 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
                 const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
                 const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
                                                               list->image[k], r)/r);
-                if (!(deep > 0.01) || demi_hinged(w, a, b) ||
+                if (!(deep > 0.01) || demi_parted(w, a, b, -1) ||
                     (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0)) continue;
                 count++;
                 if (deep <= worst) continue;

@@ -1616,7 +1616,8 @@ class Body(Id):
         return state
 
     def set(self, *, position=None, velocity=None, spin=None, fixed=None, orientation=None):
-        """Sets position, velocity, spin, orientation and fixed. Start from dem_body_get.
+        """Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. A body on a rail keeps its
+        velocity and spin along and about locked axes.
 
         Fields that are not given stay as they are.
         position: m, m/s, rad/s
@@ -2086,7 +2087,9 @@ class WorldDesc(Struct):
          'density, velocity and contact history stay. Each change of radii costs a new list and another '
          'computation of forces. Null means constant radii; see dem_body_radius_set.'),
         ('growth_user', ctypes.c_void_p, 'passed to growth'),
-        ('growth_interval', Real, 's, between two changes of radii; 0 means every step'),
+        ('growth_interval', Real,
+         's, between two changes of radii, in which a body grows for the whole interval, also if it was added '
+         'within it; 0 means every step'),
         ('groups', str,
          'Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and '
          '_. A body belongs to none until dem_bodies_group_set. Null means no groups.'),
@@ -3136,6 +3139,7 @@ class ContactInfo(Struct):
         ('normal', Vec3, ""),
         ('overlap', Real, 'm; < 0: a gap within the range of the law'),
         ('force', Vec3, 'N, on a'),
+        ('further', ctypes.c_int, "1: another point of the polyhedron's contact before"),
     ]
 
 
@@ -3835,7 +3839,8 @@ class World(WorldBase):
             velocity and contact history stay. Each change of radii costs a new list and another computation of
             forces. Null means constant radii; see dem_body_radius_set.
         growth_user: passed to growth
-        growth_interval: s, between two changes of radii; 0 means every step
+        growth_interval: s, between two changes of radii, in which a body grows for the whole interval, also if it was
+            added within it; 0 means every step
         groups: Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and _.
             A body belongs to none until dem_bodies_group_set. Null means no groups.
         force: force on a body; null means none

@@ -338,6 +338,7 @@ typedef struct dem_contact_info {
     dem_vec3 point, normal;              /* m; unit, from a to b */
     dem_real overlap;                    /* m; < 0: a gap within the range of the law */
     dem_vec3 force;                      /* N, on a */
+    int further;                         /* 1: another point of the polyhedron's contact before */
 } dem_contact_info;
 /* Writes the contacts, those with walls included, at most `capacity` of them, and returns their
    number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one

@@ -26,7 +26,7 @@ static int demi_cell_slides(const dem_world *w) {
 /* Parts of a scene that cannot follow a cell. Fields can, unless it is sheared. */
 enum { DEMI_CELL_WALLS, DEMI_CELL_RAILS, DEMI_CELL_FEEDS, DEMI_CELL_OUTLETS, DEMI_CELL_FIELDS,
        DEMI_CELL_PARTS };
-/* Fails and returns 1, because the scene has a part that cannot follow the cell, or would get it. */
+/* Fails and returns 1: the scene has a part that cannot follow the cell, or is to get it. */
 static int demi_cell_bars(dem_world *w, const char *call, int part) {
     static const char *const reason[DEMI_CELL_PARTS] = {
         "walls would not follow it: a grain and its image would touch the same wall at different "
@@ -35,7 +35,7 @@ static int demi_cell_bars(dem_world *w, const char *call, int part) {
         "them off their rails (axes 0)",
         "the regions of feeds would not follow it; fill the cell before it deforms",
         "the regions of outlets would not follow it; use dem_body_remove",
-        "fields would not follow it: it is sheared, so that images are displaced, which their grids "
+        "fields would not follow it: it is sheared, so that images are displaced, which the grids "
         "do not see; use dem_stress_get"};
     demi_refuse(w, call, "the periodic cell deforms (dem_cell_set), and %s", reason[part]);
     return 1;

@@ -127,7 +127,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
     const dem_real slow = (dem_real)(10*w->booked.residual + (DEMI_SINGLE ? 1e-5 : 1e-10)*
                                      w->booked.speed_max);
     double *lost = domain->energy;              /* J, of the coming step */
-    int i, e;
+    int i, e, counted = 0;
     domain->contacts = domain->kept_walls = 0;
     for (i = 0; i < s->meeting_count[d]; i++) {
         const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
@@ -139,6 +139,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_real push = c->push - s->beside[m->at].pull;
         const int old = o.memory[6*o.stride] > 0 || o.memory[7*o.stride] > 0;
         double part[3] = {0, 0, 0};             /* J, that it loses */
+        int counts;
         const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
@@ -165,6 +166,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
             const int own = w->bodies.material[m->a] - 1;
             domain->met[DEMI_MIN(own, o.material)] |= UINT64_C(1) << DEMI_MAX(own, o.material);
         }
+        if (!k || !k->corner) counted = 0;      /* of the points of polyhedra, one counts */
+        counts = c->push > 0 && !counted;
+        counted |= counts;
         if (k) k->force = demi_scale(p, -per);
         if (k && k->b < 0) {
             demi_wall_sum *sum = w->wall_sums + (size_t)d*(size_t)w->wall_count + k->wall;
@@ -172,9 +176,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
             const dem_vec3 at = demi_add(x, k->arm_a);
             demi_wall_sum_add(w, sum, k->wall, at, demi_scale(p, -per), demi_scale(moment, -per),
                               demi_at(s->movers[m->b].v));
-            sum->contacts += c->push > 0;
-            domain->kept_walls += c->push > 0;
-        } else domain->contacts += c->push > 0;
+            sum->contacts += counts;
+            domain->kept_walls += counts;
+        } else domain->contacts += counts;
     }
 }
 /* Adds the contact forces to fixed bodies, for getters and output files. */

@@ -44,6 +44,18 @@ static int demi_joint_body(const dem_world *w, dem_body b) {
         w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
     return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
 }
+/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
+   they have no contact. Needs no solver; demi_joined is faster within a step. */
+static int demi_parted(const dem_world *w, int a, int b, int wall) {
+    int k, found = 0;
+    for (k = 0; k < w->joint_count && !found; k++) {
+        const dem_joint_desc *j = &w->joints[k].desc;
+        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
+        found = !j->collide && (b < 0 ? p == a && !j->b.slot && j->wall.id == w->walls[wall].id
+                                : (p == a && q == b) || (p == b && q == a));
+    }
+    return found;
+}
 /* True if both bodies of a joint, or its body and its wall, still exist. */
 static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
     if (demi_joint_body(w, j->desc.a) < 0) return 0;

@@ -290,16 +290,6 @@ static void demi_check_walls(const dem_world *w, demi_findings *f) {
     }
 }
 
-/* True if a joint takes away the contact of bodies a and b. */
-static int demi_hinged(const dem_world *w, int a, int b) {
-    int k, found = 0;
-    for (k = 0; k < w->joint_count && !found; k++) {
-        const dem_joint_desc *j = &w->joints[k].desc;
-        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
-        found = !j->collide && ((p == a && q == b) || (p == b && q == a));
-    }
-    return found;
-}
 /* Checks for pairs of bodies that overlap by more than 1 % of the smaller radius; pairs of fixed
    bodies are exempt. Needs a valid neighbour list. */
 static void demi_check_pairs(const dem_world *w, demi_findings *f) {
@@ -314,7 +304,7 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
                 const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
                 const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
                                                               list->image[k], r)/r);
-                if (!(deep > 0.01) || demi_hinged(w, a, b) ||
+                if (!(deep > 0.01) || demi_parted(w, a, b, -1) ||
                     (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0)) continue;
                 count++;
                 if (deep <= worst) continue;

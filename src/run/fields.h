@@ -6,22 +6,8 @@
    image inside the grid counts. This part owns w->fields and their sums; it reads bodies and
    contacts, and completes the half kick of velocities (demi_finish) before it samples grains.
    A field is one array of sums, block after block, so that checkpoints, copies and slabs treat it
-   as plain numbers. demi_kept_info comes first, since stress needs all contacts.
+   as plain numbers.
    --------------------------------------------------------------------------------------------- */
-/* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
-   users see. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
-    const demi_periods p = demi_periods_of(w);
-    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
-    out->a = dem_body_id_get(w, c->a);
-    out->b = dem_body_id_get(w, c->b);
-    out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
-    out->normal = c->normal;
-    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
-    out->point = demi_place_of(&p, x);
-    out->overlap = c->overlap;
-    out->force = c->force;
-}
 /* Blocks of a field's sums. The block of constant c begins at c x cells; within it, the numbers of
    one cell are adjacent (3 of momentum; 6 of flux and of stress: xx yy zz xy xz yz). The last
    constant is the number of reals per cell; without desc.stress only the first DEMI_FLUX exist.
@@ -169,13 +155,12 @@ static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
     flux[4] = m*v[0]*v[2]/g->volume; flux[5] = m*v[1]*v[2]/g->volume;
     demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_FLUX, 6, flux);
 }
-/* Adds a contact of bodies a and b (-1: a wall): its stress, and 1 to the number of contacts of
-   each grain. force: N, on a. branch: m, from the centre of a to that of b, or to the contact point
-   on a wall. The stress is the symmetric part of force x (-branch) over the volume of a cell; it is
-   divided equally among eight points of the branch. */
-static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, dem_vec3 force,
-                            dem_vec3 branch) {
-    const int pieces = 8;
+/* Adds a contact: its stress, and 1 to the number of contacts of each grain if it counts. The
+   stress is the symmetric part of force x (-branch) over the volume of a cell; it is divided
+   equally among eight points of the branch. */
+static void demi_field_branch(const dem_world *w, demi_grid *g, const demi_walk *c) {
+    const int pieces = 8, a = c->a, b = c->b;
+    const dem_vec3 force = c->info.force, branch = c->branch;
     const dem_field_desc *d = &g->field->desc;
     const double f[3] = {(double)force.x, (double)force.y, (double)force.z};
     const double l[3] = {-(double)branch.x, -(double)branch.y, -(double)branch.z};
@@ -195,29 +180,14 @@ static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, de
         demi_grid_put(g, demi_add(from, demi_scale(branch, (dem_real)((k + 0.5)/pieces))),
                       DEMI_STRESS, 6, part);
     }
-    if (is_a) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
-    if (is_b) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
+    if (is_a && c->counts) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
+    if (is_b && c->counts)
+        demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
 }
-/* Adds all contacts of the world: sphere pairs of the pruned neighbour list, then persistent
-   contacts. */
+/* Adds all contacts of the world. */
 static void demi_field_contacts(const dem_world *w, demi_grid *g) {
-    dem_contact_info info;
-    dem_vec3 branch;
-    int d, k;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            const demi_span span = demi_span_of(w, d, k, 1);
-            if (demi_contact_force(w, d, k, &info, &branch))
-                demi_field_branch(w, g, span.a[0], span.b[0], info.force, branch);
-        }
-        for (k = 0; k < domain->kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c)) continue;
-            demi_field_branch(w, g, c->a, c->b, c->force,
-                            c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
-        }
-    }
+    demi_walk c = demi_walk_begin();
+    while (demi_walk_next(w, &c)) demi_field_branch(w, g, &c);
 }
 /* Before a sample: copies the sums of grains. After it: adds the squares of what the sample has
    added to them. Momentum^2 over mass weights the square of a cell's velocity by its mass, as the

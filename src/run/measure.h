@@ -45,16 +45,12 @@ DEM_API void dem_overlap_max_reset(dem_world *w) {
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     if (demi_null_look(w, __func__, w, "world")) return -1;
-    int d, k, n = 0;
+    demi_walk c = demi_walk_begin();
+    int n = 0;
     if (!w->stage.list_valid) return demi_list_stale(w, __func__);
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
-            n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0, 0);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
-            if (demi_kept_asked(w, c) && ++n <= capacity && out) demi_kept_info(w, c, &out[n - 1]);
-        }
+    for (c.blind = !out || capacity <= 0; demi_walk_next(w, &c); c.blind |= n >= capacity) {
+        if (!c.blind) out[n] = c.info;
+        n++;
     }
     return n;
 }
@@ -76,42 +72,27 @@ static dem_result demi_contacts_settle(dem_world *w, const char *call) {
     demi_called(w, was);
     return result;
 }
-/* Calls fn for every contact, and returns their number, or -1. The histories of sphere pairs are
-   columns of the pruned neighbour list, so fn gets a copy that is written back; a persistent
-   contact hands over its own. If fn changes a value, forces are computed again before the next
-   step. */
+/* Calls fn for every contact, and returns their number, or -1. fn gets a copy of the history, which
+   is written back: those of sphere pairs are columns of the pruned neighbour list. If fn changes a
+   value, forces are computed again before the next step. */
 static int demi_contacts_visit(dem_world *w, const char *call, dem_contact_fn fn, void *user) {
-    size_t stride;
-    dem_contact_info info;
-    dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
-    int d, k, e, n = 0, changed = 0;
+    demi_walk c = demi_walk_begin();
+    dem_real memory[DEMI_MEMORY];
+    int e, n = 0, changed = 0;
     demi_calling was_calling;
     if (demi_contacts_settle(w, call) != DEM_OK) return -1;
     was_calling = demi_calls(w, call, 0);
-    stride = (size_t)w->near.stride;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            if (!demi_contact_force(w, d, k, &info, 0)) continue;
-            row = w->memory_stride ? w->near.memory + (size_t)d*(size_t)w->memory_stride*stride + k
-                : memory;
-            for (e = 0; e < w->memory_stride; e++) was[e] = memory[e] = row[(size_t)e*stride];
-            fn(&info, memory, user);
-            for (e = 0; e < w->memory_stride; e++) {
-                changed |= memory[e] < was[e] || memory[e] > was[e];
-                row[(size_t)e*stride] = memory[e];
-            }
-            n++;
-        }
-        for (k = 0; k < domain->kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c)) continue;
-            demi_kept_info(w, c, &info);
-            memcpy(was, c->memory, sizeof was);
-            fn(&info, c->memory, user);
-            for (e = 0; e < DEMI_MEMORY; e++)
-                changed |= c->memory[e] < was[e] || c->memory[e] > was[e];
-            n++;
+    for (; demi_walk_next(w, &c); n++) {
+        const int keep = c.own ? DEMI_MEMORY : w->memory_stride;
+        const size_t step = c.own ? 1 : (size_t)w->near.stride;
+        dem_real *row = c.own ? c.own->memory : !keep ? memory
+            : w->near.memory + (size_t)c.d*(size_t)keep*step + c.entry;
+        for (e = 0; e < keep; e++) memory[e] = row[(size_t)e*step];
+        fn(&c.info, memory, user);
+        for (e = 0; e < keep; e++) {
+            dem_real *now = row + (size_t)e*step;
+            changed |= memory[e] < *now || memory[e] > *now;
+            *now = memory[e];
         }
     }
     demi_called(w, was_calling);

@@ -84,28 +84,19 @@ static void demi_mix_cells(const int32_t *all, const int32_t *mine, int cells, d
     out->kramer = (sqrt(seg) - sqrt(out->variance))/(sqrt(seg) - sqrt(rnd));
 }
 /* Counts the contacts of grains in the box, and compares those between the components with random
-   ones. kind: by body, 1: of the component, 0: another, -1: not counted. Returns 0 if memory ran
-   out. */
-static int demi_mix_contacts(dem_world *w, const signed char *kind, dem_mixing *out) {
+   ones. kind: by body, 1: of the component, 0: another, -1: not counted. */
+static void demi_mix_contacts(const dem_world *w, const signed char *kind, dem_mixing *out) {
     const double n = out->grains, even = 2.0*out->part*(n - out->part)/(n*(n - 1));
-    const int all = w->stage.list_valid ? dem_contacts_get(w, 0, 0) : 0;
-    dem_contact_info *c = (dem_contact_info *)demi_alloc(w, (size_t)all + 1, sizeof *c);
+    demi_walk c = demi_walk_begin();
     double unlike = 0;
-    int i;
     out->contacts = w->stage.list_valid ? 0 : -1;
-    if (!c) return 0;
-    if (all) dem_contacts_get(w, c, all);
-    for (i = 0; i < all; i++) {
-        const int a = kind[w->bodies.slot_index[c[i].a.slot - 1]];
-        const int b = c[i].wall ? -1 : kind[w->bodies.slot_index[c[i].b.slot - 1]];
-        if (a < 0 || b < 0) continue;
+    while (w->stage.list_valid && demi_walk_next(w, &c)) {
+        if (!c.counts || c.b < 0 || kind[c.a] < 0 || kind[c.b] < 0) continue;
         out->contacts++;
-        unlike += a != b;
+        unlike += kind[c.a] != kind[c.b];
     }
-    demi_free(w, c);
     if (out->contacts > 0 && even > 0)
         out->contact_segregation = 1 - unlike/out->contacts/even;
-    return 1;
 }
 /* Computes the rank measures along x, y and z, and of the distance from the axis. */
 static void demi_mix_ranks(const dem_world *w, const demi_periods *p, const dem_mixing_desc *d,
@@ -180,8 +171,9 @@ DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc 
         if (out->grains) out->fraction = (double)out->part/out->grains;
         demi_mix_cells(count, count + cells, cells, out);
         demi_mix_ranks(w, &p, d, kind, key, out);
+        demi_mix_contacts(w, kind, out);
     }
-    i = key && kind && count && demi_mix_contacts(w, kind, out);
+    i = key && kind && count;
     demi_free(w, key);
     demi_free(w, kind);
     demi_free(w, count);

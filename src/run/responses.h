@@ -3,7 +3,8 @@
    The table of responses: the functions by which springs (soft contacts) and impulses (rigid
    contacts, non-smooth dynamics) settle the time step, compute contact forces, account for energy
    and show a contact to users. A step and the functions that read contacts call the row of
-   w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Owns no data.
+   w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Whoever reads the
+   contacts of a world walks over them (demi_walk), so that all see the same ones. Owns no data.
    --------------------------------------------------------------------------------------------- */
 /* Springs: computes the forces of all contacts that domain d owns: first pairs of spheres, by the
    kernel of the laws in force, then persistent contacts. */
@@ -86,9 +87,85 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     if (!out) return 1;
     out->a = dem_body_id_get(w, a);
     out->b = dem_body_id_get(w, b);
-    out->wall = 0;
+    out->wall = out->further = 0;
     out->point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a),
         demi_near_arm(w, at, 0)), demi_scale(gap, ra/(ra + rb))));
     if (branch) *branch = demi_near_bodies_way(w, at);
     return 1;
+}
+/* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
+   users see. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+    const demi_periods p = demi_periods_of(w);
+    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
+    out->a = dem_body_id_get(w, c->a);
+    out->b = dem_body_id_get(w, c->b);
+    out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
+    out->normal = c->normal;
+    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
+    out->point = demi_place_of(&p, x);
+    out->overlap = c->overlap;
+    out->force = c->force;
+    out->further = c->corner > 0;
+}
+/* A walk over all contacts of a world: of each work group the pairs of spheres, then the persistent
+   contacts. */
+typedef struct demi_walk {
+    int blind;                     /* set it to 1 only to count: then `info` and `branch` are not
+                                      written */
+    int d, at, kept;               /* work group; next entry of the pruned or, with kept, of the
+                                      persistent list */
+    int counted;                   /* a point of the present pair of polyhedra has counted */
+    /* the contact: indices of the bodies (b -1: a wall); entry of the pruned list, or persistent */
+    int a, b, entry;
+    demi_kept *own;
+    /* 1: it counts as one contact: the bodies touch or, with impulses, push; of the points at which
+       a polyhedron touches, one counts */
+    int counts;
+    dem_contact_info info;
+    dem_vec3 branch;               /* m, from the centre of a to that of b, or to the point on a
+                                      wall */
+} demi_walk;
+static demi_walk demi_walk_begin(void) {
+    demi_walk c;
+    memset(&c, 0, sizeof c);
+    c.at = -1;
+    return c;
+}
+/* Writes the present contact of a walk, entry `at` of its list. Returns 0 if it is none. */
+static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
+    const size_t stride = (size_t)w->near.stride, entry = (size_t)c->d*stride + (size_t)at;
+    const int solved = demi_response_is(w, DEMI_MIDWAY);
+    c->entry = at;
+    c->own = c->kept ? demi_kept_of(w, c->d) + at : 0;
+    c->a = c->own ? c->own->a : w->near.a[entry];
+    c->b = c->own ? c->own->b : w->near.b[entry];
+    if (c->own ? !demi_kept_asked(w, c->own)
+        : !demi_contact_force(w, c->d, at, c->blind ? 0 : &c->info, &c->branch)) return 0;
+    if (w->joint_count && demi_parted(w, c->a, c->b, c->own ? c->own->wall : -1)) return 0;
+    if (c->blind) return 1;
+    if (c->own) {
+        demi_kept_info(w, c->own, &c->info);
+        c->branch = c->b < 0 ? c->own->arm_a : demi_sub(c->own->arm_a, c->own->arm_b);
+    }
+    if (!c->info.further) c->counted = 0;
+    c->counts = !c->counted && (!solved ? c->info.overlap > 0 : c->own ? c->own->memory[6] > 0
+        : w->near.memory[((size_t)c->d*DEMI_IMPULSE_REALS + 6)*stride + (size_t)at] > 0);
+    c->counted |= c->counts;
+    return 1;
+}
+/* Goes to the next contact. Returns 0 if there is none. */
+static int demi_walk_next(const dem_world *w, demi_walk *c) {
+    for (; c->d < w->domain_count; c->d++, c->kept = 0, c->at = -1) {
+        const demi_domain *domain = &w->domains[c->d];
+        if (c->at < 0) c->at = demi_near_first(domain);
+        for (; !c->kept; c->kept = 1, c->at = 0)
+            while (c->at < domain->near_end) {
+                const int at = c->at;
+                c->at = demi_near_next(domain, at);
+                if (demi_walk_look(w, c, at)) return 1;
+            }
+        while (c->at < domain->kept) if (demi_walk_look(w, c, c->at++)) return 1;
+    }
+    return 0;
 }

@@ -193,20 +193,21 @@ DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
     return DEM_OK;
 }
 
-/* Adds a contact: its symmetric virial, and the fabric of two bodies. b < 0: a wall. */
-static void demi_stress_add(dem_stress *s, const dem_contact_info *c, int b, dem_vec3 branch) {
-    const double f[3] = {(double)c->force.x, (double)c->force.y, (double)c->force.z};
-    const double l[3] = {(double)branch.x, (double)branch.y, (double)branch.z};
-    const double n[3] = {(double)c->normal.x, (double)c->normal.y, (double)c->normal.z};
+/* Adds a contact: its symmetric virial, and the fabric of two bodies. */
+static void demi_stress_add(dem_stress *s, const demi_walk *c) {
+    const dem_contact_info *i = &c->info;
+    const double f[3] = {(double)i->force.x, (double)i->force.y, (double)i->force.z};
+    const double l[3] = {(double)c->branch.x, (double)c->branch.y, (double)c->branch.z};
+    const double n[3] = {(double)i->normal.x, (double)i->normal.y, (double)i->normal.z};
     int k;
     for (k = 0; k < 6; k++) {
-        const int i = k < 3 ? k : k > 4, j = k < 3 ? k : k == 3 ? 1 : 2;
-        s->contact[k] -= (f[i]*l[j] + f[j]*l[i])/2/s->volume;
-        if (b >= 0 && c->overlap > 0) s->fabric[k] += n[i]*n[j];
+        const int x = k < 3 ? k : k > 4, y = k < 3 ? k : k == 3 ? 1 : 2;
+        s->contact[k] -= (f[x]*l[y] + f[y]*l[x])/2/s->volume;
+        if (c->b >= 0 && c->counts) s->fabric[k] += n[x]*n[y];
     }
-    if (!(c->overlap > 0)) return;
-    s->contacts += b >= 0;
-    s->coordination += b < 0 ? 1 : 2;
+    if (!c->counts) return;
+    s->contacts += c->b >= 0;
+    s->coordination += c->b < 0 ? 1 : 2;
 }
 /* Adds the kinetic stress and the solid fraction. */
 static void demi_stress_move(const dem_world *w, dem_stress *s) {
@@ -227,9 +228,8 @@ static void demi_stress_move(const dem_world *w, dem_stress *s) {
         s->kinetic[k] -= mean[k < 3 ? k : k > 4]*mean[k < 3 ? k : k == 3 ? 1 : 2]/mass/s->volume;
 }
 DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
-    dem_contact_info info;
-    dem_vec3 branch;
-    int d, k;
+    demi_walk c = demi_walk_begin();
+    int k;
     if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
     memset(s, 0, sizeof *s);
     if (!w->stage.list_valid) {
@@ -242,17 +242,7 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
         return demi_refuse(w, __func__, "the domain has the volume 0; set desc.domain "
                            "along all axes");
     }
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
-            if (demi_contact_force(w, d, k, &info, &branch)) demi_stress_add(s, &info, 0, branch);
-        for (k = 0; k < domain->kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c)) continue;
-            demi_kept_info(w, c, &info);
-            demi_stress_add(s, &info, c->b, c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
-        }
-    }
+    while (demi_walk_next(w, &c)) demi_stress_add(s, &c);
     demi_stress_move(w, s);
     for (k = 0; k < 6; k++) {
         s->total[k] = s->contact[k] + s->kinetic[k];

@@ -26,6 +26,57 @@ static dem_field field_of(dem_world *world, dem_box box, int x, int y, int z, do
     return dem_field_add(world, &d);
 }
 
+/* A spring, and a weak pull within the range. */
+static void weak_pull(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)memory;
+    f->normal = c->overlap > 0 ? DEM_R(1e4)*c->overlap + c->closing_speed : -DEM_R(1e-4);
+}
+enum { SPHERES, EGGS, CLUSTERS, BRICKS, SHAPES };
+/* 27 bodies of one shape in a pile on a plane, in a box of 0.1 m; joined: each pair of neighbours along x by a joint. */
+static dem_world *pile(int shape, int response, int joined, int range) {
+    const dem_real two[6] = {0, 0, 0, 0, DEM_R(0.001), 0};
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+    dem_joint_desc joint = DEM_JOINT_DESC;
+    dem_world *w;
+    dem_material m;
+    dem_shape s = {0};
+    dem_body last = {0};
+    int i;
+    desc.response = (dem_response)response;
+    desc.gravity = at(0, 0, -9.81);
+    desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+    desc.orientations = joined;
+    desc.dt = (dem_real)(response ? 1e-3 : 1e-5);
+    if (range) {
+        desc.law = weak_pull;
+        desc.law_stiffness = DEM_R(1e4);
+        desc.law_range = DEM_R(2e-3);
+    }
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e7, 0.5, 0.5, 0);
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    cluster.count = 2;
+    cluster.positions = two;
+    cluster.radius = DEM_R(0.01);
+    if (shape == EGGS) s = dem_shape_ellipsoid_add(w, at(0.012, 0.01, 0.01));
+    if (shape == CLUSTERS) s = dem_shape_cluster_add(w, &cluster);
+    if (shape == BRICKS) s = scene_box(w, 0.02, 0.02, 0.02);
+    for (i = 0; i < 27; i++) {
+        const dem_vec3 x = at(0.03 + 0.0199*(i%3), 0.03 + 0.021*(i/3%3), 0.00995 + 0.0199*(i/9));
+        const dem_body body = shape ? dem_body_add(w, m, s, x, dem_quat_make(1, 0, 0, 0))
+            : dem_sphere_add(w, m, DEM_R(0.01), x);
+        joint.kind = DEM_JOINT_POINT;
+        joint.a = last;
+        joint.b = body;
+        joint.point = demi_sub(x, at(0.01, 0, 0));
+        if (joined && i%3) CHECK(dem_joint_add(w, &joint).id > 0);
+        last = body;
+    }
+    CHECK_EQ(scene_step(w, response ? 20 : 400), DEM_OK);
+    return w;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -123,6 +174,48 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("counters, stress, fields, mixing and the list agree how many contacts there are: of every shape, with springs, a law "
+         "with a range, impulses and joints") {
+        int shape, way;
+        for (shape = 0; shape < SHAPES; shape++)
+            for (way = 0; way < 4; way++) {
+                const int response = way >= 2 ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+                dem_world *w = pile(shape, response, way == 3, way == 1);
+                const dem_field f = field_of(w, box_of(0, 0, 0, 0.1, 0.1, 0.1), 1, 1, 1, 1e-9, 0);
+                dem_mixing_desc half = DEM_MIXING_DESC;
+                dem_contact_info info[2000];
+                dem_field_cell cell;
+                dem_counters c;
+                dem_mixing mixing;
+                dem_stress s;
+                int i, n, between = 0, walls = 0;
+                CHECK_EQ(scene_step(w, 1), DEM_OK);
+                c = dem_counters_get(w);
+                CHECK(c.contacts >= 9 && c.wall_contacts >= 9);
+                CHECK_EQ(dem_stress_get(w, &s), DEM_OK);
+                CHECK_EQ(s.contacts, c.contacts);
+                CHECK_NEAR(27*s.coordination, 2*c.contacts + c.wall_contacts, 1e-9);
+                CHECK_EQ(dem_field_cell_get(w, f, 0, 0, 0, &cell), DEM_OK);
+                CHECK_NEAR(27*cell.coordination, 2*c.contacts + c.wall_contacts, 1e-9);
+                half.box = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+                half.cells[0] = half.cells[1] = half.cells[2] = 1;
+                half.radius_max = 1;
+                CHECK_EQ(dem_mixing_get(w, &half, &mixing), DEM_OK);
+                CHECK_EQ(mixing.contacts, c.contacts);
+                n = dem_contacts_get(w, info, 2000);
+                CHECK(n > 0 && n <= 2000);
+                CHECK_EQ(dem_contacts_get(w, 0, 0), n);
+                for (i = 0; i < n && response == DEM_RESPONSE_SPRINGS; i++)
+                    if (info[i].overlap > 0 && !info[i].further) *(info[i].wall ? &walls : &between) += 1;
+                if (response == DEM_RESPONSE_SPRINGS) {
+                    CHECK_EQ(between, c.contacts);
+                    CHECK_EQ(walls, c.wall_contacts);
+                }
+                for (i = 0; i < n && way == 3; i++)     /* joined neighbours along x overlap and have no contact */
+                    CHECK(info[i].wall || !(info[i].normal.x*info[i].normal.x > DEM_R(0.9)));
+                dem_world_destroy(w);
+            }
+    }
     TEST("the kinetic pressure of a dilute gas is density times temperature, for any mean velocity") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
