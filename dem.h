@@ -31990,15 +31990,30 @@ static dem_result demi_moved(dem_world *h) {
     }
     return result;
 }
-/* Runs a task that may remove bodies. *stale is set if some member then needs a new list. */
-static dem_result demi_all_lose(dem_world *h, dem_result (*task)(dem_world *member), int *stale) {
+/* Runs a task that may remove bodies. If some member then needs a new list, all get one. */
+static dem_result demi_all_lose(dem_world *h, dem_result (*task)(dem_world *member)) {
     double most = 0;
     dem_result result = demi_all(h, task);
     int k;
     for (k = 0; k < demi_members(h); k++)
         most = DEMI_MAX(most, !demi_member(h, k)->stage.list_valid);
     if (result == DEM_OK) result = demi_agree(h, &most, 1);
-    *stale |= most > 0;
+    if (most > 0) h->stage.list_valid = 0;
+    return result;
+}
+/* True if the list is not valid, or a pair that is not in it may have come near. */
+static int demi_list_due(const dem_world *h) {
+    const demi_margin *m = &h->margin;
+    return !h->stage.list_valid || m->skin <= 0 || 2*m->gone > m->skin ||
+        m->gone + m->walls_gone > m->skin;
+}
+/* Removes bodies by where they are at the end of the step. Outlets act when lists are rebuilt and
+   every DEMI_OUTLET_REST steps: between two lists no body moves farther than half a skin. */
+static dem_result demi_step_lose(dem_world *h) {
+    dem_result result = demi_outflows(h) ? demi_all_lose(h, demi_outflow) : DEM_OK;
+    if (result == DEM_OK && demi_member(h, 0)->outlet_count &&
+        (demi_list_due(h) || h->clock.steps%DEMI_OUTLET_REST == 0))
+        result = demi_all_lose(h, demi_outlets_run);
     return result;
 }
 /* Builds the neighbour lists of all members. */
@@ -32025,21 +32040,13 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && h->events.n.on) demi_events_take(h);
     return result;
 }
-/* The part of a step after its move: outflow, outlets, 2 search, 3 to 5 forces. With impulses,
+/* The part of a step after its move: 2 search, 3 to 5 forces. With impulses,
    desc.unsolved_stops makes a step fail whose solver did not reach its tolerance. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
-    const demi_margin *m = &h->margin;
+    const int search = demi_list_due(h);
     dem_result result = DEM_OK;
-    int search = !h->stage.list_valid;
-    /* 2 search, if a pair that is not in the list may have come near. Outlets act at the same time
-       and every DEMI_OUTLET_REST steps: between two lists no body moves farther than half a skin */
-    if (demi_outflows(h)) result = demi_all_lose(h, demi_outflow, &search);
-    search |= m->skin <= 0 || 2*m->gone > m->skin || m->gone + m->walls_gone > m->skin;
-    if (result == DEM_OK && demi_member(h, 0)->outlet_count &&
-        (search || h->clock.steps%DEMI_OUTLET_REST == 0))
-        result = demi_all_lose(h, demi_outlets_run, &search);
-    if (result == DEM_OK && search) {
+    if (search) {
         result = demi_all_rebuild(h);
         if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
     }
@@ -32083,7 +32090,8 @@ static dem_result demi_step_once(dem_world *h) {
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
     }
-    result = demi_answer(h, demi_step_answer);
+    result = demi_step_lose(h);
+    if (result == DEM_OK) result = demi_answer(h, demi_step_answer);
     if (!h->stage.moved && demi_member(h, 0)->bodies.real_count) demi_all(h, demi_member_gain);
     return result;
 }

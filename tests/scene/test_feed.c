@@ -757,6 +757,45 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("outflow and outlets remove a grain no earlier than it is there, with springs and impulses, on a wall that moves too") {
+        int way, i, response;
+        for (response = 0; response < 2; response++)
+            for (way = 0; way < 3; way++) {             /* outflow; outlet at rest; outlet that a wall carries */
+                const double dt = 1e-2, limit = 0.1004, pace = way == 2 ? -1 : 0;
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_outlet_desc outlet = DEM_OUTLET_DESC;
+                dem_world *w;
+                dem_material m;
+                double x = 0;
+                desc.response = response ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+                desc.normal_law = DEM_NORMAL_LINEAR;
+                desc.dt = (dem_real)dt;
+                desc.allow_large_dt = 1;
+                desc.skin = DEM_R(1e-9);
+                if (!way) {
+                    desc.boundary[0] = DEM_BOUNDARY_OUTFLOW;
+                    desc.domain = box_of(-1, -1, -1, limit, 1, 1);
+                }
+                w = dem_world_create(&desc);
+                m = soft(w, 1);
+                if (way == 2) {
+                    dem_motion motion = DEM_MOTION;
+                    outlet.frame = dem_wall_plane_add(w, m, at(0, 0, -0.5), at(0, 0, 1));
+                    motion.kind = DEM_MOTION_TRANSLATING;
+                    motion.velocity = at(pace, 0, 0);
+                    CHECK_EQ(dem_wall_motion_set(w, outlet.frame, &motion), DEM_OK);
+                }
+                outlet.box = box_of(limit, -1, -1, 2, 1, 1);
+                if (way) CHECK(dem_outlet_add(w, &outlet).id > 0);
+                scene_move(w, dem_sphere_add(w, m, DEM_R(0.001), at(0, 0, 0)), at(1, 0, 0), at(0, 0, 0));
+                for (i = 1; i < 30 && dem_bodies_get(w).count; i++) {
+                    CHECK_EQ(scene_step(w, 1), DEM_OK);
+                    x = i*dt;
+                }
+                CHECK(x > limit + pace*x && x - dt <= limit + pace*(x - dt) + 1e-6);
+                dem_world_destroy(w);
+            }
+    }
     TEST("feeds and outlets with bad values are rejected with the value named") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);
