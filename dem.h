@@ -2879,8 +2879,9 @@ typedef struct dem_ledger {
     double normal, slide, tangent, rolling;
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
-    /* supplied: work of bodies that change their radius. Other changes of the scene between the
-       same two steps count with it. */
+    /* supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or
+       walls are added, moved or removed between steps, materials change. What springs held on a
+       grain that an outlet or an outflow boundary removes is in the residual. */
     double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */
@@ -4774,7 +4775,7 @@ typedef struct demi_stages {
     int moved;                     /* bodies have moved in a step whose forces are missing, because
                                       memory ran out */
     int synced;                    /* no half kick is pending: see demi_finish */
-    int grown;                     /* 1: radii have changed since the last forces: >>growth */
+    int grown;                     /* >>growth: radii have just changed */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
     int quiet;                     /* isolated bodies are known (>>near): the scene has not changed
                                       since the pruned list was made */
@@ -5869,7 +5870,6 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(clock.assumed_speed, 'd', DEMI_FROM | DEMI_DEALT),
     DEMI_N(clock.press_due, 'u', 0), DEMI_N(clock.press_since, 'u', 0),
     DEMI_N(clock.held, 'u', 0), DEMI_N(clock.grown, 'd', DEMI_ANY | DEMI_DEALT),
-    DEMI_N(stage.grown, 'i', DEMI_TO_SLAB | DEMI_FIRSTS),
     DEMI_N(stage.dt_valid, 'i', DEMI_DEALT), DEMI_N(stage.list_valid, 'i', 0),
     DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
@@ -29601,9 +29601,9 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
    its material. Its velocity, spin and contact histories stay. New lists are built, so everything
    that depends on radii or masses follows: coefficients, reach, skin, tessellations, time step.
    The ledger. The kinetic energy that new mass has, or that lost mass takes along, counts as
-   inserted. The energy that springs gain or lose because radii change is `growth`: forces are
-   computed twice at the same positions, before and after, and the ledger takes the difference. It
-   is the work of the force on the surface that grows.
+   inserted. The energy that springs gain or lose because radii change is `growth`, as with every
+   change of the scene: forces are computed twice at the same positions, before and after, and the
+   ledger takes the difference. It is the work of the force on the surface that grows.
    Owns clock.grown and stage.grown.
    --------------------------------------------------------------------------------------------- */
 
@@ -29659,7 +29659,6 @@ DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real rad
     demi_finish(w);                             /* the open half kick belongs to the old mass */
     if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_body_resize(w, i, radius, mass);
-    w->stage.grown = 1;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -29698,7 +29697,7 @@ static dem_result demi_member_grow(dem_world *w) {
         if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
             !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
     demi_free(w, radius);
-    if (result == DEM_OK) w->stage.grown |= grown;
+    w->stage.grown = grown;
     return result;
 }
 /* Changes the radii before a step, if that is due, to those at its end. The time step is then
@@ -29720,7 +29719,6 @@ static dem_result demi_radii_grow(dem_world *h) {
         dem_world *w = demi_member(h, k);
         w->clock.grown = until;
         if (!(grown > 0)) continue;
-        w->stage.grown = 1;
         w->stage.forces_valid = w->stage.primed = 0;
     }
     if (!(grown > 0)) return DEM_OK;
@@ -29753,9 +29751,9 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
         *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
-/* Books what springs hold more than before, because radii have changed and nothing has moved, as
-   the work of growth. The tangential part passes through the work against the tangential force, so
-   that it does not count as a loss. */
+/* Forces were computed without a step: books what springs hold more than before, because the scene
+   has changed and nothing has moved, as `growth`. The tangential part passes through the work
+   against the tangential force, so that it does not count as a loss. */
 static void demi_growth_book(dem_world *w) {
     const double shear = demi_sum_energy(w, DEMI_E_SHEAR_STORED) -
         w->booked.energy[DEMI_E_SHEAR_STORED];
@@ -29780,7 +29778,7 @@ static void demi_ledger_book(dem_world *w) {
         w->booked.energy[flows[i]] += part;
         if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
-    if (w->stage.grown) demi_growth_book(w);
+    if (!w->stage.forces_valid) demi_growth_book(w);
     w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
@@ -30685,10 +30683,10 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
     e->pending[e->n.pending++] = *event;
     return 1;
 }
-/* True if radii change and nothing moves. What a tangential spring then gains is work of growth,
-   not of the contact (>>growth). So that it does not count as a loss, it is added to the work, as
-   in the ledger. */
-static int demi_event_grown(const dem_world *w) { return demi_member(w, 0)->stage.grown; }
+/* True if the scene has changed and nothing moves. What a tangential spring then gains is `growth`
+   in the ledger, not work of the contact. So that it does not count as a loss, it is added to the
+   work. */
+static int demi_event_changed(const dem_world *w) { return !demi_member(w, 0)->stage.forces_valid; }
 /* Returns the index of the open contact of a note, which begins if there is none; -1 if memory ran
    out. *next: as for demi_event_find. */
 static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const demi_noted *n,
@@ -30712,7 +30710,7 @@ static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const de
 /* What holds for all notes of a turn. */
 typedef struct demi_turn {
     double dt;                     /* s, 0 if the bodies have not moved yet */
-    int lasting, grown, fresh;     /* DEMI_LASTING of the response; demi_event_grown; n.fresh */
+    int lasting, changed, fresh;   /* DEMI_LASTING of the response; demi_event_changed; n.fresh */
     int after, listed;             /* 1: there are notes of the turn before; the lists stayed */
 } demi_turn;
 /* Adds note number `number` to open contact i. */
@@ -30727,12 +30725,12 @@ DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_note
     if (e->last[i] - e->turn > number - e->turn) {     /* its first note of this turn */
         e->last[i] = number;
         s->most = DEMI_MAX(s->most, s->force);
-        if (turn->grown) s->work -= s->stored;
+        if (turn->changed) s->work -= s->stored;
         s->force = s->stored = 0;
     }
     s->force += n->force;
     s->stored += n->stored;
-    if (known && turn->grown) s->work += n->stored;
+    if (known && turn->changed) s->work += n->stored;
     if (wall && n->slide > 0 && demi_wall_kinds[wall->kind].corners > 1)
         facet = demi_worn_facet(wall, demi_add(demi_add(at->arm, at->shift),
                                                demi_at(m->bodies.pos + 4*n->a)));
@@ -30844,7 +30842,7 @@ static int demi_event_end(dem_world *w, int i) {
     demi_events *e = &w->events;
     dem_event event;
     dem_wall wall;
-    if (demi_event_grown(w)) e->sums[i].work -= e->sums[i].stored;
+    if (demi_event_changed(w)) e->sums[i].work -= e->sums[i].stored;
     event = demi_event_shown(w, i, DEM_EVENT_END);
     wall.id = event.wall;
     if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
@@ -30954,7 +30952,7 @@ static void demi_events_take(dem_world *w) {
     demi_turn turn;
     int i, k, d, ok, next = 0, count = 0;
     turn.lasting = demi_response_is(w, DEMI_LASTING);
-    turn.grown = demi_event_grown(w);
+    turn.changed = demi_event_changed(w);
     turn.fresh = e->n.fresh;
     turn.after = e->before_count > 0;
     turn.listed = e->rebuilds == w->clock.rebuilds;
@@ -31932,7 +31930,6 @@ static dem_result demi_member_look(dem_world *w) {
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     demi_rails_act(w);
-    w->stage.grown = 0;
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
@@ -36692,7 +36689,7 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 22 };
+enum { DEMI_CHECKPOINT_VERSION = 23 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -38218,7 +38215,6 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
         w->booked.inserted = kinetic + rotational;
         w->booked.removed = w->booked.throughput = 0;
     }
-    w->stage.grown = w->desc.ledger;            /* what springs hold differently is booked there */
     if (!c->growth) w->clock.grown = w->clock.time;     /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);

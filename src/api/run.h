@@ -222,8 +222,9 @@ typedef struct dem_ledger {
     double normal, slide, tangent, rolling;
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
-    /* supplied: work of bodies that change their radius. Other changes of the scene between the
-       same two steps count with it. */
+    /* supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or
+       walls are added, moved or removed between steps, materials change. What springs held on a
+       grain that an outlet or an outflow boundary removes is in the residual. */
     double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */

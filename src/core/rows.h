@@ -176,7 +176,6 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(clock.assumed_speed, 'd', DEMI_FROM | DEMI_DEALT),
     DEMI_N(clock.press_due, 'u', 0), DEMI_N(clock.press_since, 'u', 0),
     DEMI_N(clock.held, 'u', 0), DEMI_N(clock.grown, 'd', DEMI_ANY | DEMI_DEALT),
-    DEMI_N(stage.grown, 'i', DEMI_TO_SLAB | DEMI_FIRSTS),
     DEMI_N(stage.dt_valid, 'i', DEMI_DEALT), DEMI_N(stage.list_valid, 'i', 0),
     DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),

@@ -41,7 +41,7 @@ typedef struct demi_stages {
     int moved;                     /* bodies have moved in a step whose forces are missing, because
                                       memory ran out */
     int synced;                    /* no half kick is pending: see demi_finish */
-    int grown;                     /* 1: radii have changed since the last forces: >>growth */
+    int grown;                     /* >>growth: radii have just changed */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
     int quiet;                     /* isolated bodies are known (>>near): the scene has not changed
                                       since the pruned list was made */

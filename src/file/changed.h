@@ -166,7 +166,6 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
         w->booked.inserted = kinetic + rotational;
         w->booked.removed = w->booked.throughput = 0;
     }
-    w->stage.grown = w->desc.ledger;            /* what springs hold differently is booked there */
     if (!c->growth) w->clock.grown = w->clock.time;     /* growth begins now */
     w->lll_valid = 0;
     demi_pairs_changed(w);

@@ -233,10 +233,10 @@ static int demi_event_wait(dem_world *w, const dem_event *event) {
     e->pending[e->n.pending++] = *event;
     return 1;
 }
-/* True if radii change and nothing moves. What a tangential spring then gains is work of growth,
-   not of the contact (>>growth). So that it does not count as a loss, it is added to the work, as
-   in the ledger. */
-static int demi_event_grown(const dem_world *w) { return demi_member(w, 0)->stage.grown; }
+/* True if the scene has changed and nothing moves. What a tangential spring then gains is `growth`
+   in the ledger, not work of the contact. So that it does not count as a loss, it is added to the
+   work. */
+static int demi_event_changed(const dem_world *w) { return !demi_member(w, 0)->stage.forces_valid; }
 /* Returns the index of the open contact of a note, which begins if there is none; -1 if memory ran
    out. *next: as for demi_event_find. */
 static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const demi_noted *n,
@@ -260,7 +260,7 @@ static DEMI_APART int demi_event_open(dem_world *w, const dem_world *m, const de
 /* What holds for all notes of a turn. */
 typedef struct demi_turn {
     double dt;                     /* s, 0 if the bodies have not moved yet */
-    int lasting, grown, fresh;     /* DEMI_LASTING of the response; demi_event_grown; n.fresh */
+    int lasting, changed, fresh;   /* DEMI_LASTING of the response; demi_event_changed; n.fresh */
     int after, listed;             /* 1: there are notes of the turn before; the lists stayed */
 } demi_turn;
 /* Adds note number `number` to open contact i. */
@@ -275,12 +275,12 @@ DEM_INLINE void demi_event_add(dem_world *w, const dem_world *m, const demi_note
     if (e->last[i] - e->turn > number - e->turn) {     /* its first note of this turn */
         e->last[i] = number;
         s->most = DEMI_MAX(s->most, s->force);
-        if (turn->grown) s->work -= s->stored;
+        if (turn->changed) s->work -= s->stored;
         s->force = s->stored = 0;
     }
     s->force += n->force;
     s->stored += n->stored;
-    if (known && turn->grown) s->work += n->stored;
+    if (known && turn->changed) s->work += n->stored;
     if (wall && n->slide > 0 && demi_wall_kinds[wall->kind].corners > 1)
         facet = demi_worn_facet(wall, demi_add(demi_add(at->arm, at->shift),
                                                demi_at(m->bodies.pos + 4*n->a)));
@@ -392,7 +392,7 @@ static int demi_event_end(dem_world *w, int i) {
     demi_events *e = &w->events;
     dem_event event;
     dem_wall wall;
-    if (demi_event_grown(w)) e->sums[i].work -= e->sums[i].stored;
+    if (demi_event_changed(w)) e->sums[i].work -= e->sums[i].stored;
     event = demi_event_shown(w, i, DEM_EVENT_END);
     wall.id = event.wall;
     if (!demi_event_exists(w, event.a) || (wall.id ? !demi_wall_there(w, wall)
@@ -502,7 +502,7 @@ static void demi_events_take(dem_world *w) {
     demi_turn turn;
     int i, k, d, ok, next = 0, count = 0;
     turn.lasting = demi_response_is(w, DEMI_LASTING);
-    turn.grown = demi_event_grown(w);
+    turn.changed = demi_event_changed(w);
     turn.fresh = e->n.fresh;
     turn.after = e->before_count > 0;
     turn.listed = e->rebuilds == w->clock.rebuilds;

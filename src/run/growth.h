@@ -5,9 +5,9 @@
    its material. Its velocity, spin and contact histories stay. New lists are built, so everything
    that depends on radii or masses follows: coefficients, reach, skin, tessellations, time step.
    The ledger. The kinetic energy that new mass has, or that lost mass takes along, counts as
-   inserted. The energy that springs gain or lose because radii change is `growth`: forces are
-   computed twice at the same positions, before and after, and the ledger takes the difference. It
-   is the work of the force on the surface that grows.
+   inserted. The energy that springs gain or lose because radii change is `growth`, as with every
+   change of the scene: forces are computed twice at the same positions, before and after, and the
+   ledger takes the difference. It is the work of the force on the surface that grows.
    Owns clock.grown and stage.grown.
    --------------------------------------------------------------------------------------------- */
 
@@ -63,7 +63,6 @@ DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real rad
     demi_finish(w);                             /* the open half kick belongs to the old mass */
     if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
     demi_body_resize(w, i, radius, mass);
-    w->stage.grown = 1;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -102,7 +101,7 @@ static dem_result demi_member_grow(dem_world *w) {
         if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
             !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
     demi_free(w, radius);
-    if (result == DEM_OK) w->stage.grown |= grown;
+    w->stage.grown = grown;
     return result;
 }
 /* Changes the radii before a step, if that is due, to those at its end. The time step is then
@@ -124,7 +123,6 @@ static dem_result demi_radii_grow(dem_world *h) {
         dem_world *w = demi_member(h, k);
         w->clock.grown = until;
         if (!(grown > 0)) continue;
-        w->stage.grown = 1;
         w->stage.forces_valid = w->stage.primed = 0;
     }
     if (!(grown > 0)) return DEM_OK;

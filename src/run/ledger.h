@@ -21,9 +21,9 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
         *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
-/* Books what springs hold more than before, because radii have changed and nothing has moved, as
-   the work of growth. The tangential part passes through the work against the tangential force, so
-   that it does not count as a loss. */
+/* Forces were computed without a step: books what springs hold more than before, because the scene
+   has changed and nothing has moved, as `growth`. The tangential part passes through the work
+   against the tangential force, so that it does not count as a loss. */
 static void demi_growth_book(dem_world *w) {
     const double shear = demi_sum_energy(w, DEMI_E_SHEAR_STORED) -
         w->booked.energy[DEMI_E_SHEAR_STORED];
@@ -48,7 +48,7 @@ static void demi_ledger_book(dem_world *w) {
         w->booked.energy[flows[i]] += part;
         if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
-    if (w->stage.grown) demi_growth_book(w);
+    if (!w->stage.forces_valid) demi_growth_book(w);
     w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)

@@ -609,7 +609,6 @@ static dem_result demi_member_look(dem_world *w) {
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     demi_rails_act(w);
-    w->stage.grown = 0;
     w->stage.forces_valid = 1;
     return DEM_OK;
 }

@@ -39,6 +39,8 @@ static dem_body body_of(dem_world *world, dem_material stuff, int kind, dem_vec3
                     : dem_sphere_add(world, stuff, DEM_R(4e-3), x);
 }
 
+static void no_look(const dem_contact_info *c, dem_real *memory, void *user) { (void)c; (void)memory; (void)user; }
+
 /* ---- a body under a load grows ---- */
 
 typedef struct plan { double rate; uint32_t slot; double until; } plan;
@@ -329,6 +331,44 @@ int main(int argc, char **argv) {
             CHECK_NEAR(s[1].velocity.z, s[0].velocity.z, 0);
             CHECK_NEAR(number[1], number[0], 0);
         }
+    }
+    TEST("what springs gain or lose when the scene changes between two steps is growth in the ledger, and no residual") {
+        int kind, change;
+        for (kind = 0; kind < SHAPES; kind++)
+            for (change = 0; change < 6; change++) {
+                plan still = {0, 0, 0};
+                dem_body low, load;
+                dem_world *w = column(kind, DEM_RESPONSE_SPRINGS, &still, &low, &load);
+                dem_material stuff = {1};
+                dem_wall floor = {1};
+                dem_body_state s;
+                dem_pair pair;
+                dem_ledger before, after;
+                must(w, dem_world_run(w, 0.1, 0, 0));
+                before = dem_ledger_get(w);
+                CHECK(before.elastic > 0);
+                s = scene_state(w, load);
+                s.position.z -= DEM_R(1e-5);
+                CHECK_EQ(dem_pair_get(w, stuff, stuff, &pair), DEM_OK);
+                pair.stiffness *= 2;
+                /* of six things that change what springs hold */
+                if (change == 0) CHECK_EQ(dem_body_remove(w, load), DEM_OK);
+                if (change == 1) CHECK_EQ(dem_body_set(w, load, &s), DEM_OK);
+                if (change == 2) CHECK_EQ(dem_wall_remove(w, floor), DEM_OK);
+                if (change == 3) body_of(w, stuff, kind, demi_add(s.position, at(0, 0, 0.0115)));
+                if (change == 4) CHECK_EQ(dem_pair_set(w, stuff, stuff, &pair), DEM_OK);
+                if (change == 5) CHECK_EQ(dem_body_radius_set(w, low, s.radius*DEM_R(1.001)), DEM_OK);
+                CHECK(dem_contacts_each(w, no_look, 0) >= 0);
+                after = dem_ledger_get(w);
+            
+                CHECK(fabs(after.elastic - before.elastic) > 1e-3*before.elastic);
+                CHECK_NEAR(after.residual - before.residual, 0, 1e-5*(before.elastic + after.elastic));
+                CHECK_NEAR(after.tangent - before.tangent, 0, 1e-5*(before.elastic + after.elastic));
+                CHECK_EQ(scene_step(w, 1), DEM_OK);
+                after = dem_ledger_get(w);
+                CHECK_NEAR(after.residual - before.residual, 0, 1e-2*(before.elastic + after.elastic));
+                dem_world_destroy(w);
+            }
     }
     TEST("a step that is chosen shrinks with the grains") {
         dem_world_desc desc = DEM_WORLD_DESC;
