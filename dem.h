@@ -6550,24 +6550,6 @@ static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
     return w->desc.planar ? mass*r*r/2 : 0.4*mass*r*r;
 }
 
-/* Fails and returns 1 if dem_real cannot hold the mass or moment of inertia of a sphere or disc of
-   this radius, or their inverses: accelerations would be 0 or infinite. */
-static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_real radius, int i) {
-    const double r = (double)radius, m = demi_sphere_mass(w, material, r);
-    const double inertia = demi_sphere_inertia(w, m, r);
-    const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
-                             (dem_real)(1/inertia)};
-    int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
-        !(inertia > 0) || !(r > 0) || r > DEMI_FARTHEST;
-    for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
-    if (bad)
-        demi_refuse(w, call, "the radius of sphere %d is %g m, must be > 0, and its mass is %g kg, "
-                    "must be neither too small nor too large to calculate with in %s precision; "
-                    "lengths are in metres: check the unit; nothing was added", i, r, m,
-                    DEMI_SINGLE ? "single" : "double");
-    return bad;
-}
-
 #define DEMI_COEF_GET(PROPERTY, COEFFICIENT, UNIT) out->COEFFICIENT = coef[DEMI_COEF_##COEFFICIENT];
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
@@ -9473,6 +9455,40 @@ static double demi_shape_mass(const dem_world *w, int material, int shape, doubl
     return (double)w->materials[material].density*w->shapes[shape].volume*scale*scale*
         (w->desc.planar ? 1 : scale);
 }
+/* Writes the mass, kg, of a sphere of radius `size`, m (shape -1), or of a shape of scale `size`.
+   Returns 1 if the size is not positive or too large, or if dem_real cannot hold the mass, the
+   moments of inertia or their inverses: accelerations would be 0 or infinite. */
+static int demi_mass_bad(const dem_world *w, int material, int shape, dem_real size,
+                         double *mass) {
+    const double s = (double)size;
+    double x[3];
+    int k, bad = !(size > 0) ||
+        !(size*(shape < 0 ? 1 : w->shapes[shape].radius) <= DEM_R(DEMI_FARTHEST));
+    *mass = x[0] = shape < 0 ? demi_sphere_mass(w, material, s)
+        : demi_shape_mass(w, material, shape, s);
+    x[1] = x[2] = shape < 0 ? demi_sphere_inertia(w, *mass, s) : *mass*s*s;
+    if (shape >= 0) {
+        const dem_vec3 I = w->shapes[shape].inertia;
+        x[1] *= (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+        x[2] *= (double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
+    }
+    for (k = 0; k < 3; k++) {
+        const dem_real one = (dem_real)x[k], inverse = (dem_real)(1/x[k]);
+        bad = bad || !(one > 0) || !demi_finite(one) || !(inverse > 0) || !demi_finite(inverse);
+    }
+    return bad;
+}
+/* Fails and returns 1 if that is so. i: the number of the body in the message. */
+static int demi_mass_refuse(dem_world *w, const char *call, int material, int shape, dem_real size,
+                            int i) {
+    double mass;
+    if (!demi_mass_bad(w, material, shape, size, &mass)) return 0;
+    demi_refuse(w, call, "the %s of body %d is %g%s, must be > 0, and its mass is %g kg, must be "
+                "neither too small nor too large to calculate with in %s precision; lengths are in "
+                "metres: check the unit; nothing was added", shape < 0 ? "radius" : "scale", i,
+                (double)size, shape < 0 ? " m" : "", mass, DEMI_SINGLE ? "single" : "double");
+    return 1;
+}
 /* Returns the part of an orientation that is a rotation about z, for planar worlds. */
 static dem_quat demi_quat_flat(dem_quat given) {
     const dem_quat q = demi_quat_unit(given);
@@ -9557,7 +9573,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         return demi_refuse(w, __func__, "count is %d, must be >= 0 with positions (count "
                            "x 3); check the caller's array", count);
     for (i = 0; i < count; i++) {
-        if (demi_mass_refuse(w, __func__, m, radii ? radii[i] : radius, i) ||
+        if (demi_mass_refuse(w, __func__, m, -1, radii ? radii[i] : radius, i) ||
             demi_motion_refuse(w, __func__, i, i, positions, velocities, 0))
             return DEM_ERROR_ARGUMENT;
     }
@@ -9586,8 +9602,7 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
 
 /* Returns 0 with an error message if an array for new bodies has a bad value. */
 static int demi_bodies_check(dem_world *w, const char *call, int count, const dem_real *x,
-                             const dem_real *q, const dem_real *v, const dem_real *spin,
-                             const dem_real *scale) {
+                             const dem_real *q, const dem_real *v, const dem_real *spin) {
     int i;
     if (count < 0 || (count > 0 && !x)) {
         demi_refuse(w, call, "count is %d, must be >= 0 with positions (count x 3); check the "
@@ -9603,32 +9618,8 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
                         (double)o.x, (double)o.y, (double)o.z);
             return 0;
         }
-        if (scale && !(demi_finite(scale[i]) && scale[i] > 0)) {
-            demi_refuse(w, call, "scale of body %d is %g, must be > 0; no body was added", i,
-                        (double)scale[i]);
-            return 0;
-        }
     }
     return 1;
-}
-/* Returns 1 with an error message if the mass or inertia of a scaled shape, or its inverse, is 0 or
-   not finite. */
-static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int shape,
-                                  dem_real scale, int i) {
-    const double s = (double)scale, m = demi_shape_mass(w, material, shape, s);
-    const dem_vec3 I = w->shapes[shape].inertia;
-    const double least = m*s*s*(double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
-    const double most = m*s*s*(double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
-    const dem_real six[] = {(dem_real)m, (dem_real)(1/m), (dem_real)least, (dem_real)(1/least),
-                            (dem_real)most, (dem_real)(1/most)};
-    int k, bad = !demi_finite_double(m) || !(m > 0);
-    for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
-    if (bad)
-        demi_refuse(w, call, "body %d has scale %g and a mass of %g kg, and the mass or its "
-                    "inertia is too small or too large to calculate with in %s precision; lengths "
-                    "are in metres: check the unit; nothing was added", i, s, m,
-                    DEMI_SINGLE ? "single" : "double");
-    return bad;
 }
 /* Adds bodies of a shape. All checks come first, then the allocations, then what cannot fail, so a
    call that fails adds no body. */
@@ -9639,12 +9630,11 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
     int i, m = 0, f;
     if (demi_material_index(w, call, material, &m) != DEM_OK ||
         (f = demi_shape_index(w, call, shape)) < 0 ||
-        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales) ||
+        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins) ||
         demi_walls_strange(w, call, f))
         return DEM_ERROR_ARGUMENT;
     for (i = 0; i < count; i++)
-        if (demi_shape_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i))
-            return DEM_ERROR_ARGUMENT;
+        if (demi_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i)) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) ||
         !demi_orient_begin(w)) return demi_no_memory(w, call);
     for (i = 0; i < count; i++) {
@@ -27064,9 +27054,9 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                     "the count >= 0", (double)radius, count);
         return 0;
     }
-    if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
-                 : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
-                   demi_walls_strange(w, call, shape)) return 0;
+    if (demi_mass_refuse(w, call, m, shape, shape >= 0 ? 1 : radii && count ? radii[count - 1]
+                         : radius, 0) ||
+        (shape >= 0 && demi_walls_strange(w, call, shape))) return 0;
     if (!demi_region_check(w, call, region, radius, &g)) return 0;
     /* the region of the smallest contains the centres of all */
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
@@ -27211,7 +27201,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                     "> 0, padding and count >= 0", (double)radius, (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, __func__, m, radius, 0) ||
+    if (demi_mass_refuse(w, __func__, m, -1, radius, 0) ||
         !demi_region_check(w, __func__, &region, radius, &room)) return 0;
     if (!demi_lattice_make(w, &room, radius, padding, &g)) {
         demi_refuse(w, __func__, "a period is shorter than one sphere of radius %g m with its "
@@ -27509,11 +27499,11 @@ static int demi_box_bad(dem_box b, int planar) {
 static int demi_feed_material(const dem_feed_desc *d, int k) {
     return (d->materials[k].id ? d->materials[k].id : d->material.id) - 1;
 }
-/* Scale at which the shape of class k has the volume of a sphere of this radius, and the radius, m,
-   of its bounding sphere. */
+/* Scale at which the shape of class k has the volume of a sphere of this radius (of spheres: the
+   radius), and the radius, m, of its bounding sphere. */
 static dem_real demi_feed_scale(const dem_world *w, const dem_feed_desc *d, int k,
                                 dem_real radius) {
-    return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : 1;
+    return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : radius;
 }
 static dem_real demi_feed_reach(const dem_world *w, const dem_feed_desc *d, int k,
                                 dem_real radius) {
@@ -27531,8 +27521,11 @@ static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) 
     int i;
     f->lo[k] = f->hi[k] = (double)f->desc.radius[k];
     if (d && !demi_size_ends(w, call, d, &f->lo[k], &f->hi[k])) return 0;
-    if (demi_mass_refuse(w, call, m, (dem_real)f->lo[k], k) ||
-        demi_mass_refuse(w, call, m, (dem_real)f->hi[k], k)) return 0;
+    for (i = 0; i < 2; i++) {
+        const dem_real r = (dem_real)(i ? f->hi[k] : f->lo[k]);
+        if (demi_mass_refuse(w, call, m, f->desc.shapes[k].id - 1,
+                             demi_feed_scale(w, &f->desc, k, r), k)) return 0;
+    }
     f->mass[k] = demi_sphere_mass(w, m, f->lo[k]);
     f->desc.radius[k] = (dem_real)f->lo[k];     /* the smallest, for the time step */
     if (!d) return 1;
@@ -29607,27 +29600,11 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
    Owns clock.grown and stage.grown.
    --------------------------------------------------------------------------------------------- */
 
-/* True if dem_real cannot hold the mass or the moments of inertia, or their inverses, that body i
-   would have with this radius, or if the radius is not positive and within limits. */
+/* As demi_mass_bad, for body i with this radius, m. */
 static int demi_size_bad(const dem_world *w, int i, dem_real radius, double *mass) {
     const demi_shape *shape = demi_shape_of(w, i);
-    const int material = w->bodies.material[i] - 1;
-    const double r = (double)radius, scale = shape ? r/(double)shape->radius : 1;
-    dem_real four[4];
-    dem_vec3 I;
-    int k;
-    *mass = 0;
-    if (!demi_finite(radius) || !(radius > 0) || r > DEMI_FARTHEST) return 1;
-    *mass = shape ? demi_shape_mass(w, material, w->bodies.shape[i] - 1, scale)
-        : demi_sphere_mass(w, material, r);
-    I = shape ? demi_scale(shape->inertia, (dem_real)(*mass*scale*scale))
-        : demi_v((dem_real)demi_sphere_inertia(w, *mass, r), 1, 1);
-    four[0] = (dem_real)*mass;
-    four[1] = shape ? DEMI_MIN(I.x, DEMI_MIN(I.y, I.z)) : I.x;
-    four[2] = 1/four[0];
-    four[3] = 1/four[1];
-    for (k = 0; k < 4; k++) if (!demi_finite(four[k]) || !(four[k] > 0)) return 1;
-    return 0;
+    return demi_mass_bad(w, w->bodies.material[i] - 1, shape ? w->bodies.shape[i] - 1 : -1,
+                         shape ? radius/shape->radius : radius, mass);
 }
 /* Gives body i another radius, m, and mass, kg. The list must have been dropped. */
 static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) {
@@ -35545,7 +35522,7 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
                                "pass an id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
-        if (demi_mass_refuse(w, __func__, index, g->radii[i], i) ||
+        if (demi_mass_refuse(w, __func__, index, -1, g->radii[i], i) ||
             demi_motion_refuse(w, __func__, i, i, g->positions, g->velocities, g->spins))
             return DEM_ERROR_ARGUMENT;
     }

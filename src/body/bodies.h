@@ -371,6 +371,40 @@ static double demi_shape_mass(const dem_world *w, int material, int shape, doubl
     return (double)w->materials[material].density*w->shapes[shape].volume*scale*scale*
         (w->desc.planar ? 1 : scale);
 }
+/* Writes the mass, kg, of a sphere of radius `size`, m (shape -1), or of a shape of scale `size`.
+   Returns 1 if the size is not positive or too large, or if dem_real cannot hold the mass, the
+   moments of inertia or their inverses: accelerations would be 0 or infinite. */
+static int demi_mass_bad(const dem_world *w, int material, int shape, dem_real size,
+                         double *mass) {
+    const double s = (double)size;
+    double x[3];
+    int k, bad = !(size > 0) ||
+        !(size*(shape < 0 ? 1 : w->shapes[shape].radius) <= DEM_R(DEMI_FARTHEST));
+    *mass = x[0] = shape < 0 ? demi_sphere_mass(w, material, s)
+        : demi_shape_mass(w, material, shape, s);
+    x[1] = x[2] = shape < 0 ? demi_sphere_inertia(w, *mass, s) : *mass*s*s;
+    if (shape >= 0) {
+        const dem_vec3 I = w->shapes[shape].inertia;
+        x[1] *= (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+        x[2] *= (double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
+    }
+    for (k = 0; k < 3; k++) {
+        const dem_real one = (dem_real)x[k], inverse = (dem_real)(1/x[k]);
+        bad = bad || !(one > 0) || !demi_finite(one) || !(inverse > 0) || !demi_finite(inverse);
+    }
+    return bad;
+}
+/* Fails and returns 1 if that is so. i: the number of the body in the message. */
+static int demi_mass_refuse(dem_world *w, const char *call, int material, int shape, dem_real size,
+                            int i) {
+    double mass;
+    if (!demi_mass_bad(w, material, shape, size, &mass)) return 0;
+    demi_refuse(w, call, "the %s of body %d is %g%s, must be > 0, and its mass is %g kg, must be "
+                "neither too small nor too large to calculate with in %s precision; lengths are in "
+                "metres: check the unit; nothing was added", shape < 0 ? "radius" : "scale", i,
+                (double)size, shape < 0 ? " m" : "", mass, DEMI_SINGLE ? "single" : "double");
+    return 1;
+}
 /* Returns the part of an orientation that is a rotation about z, for planar worlds. */
 static dem_quat demi_quat_flat(dem_quat given) {
     const dem_quat q = demi_quat_unit(given);
@@ -455,7 +489,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         return demi_refuse(w, __func__, "count is %d, must be >= 0 with positions (count "
                            "x 3); check the caller's array", count);
     for (i = 0; i < count; i++) {
-        if (demi_mass_refuse(w, __func__, m, radii ? radii[i] : radius, i) ||
+        if (demi_mass_refuse(w, __func__, m, -1, radii ? radii[i] : radius, i) ||
             demi_motion_refuse(w, __func__, i, i, positions, velocities, 0))
             return DEM_ERROR_ARGUMENT;
     }
@@ -484,8 +518,7 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
 
 /* Returns 0 with an error message if an array for new bodies has a bad value. */
 static int demi_bodies_check(dem_world *w, const char *call, int count, const dem_real *x,
-                             const dem_real *q, const dem_real *v, const dem_real *spin,
-                             const dem_real *scale) {
+                             const dem_real *q, const dem_real *v, const dem_real *spin) {
     int i;
     if (count < 0 || (count > 0 && !x)) {
         demi_refuse(w, call, "count is %d, must be >= 0 with positions (count x 3); check the "
@@ -501,32 +534,8 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
                         (double)o.x, (double)o.y, (double)o.z);
             return 0;
         }
-        if (scale && !(demi_finite(scale[i]) && scale[i] > 0)) {
-            demi_refuse(w, call, "scale of body %d is %g, must be > 0; no body was added", i,
-                        (double)scale[i]);
-            return 0;
-        }
     }
     return 1;
-}
-/* Returns 1 with an error message if the mass or inertia of a scaled shape, or its inverse, is 0 or
-   not finite. */
-static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int shape,
-                                  dem_real scale, int i) {
-    const double s = (double)scale, m = demi_shape_mass(w, material, shape, s);
-    const dem_vec3 I = w->shapes[shape].inertia;
-    const double least = m*s*s*(double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
-    const double most = m*s*s*(double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
-    const dem_real six[] = {(dem_real)m, (dem_real)(1/m), (dem_real)least, (dem_real)(1/least),
-                            (dem_real)most, (dem_real)(1/most)};
-    int k, bad = !demi_finite_double(m) || !(m > 0);
-    for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
-    if (bad)
-        demi_refuse(w, call, "body %d has scale %g and a mass of %g kg, and the mass or its "
-                    "inertia is too small or too large to calculate with in %s precision; lengths "
-                    "are in metres: check the unit; nothing was added", i, s, m,
-                    DEMI_SINGLE ? "single" : "double");
-    return bad;
 }
 /* Adds bodies of a shape. All checks come first, then the allocations, then what cannot fail, so a
    call that fails adds no body. */
@@ -537,12 +546,11 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
     int i, m = 0, f;
     if (demi_material_index(w, call, material, &m) != DEM_OK ||
         (f = demi_shape_index(w, call, shape)) < 0 ||
-        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales) ||
+        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins) ||
         demi_walls_strange(w, call, f))
         return DEM_ERROR_ARGUMENT;
     for (i = 0; i < count; i++)
-        if (demi_shape_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i))
-            return DEM_ERROR_ARGUMENT;
+        if (demi_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i)) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) ||
         !demi_orient_begin(w)) return demi_no_memory(w, call);
     for (i = 0; i < count; i++) {

@@ -790,7 +790,7 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
                                "pass an id that dem_material_add returned");
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, __func__, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
-        if (demi_mass_refuse(w, __func__, index, g->radii[i], i) ||
+        if (demi_mass_refuse(w, __func__, index, -1, g->radii[i], i) ||
             demi_motion_refuse(w, __func__, i, i, g->positions, g->velocities, g->spins))
             return DEM_ERROR_ARGUMENT;
     }

@@ -333,24 +333,6 @@ static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
     return w->desc.planar ? mass*r*r/2 : 0.4*mass*r*r;
 }
 
-/* Fails and returns 1 if dem_real cannot hold the mass or moment of inertia of a sphere or disc of
-   this radius, or their inverses: accelerations would be 0 or infinite. */
-static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_real radius, int i) {
-    const double r = (double)radius, m = demi_sphere_mass(w, material, r);
-    const double inertia = demi_sphere_inertia(w, m, r);
-    const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
-                             (dem_real)(1/inertia)};
-    int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
-        !(inertia > 0) || !(r > 0) || r > DEMI_FARTHEST;
-    for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
-    if (bad)
-        demi_refuse(w, call, "the radius of sphere %d is %g m, must be > 0, and its mass is %g kg, "
-                    "must be neither too small nor too large to calculate with in %s precision; "
-                    "lengths are in metres: check the unit; nothing was added", i, r, m,
-                    DEMI_SINGLE ? "single" : "double");
-    return bad;
-}
-
 #define DEMI_COEF_GET(PROPERTY, COEFFICIENT, UNIT) out->COEFFICIENT = coef[DEMI_COEF_##COEFFICIENT];
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,

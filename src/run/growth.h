@@ -11,27 +11,11 @@
    Owns clock.grown and stage.grown.
    --------------------------------------------------------------------------------------------- */
 
-/* True if dem_real cannot hold the mass or the moments of inertia, or their inverses, that body i
-   would have with this radius, or if the radius is not positive and within limits. */
+/* As demi_mass_bad, for body i with this radius, m. */
 static int demi_size_bad(const dem_world *w, int i, dem_real radius, double *mass) {
     const demi_shape *shape = demi_shape_of(w, i);
-    const int material = w->bodies.material[i] - 1;
-    const double r = (double)radius, scale = shape ? r/(double)shape->radius : 1;
-    dem_real four[4];
-    dem_vec3 I;
-    int k;
-    *mass = 0;
-    if (!demi_finite(radius) || !(radius > 0) || r > DEMI_FARTHEST) return 1;
-    *mass = shape ? demi_shape_mass(w, material, w->bodies.shape[i] - 1, scale)
-        : demi_sphere_mass(w, material, r);
-    I = shape ? demi_scale(shape->inertia, (dem_real)(*mass*scale*scale))
-        : demi_v((dem_real)demi_sphere_inertia(w, *mass, r), 1, 1);
-    four[0] = (dem_real)*mass;
-    four[1] = shape ? DEMI_MIN(I.x, DEMI_MIN(I.y, I.z)) : I.x;
-    four[2] = 1/four[0];
-    four[3] = 1/four[1];
-    for (k = 0; k < 4; k++) if (!demi_finite(four[k]) || !(four[k] > 0)) return 1;
-    return 0;
+    return demi_mass_bad(w, w->bodies.material[i] - 1, shape ? w->bodies.shape[i] - 1 : -1,
+                         shape ? radius/shape->radius : radius, mass);
 }
 /* Gives body i another radius, m, and mass, kg. The list must have been dropped. */
 static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) {

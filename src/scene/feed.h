@@ -35,11 +35,11 @@ static int demi_box_bad(dem_box b, int planar) {
 static int demi_feed_material(const dem_feed_desc *d, int k) {
     return (d->materials[k].id ? d->materials[k].id : d->material.id) - 1;
 }
-/* Scale at which the shape of class k has the volume of a sphere of this radius, and the radius, m,
-   of its bounding sphere. */
+/* Scale at which the shape of class k has the volume of a sphere of this radius (of spheres: the
+   radius), and the radius, m, of its bounding sphere. */
 static dem_real demi_feed_scale(const dem_world *w, const dem_feed_desc *d, int k,
                                 dem_real radius) {
-    return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : 1;
+    return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : radius;
 }
 static dem_real demi_feed_reach(const dem_world *w, const dem_feed_desc *d, int k,
                                 dem_real radius) {
@@ -57,8 +57,11 @@ static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) 
     int i;
     f->lo[k] = f->hi[k] = (double)f->desc.radius[k];
     if (d && !demi_size_ends(w, call, d, &f->lo[k], &f->hi[k])) return 0;
-    if (demi_mass_refuse(w, call, m, (dem_real)f->lo[k], k) ||
-        demi_mass_refuse(w, call, m, (dem_real)f->hi[k], k)) return 0;
+    for (i = 0; i < 2; i++) {
+        const dem_real r = (dem_real)(i ? f->hi[k] : f->lo[k]);
+        if (demi_mass_refuse(w, call, m, f->desc.shapes[k].id - 1,
+                             demi_feed_scale(w, &f->desc, k, r), k)) return 0;
+    }
     f->mass[k] = demi_sphere_mass(w, m, f->lo[k]);
     f->desc.radius[k] = (dem_real)f->lo[k];     /* the smallest, for the time step */
     if (!d) return 1;

@@ -435,9 +435,9 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                     "the count >= 0", (double)radius, count);
         return 0;
     }
-    if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
-                 : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
-                   demi_walls_strange(w, call, shape)) return 0;
+    if (demi_mass_refuse(w, call, m, shape, shape >= 0 ? 1 : radii && count ? radii[count - 1]
+                         : radius, 0) ||
+        (shape >= 0 && demi_walls_strange(w, call, shape))) return 0;
     if (!demi_region_check(w, call, region, radius, &g)) return 0;
     /* the region of the smallest contains the centres of all */
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
@@ -582,7 +582,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                     "> 0, padding and count >= 0", (double)radius, (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, __func__, m, radius, 0) ||
+    if (demi_mass_refuse(w, __func__, m, -1, radius, 0) ||
         !demi_region_check(w, __func__, &region, radius, &room)) return 0;
     if (!demi_lattice_make(w, &room, radius, padding, &g)) {
         demi_refuse(w, __func__, "a period is shorter than one sphere of radius %g m with its "
