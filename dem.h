@@ -1679,8 +1679,9 @@ typedef struct dem_world_desc {
        computation of forces. Null means constant radii; see dem_body_radius_set. */
     dem_growth_fn growth;
     void *growth_user;             /* passed to growth */
-    /* s, between two changes of radii, in which a body grows for the whole interval, also if it was
-       added within it; 0 means every step */
+    /* s, between two changes of radii; 0 means every step. A body that was added within an interval
+       grows for all of it. In single precision changes below 6e-8 of a radius are lost: take a
+       longer interval */
     dem_real growth_interval;
 
     /* -- groups -- */
@@ -3175,7 +3176,7 @@ typedef struct dem_field_desc {
     dem_box box;
     int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
     double start, end;        /* s, window of time; end 0 means no end */
-    double interval;          /* s, between samples; 0 means every 100 steps of the present dt */
+    double interval;          /* s, from start on; 0 means every 100 steps of the present dt */
     dem_material material;    /* only grains of this material; id 0 means all grains */
     dem_real radius_min, radius_max;  /* m, only of these (bounding) radii; max 0 means any */
     int stress;               /* 1: also flux, stress and contacts; visits every contact */
@@ -30227,6 +30228,12 @@ static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next - 1e-6*(double)w->clock.dt &&
         !(f->desc.end > 0 && w->clock.time > f->desc.end);
 }
+/* The time of the sample after the present one: start plus a multiple of the interval, s. */
+static double demi_field_next(const dem_world *w, const dem_field_desc *d) {
+    const double now = w->clock.time + 1e-6*(double)w->clock.dt;
+    return d->interval > 0 ? d->start + d->interval*(floor((now - d->start)/d->interval) + 1)
+        : w->clock.time + 100*(double)w->clock.dt;
+}
 /* Samples all fields that are due. Contacts come first, while velocities are still the predicted
    ones: the present forces were computed from them, and slabs have exchanged them. demi_finish then
    completes the half kick, and grains are sampled with the velocities of the full step. */
@@ -30244,9 +30251,7 @@ static void demi_fields_sample(dem_world *w) {
         const dem_field_desc *d = &field->desc;
         demi_grid g = demi_grid_of(w, field);
         if (!demi_field_due(w, field)) continue;
-        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
-            : w->clock.time + 100*(double)w->clock.dt;
-        if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
+        field->next = demi_field_next(w, d);
         demi_field_squares_begin(field);
         for (i = 0; i < w->bodies.count; i++) {
             if (demi_is_ghost(w, i) || !demi_field_counts(w, d, i)) continue;

@@ -518,7 +518,7 @@ typedef struct dem_field_desc {
     dem_box box;
     int cells[3];             /* required, >= 1: along each axis, at most 2^28 in all */
     double start, end;        /* s, window of time; end 0 means no end */
-    double interval;          /* s, between samples; 0 means every 100 steps of the present dt */
+    double interval;          /* s, from start on; 0 means every 100 steps of the present dt */
     dem_material material;    /* only grains of this material; id 0 means all grains */
     dem_real radius_min, radius_max;  /* m, only of these (bounding) radii; max 0 means any */
     int stress;               /* 1: also flux, stress and contacts; visits every contact */

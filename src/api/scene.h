@@ -81,8 +81,9 @@ typedef struct dem_world_desc {
        computation of forces. Null means constant radii; see dem_body_radius_set. */
     dem_growth_fn growth;
     void *growth_user;             /* passed to growth */
-    /* s, between two changes of radii, in which a body grows for the whole interval, also if it was
-       added within it; 0 means every step */
+    /* s, between two changes of radii; 0 means every step. A body that was added within an interval
+       grows for all of it. In single precision changes below 6e-8 of a radius are lost: take a
+       longer interval */
     dem_real growth_interval;
 
     /* -- groups -- */

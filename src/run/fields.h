@@ -229,6 +229,12 @@ static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next - 1e-6*(double)w->clock.dt &&
         !(f->desc.end > 0 && w->clock.time > f->desc.end);
 }
+/* The time of the sample after the present one: start plus a multiple of the interval, s. */
+static double demi_field_next(const dem_world *w, const dem_field_desc *d) {
+    const double now = w->clock.time + 1e-6*(double)w->clock.dt;
+    return d->interval > 0 ? d->start + d->interval*(floor((now - d->start)/d->interval) + 1)
+        : w->clock.time + 100*(double)w->clock.dt;
+}
 /* Samples all fields that are due. Contacts come first, while velocities are still the predicted
    ones: the present forces were computed from them, and slabs have exchanged them. demi_finish then
    completes the half kick, and grains are sampled with the velocities of the full step. */
@@ -246,9 +252,7 @@ static void demi_fields_sample(dem_world *w) {
         const dem_field_desc *d = &field->desc;
         demi_grid g = demi_grid_of(w, field);
         if (!demi_field_due(w, field)) continue;
-        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
-            : w->clock.time + 100*(double)w->clock.dt;
-        if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
+        field->next = demi_field_next(w, d);
         demi_field_squares_begin(field);
         for (i = 0; i < w->bodies.count; i++) {
             if (demi_is_ghost(w, i) || !demi_field_counts(w, d, i)) continue;

@@ -339,6 +339,30 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a field that is added late samples at start plus multiples of its interval, as if it had been there from the start") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_field f;
+        dem_field_data d;
+        uint64_t had = 0;
+        int i;
+        desc.dt = DEM_R(1e-5);
+        desc.allow_large_dt = 1;
+        world = dem_world_create(&desc);
+        dem_sphere_add(world, scene_material(world, 1e7, 0.5, 0.3, 0), DEM_R(0.01), at(0, 0, 0));
+        CHECK_EQ(scene_step(world, 104), DEM_OK);
+        f = field_of(world, box_of(-1, -1, -1, 1, 1, 1), 1, 1, 1, 10*(double)desc.dt, 0);
+        CHECK_EQ(scene_step(world, 1), DEM_OK);         /* 105: the first one is overdue */
+        dem_field_get(world, f, &d);
+        CHECK_EQ(d.samples, 1);
+        for (i = 106; i <= 150; i++) {
+            had = d.samples;
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            dem_field_get(world, f, &d);
+            CHECK_EQ(d.samples - had, i%10 == 0);
+        }
+        dem_world_destroy(world);
+    }
     TEST("a planar world rejects a field whose box has no bodies, because z = 0 is not in it, and stays as it was") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
