@@ -37902,8 +37902,7 @@ static int demi_twin_follow(dem_world *t) {
     t->touching_valid = 0;
     demi_cross_index(t);
     demi_domains_weigh(t);
-    t->stage.quiet = demi_quiet_possible(t);
-    for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
+    demi_quiet_mark(t);
     return 1;
 }
 
