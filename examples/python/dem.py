@@ -2088,8 +2088,8 @@ class WorldDesc(Struct):
          'computation of forces. Null means constant radii; see dem_body_radius_set.'),
         ('growth_user', ctypes.c_void_p, 'passed to growth'),
         ('growth_interval', Real,
-         's, between two changes of radii, in which a body grows for the whole interval, also if it was added '
-         'within it; 0 means every step'),
+         's, between two changes of radii; 0 means every step. A body that was added within an interval grows '
+         'for all of it. In single precision changes below 6e-8 of a radius are lost: take a longer interval'),
         ('groups', str,
          'Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and '
          '_. A body belongs to none until dem_bodies_group_set. Null means no groups.'),
@@ -2986,8 +2986,9 @@ class Ledger(Struct):
         ('removed', ctypes.c_double, 'kinetic energy of removed bodies'),
         ('throughput', ctypes.c_double, 'sum of the magnitudes of what was supplied'),
         ('growth', ctypes.c_double,
-         'supplied: work of bodies that change their radius. Other changes of the scene between the same two '
-         'steps count with it.'),
+         'supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or walls '
+         'are added, moved or removed between steps, materials change. What springs held on a grain that an '
+         'outlet or an outflow boundary removes is in the residual.'),
         ('residual', ctypes.c_double, ''),
         ('unknown', ctypes.c_double, '> 0: the user-defined law created energy'),
     ]
@@ -3310,7 +3311,7 @@ class FieldDesc(Struct):
         ('cells', ctypes.c_int*3, 'required, >= 1: along each axis, at most 2^28 in all'),
         ('start', ctypes.c_double, 's, window of time; end 0 means no end'),
         ('end', ctypes.c_double, ""),
-        ('interval', ctypes.c_double, 's, between samples; 0 means every 100 steps of the present dt'),
+        ('interval', ctypes.c_double, 's, from start on; 0 means every 100 steps of the present dt'),
         ('material', Material, 'only grains of this material; id 0 means all grains'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means any'),
         ('radius_max', Real, ""),
@@ -3839,8 +3840,8 @@ class World(WorldBase):
             velocity and contact history stay. Each change of radii costs a new list and another computation of
             forces. Null means constant radii; see dem_body_radius_set.
         growth_user: passed to growth
-        growth_interval: s, between two changes of radii, in which a body grows for the whole interval, also if it was
-            added within it; 0 means every step
+        growth_interval: s, between two changes of radii; 0 means every step. A body that was added within an interval
+            grows for all of it. In single precision changes below 6e-8 of a radius are lost: take a longer interval
         groups: Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and _.
             A body belongs to none until dem_bodies_group_set. Null means no groups.
         force: force on a body; null means none
@@ -4786,7 +4787,7 @@ class World(WorldBase):
             of the box along z, which must contain 0.
         cells: required, >= 1: along each axis, at most 2^28 in all
         start: s, window of time; end 0 means no end
-        interval: s, between samples; 0 means every 100 steps of the present dt
+        interval: s, from start on; 0 means every 100 steps of the present dt
         material: only grains of this material; id 0 means all grains
         radius_min: m, only of these (bounding) radii; max 0 means any
         stress: 1: also flux, stress and contacts; visits every contact
