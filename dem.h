@@ -4776,7 +4776,6 @@ typedef struct demi_stages {
     int moved;                     /* bodies have moved in a step whose forces are missing, because
                                       memory ran out */
     int synced;                    /* no half kick is pending: see demi_finish */
-    int grown;                     /* >>growth: radii have just changed */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
     int quiet;                     /* isolated bodies are known (>>near): the scene has not changed
                                       since the pruned list was made */
@@ -5240,6 +5239,7 @@ struct dem_world {
     int species_vary;              /* bits of the columns that differ between pairs */
     struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
+    int grown;                     /* >>growth: radii have just changed; not state */
     demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
@@ -9484,10 +9484,11 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, int sh
                             int i) {
     double mass;
     if (!demi_mass_bad(w, material, shape, size, &mass)) return 0;
-    demi_refuse(w, call, "the %s of body %d is %g%s, must be > 0, and its mass is %g kg, must be "
-                "neither too small nor too large to calculate with in %s precision; lengths are in "
-                "metres: check the unit; nothing was added", shape < 0 ? "radius" : "scale", i,
-                (double)size, shape < 0 ? " m" : "", mass, DEMI_SINGLE ? "single" : "double");
+    demi_refuse(w, call, "the %s %d is %g%s, must be > 0 and finite, and its mass is %g kg, must "
+                "be neither too small nor too large to calculate with in %s precision; lengths are "
+                "in metres: check the unit; nothing was added", shape < 0 ? "radius of sphere"
+                : "scale of body", i, (double)size, shape < 0 ? " m" : "", mass,
+                DEMI_SINGLE ? "single" : "double");
     return 1;
 }
 /* Returns the part of an orientation that is a rotation about z, for planar worlds. */
@@ -29598,7 +29599,7 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
    inserted. The energy that springs gain or lose because radii change is `growth`, as with every
    change of the scene: forces are computed twice at the same positions, before and after, and the
    ledger takes the difference. It is the work of the force on the surface that grows.
-   Owns clock.grown and stage.grown.
+   Owns clock.grown and w->grown.
    --------------------------------------------------------------------------------------------- */
 
 /* As demi_mass_bad, for body i with this radius, m. */
@@ -29643,7 +29644,7 @@ DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real rad
 
 /* Asks desc.growth for the rates of all bodies and applies them up to the end of the coming step.
    Radii change after all rates are known, so that no rate depends on the order of bodies.
-   stage.grown receives 1 if a radius has changed, 3 if one has become smaller. */
+   w->grown receives 1 if a radius has changed, 3 if one has become smaller. */
 static dem_result demi_member_grow(dem_world *w) {
     const double passed = w->clock.time + (double)w->clock.dt - w->clock.grown;
     const int n = w->bodies.count;
@@ -29675,7 +29676,7 @@ static dem_result demi_member_grow(dem_world *w) {
         if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
             !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
     demi_free(w, radius);
-    w->stage.grown = grown;
+    w->grown = grown;
     return result;
 }
 /* Changes the radii before a step, if that is due, to those at its end. The time step is then
@@ -29689,7 +29690,7 @@ static dem_result demi_radii_grow(dem_world *h) {
         return DEM_OK;
     result = demi_all(h, demi_member_grow);
     for (k = 0; k < demi_members(h); k++)
-        grown = DEMI_MAX(grown, demi_member(h, k)->stage.grown);
+        grown = DEMI_MAX(grown, demi_member(h, k)->grown);
     if (result == DEM_OK) result = demi_agree(h, &grown, 1);
     if (result != DEM_OK) return result;
     h->clock.grown = until;

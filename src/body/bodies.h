@@ -399,10 +399,11 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, int sh
                             int i) {
     double mass;
     if (!demi_mass_bad(w, material, shape, size, &mass)) return 0;
-    demi_refuse(w, call, "the %s of body %d is %g%s, must be > 0, and its mass is %g kg, must be "
-                "neither too small nor too large to calculate with in %s precision; lengths are in "
-                "metres: check the unit; nothing was added", shape < 0 ? "radius" : "scale", i,
-                (double)size, shape < 0 ? " m" : "", mass, DEMI_SINGLE ? "single" : "double");
+    demi_refuse(w, call, "the %s %d is %g%s, must be > 0 and finite, and its mass is %g kg, must "
+                "be neither too small nor too large to calculate with in %s precision; lengths are "
+                "in metres: check the unit; nothing was added", shape < 0 ? "radius of sphere"
+                : "scale of body", i, (double)size, shape < 0 ? " m" : "", mass,
+                DEMI_SINGLE ? "single" : "double");
     return 1;
 }
 /* Returns the part of an orientation that is a rotation about z, for planar worlds. */

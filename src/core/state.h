@@ -41,7 +41,6 @@ typedef struct demi_stages {
     int moved;                     /* bodies have moved in a step whose forces are missing, because
                                       memory ran out */
     int synced;                    /* no half kick is pending: see demi_finish */
-    int grown;                     /* >>growth: radii have just changed */
     int near_stale;                /* the pruned list lacks a pair of a body that was inserted */
     int quiet;                     /* isolated bodies are known (>>near): the scene has not changed
                                       since the pruned list was made */
@@ -505,6 +504,7 @@ struct dem_world {
     int species_vary;              /* bits of the columns that differ between pairs */
     struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
+    int grown;                     /* >>growth: radii have just changed; not state */
     demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */

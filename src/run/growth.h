@@ -8,7 +8,7 @@
    inserted. The energy that springs gain or lose because radii change is `growth`, as with every
    change of the scene: forces are computed twice at the same positions, before and after, and the
    ledger takes the difference. It is the work of the force on the surface that grows.
-   Owns clock.grown and stage.grown.
+   Owns clock.grown and w->grown.
    --------------------------------------------------------------------------------------------- */
 
 /* As demi_mass_bad, for body i with this radius, m. */
@@ -53,7 +53,7 @@ DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real rad
 
 /* Asks desc.growth for the rates of all bodies and applies them up to the end of the coming step.
    Radii change after all rates are known, so that no rate depends on the order of bodies.
-   stage.grown receives 1 if a radius has changed, 3 if one has become smaller. */
+   w->grown receives 1 if a radius has changed, 3 if one has become smaller. */
 static dem_result demi_member_grow(dem_world *w) {
     const double passed = w->clock.time + (double)w->clock.dt - w->clock.grown;
     const int n = w->bodies.count;
@@ -85,7 +85,7 @@ static dem_result demi_member_grow(dem_world *w) {
         if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
             !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
     demi_free(w, radius);
-    w->stage.grown = grown;
+    w->grown = grown;
     return result;
 }
 /* Changes the radii before a step, if that is due, to those at its end. The time step is then
@@ -99,7 +99,7 @@ static dem_result demi_radii_grow(dem_world *h) {
         return DEM_OK;
     result = demi_all(h, demi_member_grow);
     for (k = 0; k < demi_members(h); k++)
-        grown = DEMI_MAX(grown, demi_member(h, k)->stage.grown);
+        grown = DEMI_MAX(grown, demi_member(h, k)->grown);
     if (result == DEM_OK) result = demi_agree(h, &grown, 1);
     if (result != DEM_OK) return result;
     h->clock.grown = until;

@@ -341,7 +341,7 @@ int main(int argc, char **argv) {
                 "dem_spheres_add: ", "positions", ">= 0");
         v[4] = (dem_real)infinite;
         refused(world, dem_spheres_add(world, glass, 2, x, v, 0, 1), DEM_ERROR_ARGUMENT, hash,
-                "dem_spheres_add: ", "sphere 1", "finite");
+                "dem_spheres_add: ", "velocity of body 1", "finite");
         refused_id(world, dem_spheres_fill(world, no, 1, dem_region_make(box_of(0, 0, 0, 9, 9, 9)), 1, 1), hash,
                    "dem_spheres_fill: ", "material", "there are 1");
         refused_id(world, dem_spheres_fill(world, glass, -1, dem_region_make(box_of(0, 0, 0, 9, 9, 9)), 1, 1), hash,
